@@ -75,7 +75,7 @@ fn circle(operator: Operator, radius: f32) -> Arc<Stroke> {
 }
 
 fn paint(stroke: Arc<Stroke>) -> Vec<Option<Tile>> {
-    let tiles = TileAt::covering(stroke.bounds(&SCENE)).filter(|&at| stroke.touches(&SCENE, at));
+    let tiles = TileAt::covering(stroke.bounds(&SCENE)).filter(|&at| stroke.can_touch(&SCENE, at));
     let strokes = [stroke.clone()];
     tiles.map(|at| stroke::render_tile(&strokes, &SCENE, at)).collect()
 }

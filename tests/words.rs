@@ -58,6 +58,49 @@ const REPLACED: &[(&str, Named, &str)] = &[
     ("yields", Named::Module, "constrained"),
 ];
 
+/// What predicates begin with.
+const PREDICATES: &[&str] = &["is_", "has_", "are_", "can_"];
+
+/// Functions that do something and return whether they did, or whose name the standard library gave.
+/// The list only shrinks: a function that can fail is a `try_…`, and all others are predicates.
+const RETURN_BOOL: &[&str] = &[
+    "add_image",
+    "advance",
+    "affine_row_from_canvas",
+    "always",
+    "apply",
+    "begin_edit",
+    "begin_shape",
+    "commit",
+    "compare_layers",
+    "compare_stacks",
+    "contains",
+    "drop_rest",
+    "eq",
+    "find",
+    "find_depth_polarity",
+    "follow",
+    "hold_action",
+    "leave_out_damaged",
+    "leave_out_selections",
+    "lower_to_alpha",
+    "march",
+    "prepare",
+    "ptr_eq",
+    "push",
+    "put",
+    "report_both",
+    "report_displaced",
+    "report_rect",
+    "report_tiles",
+    "report_whole",
+    "say",
+    "send",
+    "skip",
+    "to_bytes",
+    "wait_until_written",
+];
+
 /// What a suffix of functions was replaced by.
 const SUFFIXES: &[(&str, &str)] = &[("_telling", "_with_progress")];
 
@@ -84,6 +127,27 @@ fn definition(line: &str) -> Option<(Named, &str)> {
     }
     let name = words.get(at + 1)?.split(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
     Some((what, name))
+}
+
+/// The functions of a text, without its tests, that return `bool`.
+fn returning_bool(text: &str) -> Vec<&str> {
+    let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let mut found = Vec::new();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let rest = &text[start..];
+        start += line.len();
+        let Some((Named::Function, name)) = definition(line) else { continue };
+        let signature = rest.split(['{', ';']).next().unwrap_or_default();
+        let words = signature.split_whitespace().collect::<Vec<_>>().join(" ");
+        let words = words.split(" where ").next().unwrap_or_default();
+        // `-> impl Fn(…) -> bool` returns something that returns it.
+        let returns_function = words.matches(" -> impl ").count() > 0;
+        if words.ends_with("-> bool") && !returns_function {
+            found.push(name);
+        }
+    }
+    found
 }
 
 /// What a name is to be replaced by, if it is one of those.
@@ -121,4 +185,34 @@ fn names_are_found_however_they_are_written() {
     assert_eq!(replacement(Named::Function, "drawn_telling"), Some("_with_progress"));
     assert_eq!(replacement(Named::Module, "sway"), Some("wobble"));
     assert_eq!(replacement(Named::Function, "sway"), None);
+}
+
+#[test]
+fn predicates_are_named_as_such() {
+    let is_test = |path: &Path| {
+        path.components().any(|part| part.as_os_str() == "tests") || path.ends_with("tests.rs")
+    };
+    let (mut wrong, mut unused, mut count) = (Vec::new(), RETURN_BOOL.to_vec(), 0);
+    for path in files("src", "rs").into_iter().filter(|path| !is_test(path)) {
+        let text = fs::read_to_string(&path).unwrap();
+        for name in returning_bool(&text) {
+            count += 1;
+            unused.retain(|listed| *listed != name);
+            let is_predicate = PREDICATES.iter().any(|begin| name.starts_with(begin));
+            if !is_predicate && !name.starts_with("try_") && !RETURN_BOOL.contains(&name) {
+                wrong.push(format!("{}: {name}", path.display()));
+            }
+        }
+    }
+    assert!(count > 380, "only {count} functions that return bool were found");
+    assert!(wrong.is_empty(), "begin these with {PREDICATES:?} or try_: {wrong:#?}");
+    assert!(unused.is_empty(), "remove from RETURN_BOOL: {unused:?}");
+}
+
+#[test]
+fn functions_that_return_bool_are_found_however_they_are_written() {
+    let text = "fn is_a(x: u8) -> bool {\n}\n    pub(super) fn b<T>(\n        x: impl Fn() -> bool,\n    ) \
+                -> bool\n    where\n        T: D,\n    {\n}\nfn c(x: impl Fn() -> bool) {}\nfn f() -> impl Fn() \
+                -> bool {\n}\n// fn e() -> bool {\n#[cfg(test)]\nmod tests {\n    fn d() -> bool {}\n";
+    assert_eq!(returning_bool(text), ["is_a", "b"]);
 }

@@ -78,7 +78,7 @@ fn decode_as(
     budget: &Budget,
     (format, name, unbounded): (ImageFormat, &'static str, bool),
 ) -> Result<Bitmap> {
-    if format == ImageFormat::Jpeg && !ends(bytes) {
+    if format == ImageFormat::Jpeg && !has_end_marker(bytes) {
         return cut_jpeg(file, bytes, budget);
     }
     if format == ImageFormat::Hdr
@@ -213,7 +213,7 @@ fn cut_jpeg(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
 }
 
 /// Whether a JPEG's last scan is followed by its end marker.
-fn ends(bytes: &[u8]) -> bool {
+fn has_end_marker(bytes: &[u8]) -> bool {
     let last = |marker: u8| bytes.windows(2).rposition(|w| w == [0xff, marker]);
     last(0xd9) > last(0xda)
 }

@@ -127,7 +127,7 @@ fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
     if bytes.len() > STORED_BYTES + size.area() * kind.bytes() * 1001 / 1000 {
         bytes = encode(png::Compression::NoCompression)?;
     }
-    if !comes_back(&bytes, strips()) {
+    if !is_stored_as(&bytes, strips()) {
         return Err(Error::unsupported(
             file,
             "a picture could not be read back correctly; nothing was saved",
@@ -164,7 +164,7 @@ fn encoded<'v>(
 }
 
 /// Whether a PNG holds these values, row by row.
-fn comes_back<'v>(png: &[u8], strips: impl Iterator<Item = Cow<'v, [u8]>>) -> bool {
+fn is_stored_as<'v>(png: &[u8], strips: impl Iterator<Item = Cow<'v, [u8]>>) -> bool {
     let Ok(mut reader) = png::Decoder::new(std::io::Cursor::new(png)).read_info() else {
         return false;
     };

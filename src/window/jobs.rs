@@ -221,7 +221,7 @@ impl<W: JobWindow> Jobs<W> {
     }
 
     /// Whether a job is under way that ends with a dialog, or waits in one of the system's.
-    pub fn awaits_dialog(&self) -> bool {
+    pub fn is_awaiting_dialog(&self) -> bool {
         self.under_way.iter().any(|job| matches!(job.kind, JobKind::Asking | JobKind::Looking))
     }
 

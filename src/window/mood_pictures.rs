@@ -60,7 +60,7 @@ impl MoodPictures {
             layer: layer.id,
             others: others.filter(|other| other.id != layer.id).map(Arc::as_ptr).collect(),
             surface: document.surface.as_ref().map(|surface| Arc::as_ptr(surface) as usize),
-            beneath: live.params().lights_beneath(),
+            beneath: live.params().is_lighting_beneath(),
         };
         // While parts are dragged, their surface is still to come.
         if !document.is_ahead() && self.ordered.as_ref() != Some(&sight) {

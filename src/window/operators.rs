@@ -87,7 +87,7 @@ pub fn whose(session: &Session) -> (OperatorOwner, Operator) {
 }
 
 /// The bar shows this operator, whatever its numbers.
-pub fn has(session: &Session, operator: Operator) -> bool {
+pub fn has_operator(session: &Session, operator: Operator) -> bool {
     whose(session).1.is_like(operator)
 }
 

@@ -291,7 +291,7 @@ impl RenderWork {
         let was_quick = self
             .draft
             .as_ref()
-            .is_none_or(|draft| draft.is_unused() || draft.would_be_quick_in_whole_pixels());
+            .is_none_or(|draft| draft.is_unused() || draft.is_quick_in_whole_pixels());
         let drafts = next.is_dragged && (is_slow || !was_quick);
         (self.wanted, self.readiness) = (Some(next), Readiness::NotYet);
         self.phase = RenderPhase::Whole;

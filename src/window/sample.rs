@@ -203,7 +203,7 @@ mod tests {
         let between = 150..490;
         let contours = surface.contours().pixels().iter();
         let before_ball =
-            contours.filter(|pixel| pixel.sees_surface() && between.contains(&pixel.x));
+            contours.filter(|pixel| pixel.is_other_on_surface() && between.contains(&pixel.x));
         let errors: Vec<f32> = before_ball
             .map(|pixel| {
                 let px = |v: i32, i: i32| (v as f32 + (i as f32 + 0.5) / 16.0) / SIDE as f32;

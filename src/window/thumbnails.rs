@@ -98,7 +98,7 @@ impl Thumbnails {
         document: &Document,
         layer: &Arc<Layer>,
     ) -> Option<(TextureId, Vec2)> {
-        if !layer.content.paints() {
+        if !layer.content.has_pixels() {
             return None;
         }
         let is_ordered =

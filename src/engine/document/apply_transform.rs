@@ -55,7 +55,7 @@ fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
 /// A list of layers in which the transforms of the groups around a layer are handed down; `None` if
 /// it is not among them.
 fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<Arc<Layer>>> {
-    let index = layers.iter().position(|layer| layer.id == id || holds(layer, id))?;
+    let index = layers.iter().position(|layer| layer.id == id || layer.has_layer_within(id))?;
     let mut next = layers.to_vec();
     next[index] = if layers[index].id == id {
         in_place(&layers[index], around)
@@ -68,13 +68,6 @@ fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<
         Arc::new(outer)
     };
     Some(next)
-}
-
-fn holds(layer: &Layer, id: LayerId) -> bool {
-    layer
-        .content
-        .group()
-        .is_some_and(|group| group.layers.iter().any(|layer| layer.id == id || holds(layer, id)))
 }
 
 /// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that

@@ -170,7 +170,7 @@ impl CanvasChange {
     }
 
     /// The old canvas lies wholly on the new one.
-    fn holds_all(&self) -> bool {
+    fn has_whole_old_canvas(&self) -> bool {
         let (w, h) = (self.from.width as f32, self.from.height as f32);
         let (right, bottom) = (self.to.width as f32 + 0.01, self.to.height as f32 + 0.01);
         [vec2(0.0, 0.0), vec2(w, 0.0), vec2(w, h), vec2(0.0, h)].into_iter().all(|corner| {

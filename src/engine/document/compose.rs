@@ -38,14 +38,13 @@ impl Composer<'_> {
     pub fn first_visible(&self, nodes: &[PreparedLayer]) -> usize {
         // The sought adjustment must be reached, so only layers beneath it may hide others.
         let end = nodes.iter().position(|node| self.is_sought_in(node)).unwrap_or(nodes.len());
-        nodes[..end].iter().rposition(|node| self.hides_all_beneath(node)).unwrap_or(0)
+        nodes[..end].iter().rposition(|node| self.is_covering(node)).unwrap_or(0)
     }
 
     /// The tile of the topmost node, if nothing else is seen: it hides what lies beneath, and
     /// nothing is clipped to it.
     pub fn only_tile(&self, nodes: &[PreparedLayer]) -> Option<Arc<Tile>> {
-        let node =
-            nodes.last().filter(|node| node.clipped.is_empty() && self.hides_all_beneath(node))?;
+        let node = nodes.last().filter(|node| node.clipped.is_empty() && self.is_covering(node))?;
         if let TileContent::Tile(tile) = self.painted(node) { Some(tile) } else { None }
     }
 
@@ -272,7 +271,7 @@ impl Composer<'_> {
     }
 
     /// Whether this node hides everything beneath it in the tile.
-    fn hides_all_beneath(&self, node: &PreparedLayer) -> bool {
+    fn is_covering(&self, node: &PreparedLayer) -> bool {
         let layer = &node.layer;
         let may_hide =
             layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
@@ -299,14 +298,14 @@ impl PreparedLayer {
 
     /// Whether a placed picture of more than 8 bits shows on a tile: its own, or one of a layer in
     /// or clipped to it.
-    pub(super) fn shows_deep_picture(&self, at: TileAt) -> bool {
+    pub(super) fn has_deep_picture(&self, at: TileAt) -> bool {
         let own = match &self.layer.content {
             Content::Image(live) if live.params().source.picture.is_deep() => {
                 !matches!(self.layer.content.painted(&self.scene, at), TileContent::Nothing)
             }
             _ => false,
         };
-        own || self.children.iter().chain(&self.clipped).any(|node| node.shows_deep_picture(at))
+        own || self.children.iter().chain(&self.clipped).any(|node| node.has_deep_picture(at))
     }
 
     fn far_scene<'s>(&'s self, tile: FarTile<'s>) -> FarScene<'s> {

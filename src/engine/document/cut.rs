@@ -39,7 +39,8 @@ impl Document {
             Content::Strokes(_) => {
                 let scene = shown.scene_of(layer)?;
                 shown.with_strokes(layer, |strokes| {
-                    for stroke in strokes.iter_mut().filter(|stroke| stroke.meets(&scene, covered))
+                    for stroke in
+                        strokes.iter_mut().filter(|stroke| stroke.has_paint_on(&scene, covered))
                     {
                         *stroke = Arc::new(narrowed(stroke, &left));
                     }
@@ -76,8 +77,11 @@ impl Document {
             }
             Content::Strokes(live) => {
                 let scene = shown.scene_of(layer)?;
-                let met =
-                    live.params().strokes.iter().filter(|stroke| stroke.meets(&scene, covered));
+                let met = live
+                    .params()
+                    .strokes
+                    .iter()
+                    .filter(|stroke| stroke.has_paint_on(&scene, covered));
                 let strokes: Vec<_> =
                     met.map(|stroke| Arc::new(narrowed(stroke, covered))).collect();
                 let strokes: Vec<_> = strokes

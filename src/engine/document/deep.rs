@@ -29,7 +29,7 @@ impl Document {
 
     /// Whether bytes between live layers can differ from floats by more than two levels in the
     /// picture: where a steep blend mode or radiance scaling magnifies how they were rounded.
-    pub fn shows_rounding(&self) -> bool {
+    pub fn is_rounding_visible(&self) -> bool {
         let shown =
             || self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible);
         let magnifies = |layer: &Arc<Layer>| {
@@ -120,7 +120,11 @@ impl DeepTiles {
             None => pixels(&node.scene),
             Some(far) => {
                 let on_far_side = node.far.as_ref().and_then(pixels);
-                let bare = if marks.stay() && far.has_bare() { pixels(&node.scene) } else { None };
+                let bare = if marks.is_kept_off_surface() && far.has_bare() {
+                    pixels(&node.scene)
+                } else {
+                    None
+                };
                 Some(far.packed_deep(on_far_side.as_ref(), bare.as_ref()))
             }
         };

@@ -23,7 +23,7 @@ pub fn diff(old: &Document, new: &Document) -> BTreeSet<TileAt> {
         scene: new.scene(),
         changed: BTreeSet::new(),
     };
-    diff.stack(&old.layers, &new.layers, false);
+    diff.compare_stacks(&old.layers, &new.layers, false);
     diff.changed
 }
 
@@ -51,7 +51,7 @@ fn contexts(document: &Document) -> BTreeMap<LayerId, LayerContext> {
 /// Notes which layers are in transformed groups.
 fn place(layers: &[Arc<Layer>], around: &LayerMap, all: &mut BTreeMap<LayerId, LayerContext>) {
     for layer in layers {
-        if let Some(context) = all.get_mut(&layer.id).filter(|_| !around.moves_nothing()) {
+        if let Some(context) = all.get_mut(&layer.id).filter(|_| !around.is_still()) {
             context.around = Some(*around);
         }
         if let Some(group) = layer.content.group() {
@@ -67,7 +67,7 @@ fn survey(
 ) {
     let (mut base, mut base_shows) = (None, false);
     for layer in layers {
-        if layer.content.shapes() {
+        if layer.content.is_shaping_surface() {
             if layer.visible {
                 normals.push(Arc::as_ptr(layer));
             }
@@ -111,7 +111,7 @@ struct Diff<'d> {
 impl Diff<'_> {
     /// Compares two versions of a list of layers; returns whether anything changed in it, or
     /// beneath it (`beneath`).
-    fn stack(&mut self, old: &[Arc<Layer>], new: &[Arc<Layer>], beneath: bool) -> bool {
+    fn compare_stacks(&mut self, old: &[Arc<Layer>], new: &[Arc<Layer>], beneath: bool) -> bool {
         let mut changed = beneath;
         let kept = |among: &[Arc<Layer>]| {
             let ids: BTreeSet<LayerId> = among.iter().map(|layer| layer.id).collect();
@@ -119,7 +119,7 @@ impl Diff<'_> {
         };
         let (in_old, in_new) = (kept(old), kept(new));
         for removed in old.iter().filter(|layer| !in_new(layer)) {
-            changed |= self.whole(removed, Version::Old);
+            changed |= self.report_whole(removed, Version::Old);
         }
         let ranks: BTreeMap<LayerId, (usize, &Arc<Layer>)> = old
             .iter()
@@ -130,13 +130,13 @@ impl Diff<'_> {
         let mut rank = 0;
         for layer in new {
             match ranks.get(&layer.id).filter(|_| in_old(&layer)) {
-                None => changed |= self.whole(layer, Version::New),
+                None => changed |= self.report_whole(layer, Version::New),
                 // If two layers changed their order, at least one changed its rank.
                 Some(&(before, old)) => {
                     changed |= if before == rank {
-                        self.layer(old, layer, changed)
+                        self.compare_layers(old, layer, changed)
                     } else {
-                        self.both(old, layer)
+                        self.report_both(old, layer)
                     };
                     rank += 1;
                 }
@@ -147,42 +147,43 @@ impl Diff<'_> {
 
     /// Compares two versions of a layer in its place; `beneath`: something beneath it in its scope
     /// changed.
-    fn layer(&mut self, old: &Arc<Layer>, new: &Arc<Layer>, beneath: bool) -> bool {
+    fn compare_layers(&mut self, old: &Arc<Layer>, new: &Arc<Layer>, beneath: bool) -> bool {
         if !old.visible && !new.visible {
             return false;
         }
-        if self.old.get(&old.id) != self.new.get(&new.id) || !looks_alike(old, new) {
-            return self.both(old, new);
+        if self.old.get(&old.id) != self.new.get(&new.id) || !is_alike(old, new) {
+            return self.report_both(old, new);
         }
-        if !same_liquify(old, new) {
+        if !is_same_liquify(old, new) {
             let (was, is) = (self.warp(old, Version::Old), self.warp(new, Version::New));
             let Some(tiles) = LayerWarp::changed_tiles(was.as_ref(), is.as_ref()) else {
-                return self.both(old, new);
+                return self.report_both(old, new);
             };
             let unmoved = Arc::new(Layer { liquify: old.liquify.clone(), ..Layer::clone(new) });
-            return self.tiles(tiles) | self.layer(old, &unmoved, beneath);
+            return self.report_tiles(tiles) | self.compare_layers(old, &unmoved, beneath);
         }
         if let (Some(a), Some(b)) = (&old.mask, &new.mask)
             && !a.is_same(b)
         {
-            if self.stands_elsewhere(new) {
-                return self.both(old, new);
+            if self.is_off_canvas_frame(new) {
+                return self.report_both(old, new);
             }
             // If a mask was painted on, only some of its tiles differ.
-            let Some(tiles) = a.changed_tiles(b) else { return self.both(old, new) };
+            let Some(tiles) = a.changed_tiles(b) else { return self.report_both(old, new) };
             let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
-            return self.tiles(tiles) | self.layer(old, &unmasked, beneath);
+            return self.report_tiles(tiles) | self.compare_layers(old, &unmasked, beneath);
         }
         if let (Some(a), Some(b)) = (old.content.group(), new.content.group())
             && a.pass_through == b.pass_through
         {
             // Children of an isolated group have a scope of their own.
             let beneath = beneath && b.pass_through && !new.is_warped();
-            return self
-                .displaced(new, Version::New, |diff| diff.stack(&a.layers, &b.layers, beneath));
+            return self.report_displaced(new, Version::New, |diff| {
+                diff.compare_stacks(&a.layers, &b.layers, beneath)
+            });
         }
-        if beneath && new.content.reads_all_beneath() {
-            return self.both(old, new);
+        if beneath && new.content.is_composed_of_beneath() {
+            return self.report_both(old, new);
         }
         if Arc::ptr_eq(old, new) {
             return false;
@@ -191,10 +192,14 @@ impl Diff<'_> {
             (self.on_canvas(old, Version::Old), self.on_canvas(new, Version::New));
         match new_seen.content.changed_from(&old_seen.content, &|| self.seen_by(new.id)) {
             Changed::Nowhere => false,
-            Changed::Wholly => self.both(old, new),
+            Changed::Wholly => self.report_both(old, new),
             // Paint was displaced when it was taken to the canvas.
-            Changed::Tiles(tiles) if matches!(new.content, Content::Pixels(_)) => self.tiles(tiles),
-            Changed::Tiles(tiles) => self.displaced(new, Version::New, |diff| diff.tiles(tiles)),
+            Changed::Tiles(tiles) if matches!(new.content, Content::Pixels(_)) => {
+                self.report_tiles(tiles)
+            }
+            Changed::Tiles(tiles) => {
+                self.report_displaced(new, Version::New, |diff| diff.report_tiles(tiles))
+            }
         }
     }
 
@@ -205,7 +210,7 @@ impl Diff<'_> {
     }
 
     /// Reports where a layer shows what `report` reports of it undisplaced.
-    fn displaced(
+    fn report_displaced(
         &mut self,
         layer: &Layer,
         version: Version,
@@ -215,16 +220,16 @@ impl Diff<'_> {
         let before = std::mem::take(&mut self.changed);
         let is_any = report(self);
         let own = std::mem::replace(&mut self.changed, before);
-        self.tiles(warp.showing(&own.into_iter().collect::<Vec<_>>())) | is_any
+        self.report_tiles(warp.showing(&own.into_iter().collect::<Vec<_>>())) | is_any
     }
 
     /// What both versions of a layer see.
     fn seen_by(&self, layer: LayerId) -> Scene {
-        let seen = if self.sees_normals(layer) { self.document.scene_of(layer) } else { None };
+        let seen = if self.has_normals(layer) { self.document.scene_of(layer) } else { None };
         seen.unwrap_or_else(|| self.scene.clone())
     }
 
-    fn sees_normals(&self, layer: LayerId) -> bool {
+    fn has_normals(&self, layer: LayerId) -> bool {
         [&self.old, &self.new]
             .iter()
             .any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()))
@@ -238,25 +243,28 @@ impl Diff<'_> {
     }
 
     /// Whether its own frame or that of a group around it is not the canvas.
-    fn stands_elsewhere(&self, layer: &Layer) -> bool {
+    fn is_off_canvas_frame(&self, layer: &Layer) -> bool {
         let is_taken = self.new.get(&layer.id).is_some_and(|context| context.around.is_some());
         layer.transform.is_some() || layer.liquify.is_some() || layer.on.is_some() || is_taken
     }
 
-    fn both(&mut self, old: &Arc<Layer>, new: &Arc<Layer>) -> bool {
-        self.whole(old, Version::Old) | self.whole(new, Version::New)
+    fn report_both(&mut self, old: &Arc<Layer>, new: &Arc<Layer>) -> bool {
+        self.report_whole(old, Version::Old) | self.report_whole(new, Version::New)
     }
 
     /// Reports every tile that a layer can touch; returns whether there is any.
-    fn whole(&mut self, layer: &Arc<Layer>, version: Version) -> bool {
+    fn report_whole(&mut self, layer: &Arc<Layer>, version: Version) -> bool {
         if !layer.visible {
             return false;
         }
         if let Some(group) = layer.content.group() {
             let all = |diff: &mut Self| {
-                group.layers.iter().fold(false, |any, layer| diff.whole(layer, version) | any)
+                group
+                    .layers
+                    .iter()
+                    .fold(false, |any, layer| diff.report_whole(layer, version) | any)
             };
-            return self.displaced(layer, version, all);
+            return self.report_displaced(layer, version, all);
         }
         if layer.is_warped() && !matches!(layer.content, Content::Pixels(_)) {
             let bare = Arc::new(Layer {
@@ -264,29 +272,29 @@ impl Diff<'_> {
                 transform: unmeshed(layer),
                 ..Layer::clone(layer)
             });
-            return self.displaced(layer, version, |diff| diff.whole(&bare, version));
+            return self.report_displaced(layer, version, |diff| diff.report_whole(&bare, version));
         }
         let layer = self.on_canvas(layer, version);
         let canvas = self.scene.size.rect();
         // Normal layers replace the canvas's surface.
         let touched =
-            layer.content.touched(Some(&self.scene).filter(|_| !self.sees_normals(layer.id)));
+            layer.content.touched(Some(&self.scene).filter(|_| !self.has_normals(layer.id)));
         match touched {
             Touched::Nowhere => false,
-            Touched::Canvas => self.rect(canvas),
+            Touched::Canvas => self.report_rect(canvas),
             Touched::Rects(rects) => {
-                rects.into_iter().fold(false, |changed, rect| self.rect(rect) | changed)
+                rects.into_iter().fold(false, |changed, rect| self.report_rect(rect) | changed)
             }
-            Touched::Tiles(tiles) => self.tiles(tiles),
+            Touched::Tiles(tiles) => self.report_tiles(tiles),
         }
     }
 
-    fn rect(&mut self, rect: Rect) -> bool {
+    fn report_rect(&mut self, rect: Rect) -> bool {
         let tiles = TileAt::covering(rect.intersect(self.scene.size.rect())).collect();
-        self.tiles(tiles)
+        self.report_tiles(tiles)
     }
 
-    fn tiles(&mut self, tiles: Vec<TileAt>) -> bool {
+    fn report_tiles(&mut self, tiles: Vec<TileAt>) -> bool {
         let canvas = self.scene.size.rect();
         let on_canvas = |at: &TileAt| !at.rect().intersect(canvas).is_empty();
         let tiles: Vec<TileAt> = tiles.into_iter().filter(on_canvas).collect();
@@ -300,7 +308,7 @@ fn unmeshed(layer: &Layer) -> Option<LayerTransform> {
     layer.transform.clone().filter(|own| own.mesh().is_none_or(|mesh| mesh.as_affine().is_some()))
 }
 
-fn same_liquify(a: &Layer, b: &Layer) -> bool {
+fn is_same_liquify(a: &Layer, b: &Layer) -> bool {
     match (&a.liquify, &b.liquify) {
         (Some(a), Some(b)) => Arc::ptr_eq(a, b),
         (a, b) => a.is_none() && b.is_none(),
@@ -308,7 +316,7 @@ fn same_liquify(a: &Layer, b: &Layer) -> bool {
 }
 
 /// Whether all is equal except the content, the liquify, the name, the lock and the mask's pixels.
-fn looks_alike(a: &Layer, b: &Layer) -> bool {
+fn is_alike(a: &Layer, b: &Layer) -> bool {
     a.visible == b.visible
         && a.opacity == b.opacity
         && a.blend == b.blend

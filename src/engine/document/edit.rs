@@ -119,16 +119,11 @@ impl Document {
 /// The list of layers of a group; only the groups on the way to it are copied.
 fn siblings(layers: &mut Vec<Arc<Layer>>, group: Option<LayerId>) -> Option<&mut Vec<Arc<Layer>>> {
     let Some(id) = group else { return Some(layers) };
-    let holds = |layer: &Arc<Layer>| layer.id == id || holds_layer(layer, id);
+    let holds = |layer: &Arc<Layer>| layer.id == id || layer.has_layer_within(id);
     let outer = layers.iter_mut().find(|layer| holds(layer))?;
     let found = outer.id == id;
     let inner = Arc::make_mut(outer).content.group_mut()?;
     siblings(&mut inner.layers, if found { None } else { group })
-}
-
-fn holds_layer(layer: &Layer, id: LayerId) -> bool {
-    let Some(group) = layer.content.group() else { return false };
-    group.layers.iter().any(|layer| layer.id == id || holds_layer(layer, id))
 }
 
 #[cfg(test)]

@@ -183,11 +183,11 @@ impl FarTile<'_> {
     /// that one's.
     pub fn take_surface_into(&self, other: &PlanarTile, own: &mut PlanarTile) {
         let corner = self.at.rect();
-        for (place, pixel) in self.places().filter(|(_, pixel)| pixel.sees_surface()) {
+        for (place, pixel) in self.places().filter(|(_, pixel)| pixel.is_other_on_surface()) {
             let from = other.rows()[place / TILE].pixel(place % TILE);
             let (x, y) = ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
             let row = &mut own.rows_mut()[y];
-            let taken = match pixel.own_sees_surface() {
+            let taken = match pixel.is_own_on_surface() {
                 true => in_light(row.pixel(x), from, 1.0 - pixel.share, 1.0),
                 false => from,
             };

@@ -51,7 +51,7 @@ pub fn flatten_deep(
 /// in floats. As [`flatten`] where rounding them in between changes nothing by more than two
 /// levels. `None` if cancelled.
 pub fn flatten_rounding_once(document: &Document, progress: &Progress) -> Option<TileGrid> {
-    if !document.shows_rounding() {
+    if !document.is_rounding_visible() {
         return flatten(document, progress);
     }
     let prepared = PreparedDocument::new(document, progress)?;
@@ -142,7 +142,7 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<V
     let shown = layers.iter().filter_map(|layer| {
         let is_chosen = ids.contains(&layer.id);
         let clip_below = layer.clip_below && base_is_shown;
-        if !layer.clip_below && !layer.content.shapes() {
+        if !layer.clip_below && !layer.content.is_shaping_surface() {
             base_is_shown = is_chosen;
         }
         if is_chosen {
@@ -162,7 +162,7 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<V
             };
             return Some(Arc::new(Layer { content, ..next }));
         }
-        let shapes = layer.content.shapes();
+        let shapes = layer.content.is_shaping_surface();
         (shapes || keeps_hidden).then(|| {
             Arc::new(Layer { visible: layer.visible && shapes, clip_below, ..Layer::clone(layer) })
         })
@@ -191,7 +191,7 @@ impl PreparedDocument {
     fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
         let alone = self.alone_in_tile(at).filter(|tile| tile.is_deep());
         let was_deep =
-            || self.stack.iter().any(|node| node.has_deep_paint(at) || node.shows_deep_picture(at));
+            || self.stack.iter().any(|node| node.has_deep_paint(at) || node.has_deep_picture(at));
         let soft = || {
             self.compose_tile(at, Some(deep))
                 .to_tile(was_deep())

@@ -139,7 +139,7 @@ impl Document {
         let alone =
             Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(self.size) };
         let known = |id: &str| self.parts.part(id).is_some();
-        let all_known = alone.each_home(&mut |home| home.part().is_none_or(known));
+        let all_known = alone.are_all_homes(&mut |home| home.part().is_none_or(known));
         if all_known {
             return layer;
         }
@@ -148,7 +148,7 @@ impl Document {
     }
 
     /// Whether a condition holds for every home, of layers and of strokes.
-    pub(in crate::document) fn each_home(
+    pub(in crate::document) fn are_all_homes(
         &self,
         agrees: &mut dyn FnMut(&HomeFrame) -> bool,
     ) -> bool {

@@ -87,6 +87,12 @@ pub struct Layer {
 }
 
 impl Layer {
+    /// Whether another layer lies in it, at any depth.
+    pub(in crate::document) fn has_layer_within(&self, id: LayerId) -> bool {
+        let is_it = |layer: &Arc<Layer>| layer.id == id || layer.has_layer_within(id);
+        self.content.group().is_some_and(|group| group.layers.iter().any(is_it))
+    }
+
     /// What an opacity may be.
     pub const OPACITY: Range = UNIT;
     /// Letters of a name given in the window; one from a file may be longer.

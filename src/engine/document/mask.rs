@@ -42,10 +42,11 @@ pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
 pub(super) fn coverage_on_far_side(node: &PreparedLayer, far: &FarTile) -> TileCoverage {
     let mut coverage = TileCoverage::uniform(node.layer.opacity);
     if clip(node).is_some() && far.has_bare() {
-        coverage = coverage
-            .times_values(far.values(|_, pixel| if pixel.sees_surface() { 1.0 } else { 0.0 }));
+        coverage = coverage.times_values(
+            far.values(|_, pixel| if pixel.is_other_on_surface() { 1.0 } else { 0.0 }),
+        );
     }
-    let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.acts_on(&node.scene)) else {
+    let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.is_active_on(&node.scene)) else {
         return coverage;
     };
     if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) =
@@ -54,7 +55,7 @@ pub(super) fn coverage_on_far_side(node: &PreparedLayer, far: &FarTile) -> TileC
         // Read from the other population's piece, nearby.
         let grid = surface.region(region);
         let way = |c: u8| f32::from(if mask.invert { 255 - c } else { c }) / 255.0;
-        let value = |_, pixel: &ContourPixel| match pixel.sees_surface() {
+        let value = |_, pixel: &ContourPixel| match pixel.is_other_on_surface() {
             true => pixel.other_mean(|x, y| way(grid.at(x as i32, y as i32))),
             false => way(grid.at(pixel.x, pixel.y)),
         };
@@ -80,7 +81,7 @@ pub(super) fn is_whole_on_far_side(node: &PreparedLayer, far: &FarTile) -> bool 
 /// painted already.
 pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = matches!(node.layer.content.role(), Role::Paints | Role::Shapes(_));
-    let clips = node.layer.clip_to_surface && !node.layer.content.shows_off_surface();
+    let clips = node.layer.clip_to_surface && !node.layer.content.is_shown_off_surface();
     node.scene.surface.as_deref().filter(|_| paints && clips)
 }
 

@@ -135,7 +135,7 @@ impl StackBuilder<'_> {
         let mut nodes: Vec<PreparedLayer> = Vec::new();
         let mut base = ClipBase::Nothing;
         for (i, layer) in layers.iter().enumerate() {
-            if layer.content.shapes() {
+            if layer.content.is_shaping_surface() {
                 // It paints nothing, so it is no base and does not separate a base from its clipped
                 // layers.
                 if layer.visible {

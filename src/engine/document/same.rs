@@ -54,7 +54,7 @@ fn surface(a: &Document, b: &Document) -> Option<String> {
             let source = a.surface_source.as_deref().filter(|source| has_files(source, a));
             match (source, b.surface_source.as_deref()) {
                 (Some(source), Some(other)) => {
-                    x.size() == y.size() && same_maps(a, source, b, other)
+                    x.size() == y.size() && are_same_maps(a, source, b, other)
                 }
                 // One that came from no file is stored as maps made of it, which are normalised
                 // when they are read.
@@ -84,7 +84,7 @@ fn shape(a: &Document, b: &Document) -> Option<String> {
     };
     let follows = !a.parts.is_empty() && is_same(a.maps_surface(), b.maps_surface());
     let is_made = match (&a.surface, &b.surface) {
-        (Some(a), Some(b)) => looks_alike(a, b),
+        (Some(a), Some(b)) => is_alike(a, b),
         (a, b) => a.is_none() && b.is_none(),
     };
     (follows && !is_made).then(|| "the shape that its parts make".into())
@@ -96,7 +96,7 @@ const ONE_IN: usize = 1000;
 /// Less is not seen, of 1.
 const LEAST_SEEN: f32 = 1.0 / 256.0;
 
-fn looks_alike(a: &Surface, b: &Surface) -> bool {
+fn is_alike(a: &Surface, b: &Surface) -> bool {
     let (range, other) = (a.depth_range_px(), b.depth_range_px());
     if a.size() != b.size() || (range - other).abs() > LEAST_SEEN * range.max(1.0) {
         return false;
@@ -121,7 +121,12 @@ fn has_files(source: &SurfaceSource, document: &Document) -> bool {
 
 /// The same files, read in the same way: the surface follows from them. One that was scaled since
 /// is fitted again when it is read, which may round it differently.
-fn same_maps(a: &Document, source: &SurfaceSource, b: &Document, other: &SurfaceSource) -> bool {
+fn are_same_maps(
+    a: &Document,
+    source: &SurfaceSource,
+    b: &Document,
+    other: &SurfaceSource,
+) -> bool {
     let mut files = files_of(source).zip(files_of(other));
     without_names(source) == without_names(other)
         && files.all(|(x, y)| {
@@ -167,7 +172,7 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
         "name"
     } else if let Some(what) = meeting(a, b) {
         what
-    } else if !same_mask(a.mask.as_ref(), b.mask.as_ref()) {
+    } else if !is_same_mask(a.mask.as_ref(), b.mask.as_ref()) {
         "mask"
     } else {
         content(&a.content, &b.content)?
@@ -193,7 +198,7 @@ fn meeting(a: &Layer, b: &Layer) -> Option<&'static str> {
     each.into_iter().find(|(_, is_same)| !is_same).map(|(what, _)| what)
 }
 
-fn same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {
+fn is_same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {
     match (a, b) {
         (Some(a), Some(b)) => match (&a.kind, &b.kind) {
             (MaskKind::File { coverage: x, .. }, MaskKind::File { coverage: y, .. }) => {
@@ -209,7 +214,7 @@ fn same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {
 fn content(a: &Content, b: &Content) -> Option<&'static str> {
     let (what, is_same) = match (a, b) {
         (Content::Fill(a), Content::Fill(b)) => ("color", a == b),
-        (Content::Pixels(a), Content::Pixels(b)) => ("pixels", same_pixels(&a.tiles, &b.tiles)),
+        (Content::Pixels(a), Content::Pixels(b)) => ("pixels", are_same_pixels(&a.tiles, &b.tiles)),
         (Content::Image(a), Content::Image(b)) => {
             ("picture or how it lies", a.ptr_eq(b) || a.params() == b.params())
         }
@@ -217,7 +222,7 @@ fn content(a: &Content, b: &Content) -> Option<&'static str> {
             ("gradient", a.ptr_eq(b) || a.params() == b.params())
         }
         (Content::Strokes(a), Content::Strokes(b)) => {
-            ("strokes", a.ptr_eq(b) || same_strokes(a.params(), b.params()))
+            ("strokes", a.ptr_eq(b) || are_same_strokes(a.params(), b.params()))
         }
         (Content::Shading(a), Content::Shading(b)) => {
             ("material", a.ptr_eq(b) || a.params() == b.params())
@@ -227,7 +232,7 @@ fn content(a: &Content, b: &Content) -> Option<&'static str> {
         (Content::Normals(a), Content::Normals(b)) => {
             let alike =
                 (a.placement, a.outside, a.strength) == (b.placement, b.outside, b.strength);
-            ("detail", alike && same_detail(&a.source, &b.source))
+            ("detail", alike && is_same_detail(&a.source, &b.source))
         }
         (Content::Group(a), Content::Group(b)) => {
             ("passing through", a.pass_through == b.pass_through)
@@ -237,7 +242,7 @@ fn content(a: &Content, b: &Content) -> Option<&'static str> {
     (!is_same).then_some(what)
 }
 
-fn same_detail(a: &DetailSource, b: &DetailSource) -> bool {
+fn is_same_detail(a: &DetailSource, b: &DetailSource) -> bool {
     match (a, b) {
         (DetailSource::Grain(a), DetailSource::Grain(b)) => a == b,
         // The map itself follows from these.
@@ -249,7 +254,7 @@ fn same_detail(a: &DetailSource, b: &DetailSource) -> bool {
     }
 }
 
-fn same_selection(a: &Stroke, b: &Stroke) -> bool {
+fn is_same_selection(a: &Stroke, b: &Stroke) -> bool {
     match (a.selection(), b.selection()) {
         (None, None) => true,
         (Some(a), Some(b)) => a.is_same(b),
@@ -257,13 +262,13 @@ fn same_selection(a: &Stroke, b: &Stroke) -> bool {
     }
 }
 
-fn same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
+fn are_same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
     let home = |stroke: &Stroke| stroke.home().map(|home| (home.frame.part.clone(), home.own));
     let same = |(a, b): (&Arc<Stroke>, &Arc<Stroke>)| {
         Arc::ptr_eq(a, b)
             || (a.operator(), a.color()) == (b.operator(), b.color())
                 && a.samples() == b.samples()
-                && same_selection(a, b)
+                && is_same_selection(a, b)
                 && home(a) == home(b)
                 && a.brush() == b.brush()
     };
@@ -271,7 +276,7 @@ fn same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
 }
 
 /// Every pixel is the same; a wholly transparent tile counts as absent.
-fn same_pixels(a: &TileGrid, b: &TileGrid) -> bool {
+fn are_same_pixels(a: &TileGrid, b: &TileGrid) -> bool {
     if a.ptr_eq(b) {
         return true;
     }

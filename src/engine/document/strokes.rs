@@ -173,7 +173,7 @@ fn changed_tiles(scene: &Scene, old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> BTr
     let end = old.iter().rev().zip(new.iter().rev()).take_while(same).count();
     let (old, new) = (&old[..old.len() - end], &new[..new.len() - end]);
     let on_tile = |strokes: &[Arc<Stroke>], at: TileAt| -> Vec<*const Stroke> {
-        strokes.iter().filter(|stroke| stroke.touches(scene, at)).map(Arc::as_ptr).collect()
+        strokes.iter().filter(|stroke| stroke.can_touch(scene, at)).map(Arc::as_ptr).collect()
     };
     let canvas = TileAt::covering(scene.size.rect());
     canvas.filter(|&at| on_tile(old, at) != on_tile(new, at)).collect()

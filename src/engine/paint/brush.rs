@@ -345,27 +345,28 @@ impl Brush {
         let ColorJitter { hue_degrees, saturation, value } = self.jitter;
         let strays =
             [self.scatter, self.stylus.tremor, self.size_jitter, hue_degrees, saturation, value];
-        let adds =
-            [Property::Scatter, Property::SizeJitter].into_iter().any(|p| self.dynamics.drive(p));
+        let adds = [Property::Scatter, Property::SizeJitter]
+            .into_iter()
+            .any(|p| self.dynamics.is_driven(p));
         let follows =
-            [Input::Random, Input::Chance].into_iter().any(|input| self.dynamics.follow(input));
+            [Input::Random, Input::Chance].into_iter().any(|input| self.dynamics.has_input(input));
         strays.iter().any(|&v| v > 0.0) || adds || follows || matches!(self.tip, Tip::Hose(_))
     }
 
     /// It works on existing paint, dab by dab.
     pub fn is_wet(&self) -> bool {
-        self.mode.is_retouching() || self.picks_up()
+        self.mode.is_retouching() || self.is_picking_up()
     }
 
     /// It picks up paint on its way.
-    pub fn picks_up(&self) -> bool {
+    pub fn is_picking_up(&self) -> bool {
         self.mode == BrushMode::Paint
-            && (self.pickup.amount > 0.0 || self.dynamics.drive(Property::Pickup))
+            && (self.pickup.amount > 0.0 || self.dynamics.is_driven(Property::Pickup))
     }
 
     /// Without paint to work on it would leave next to nothing: it retouches, or paints more with
     /// what it picks up than with its own colour.
-    pub fn needs_paint(&self) -> bool {
+    pub fn is_dependent_on_paint(&self) -> bool {
         self.mode.is_retouching() || (self.mode == BrushMode::Paint && self.pickup.amount > 0.5)
     }
 

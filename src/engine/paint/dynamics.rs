@@ -13,7 +13,7 @@ pub use inputs::{
 use std::sync::Arc;
 
 crate::named! {
-    /// What can be driven. Curves multiply, unless [`Property::adds`]; a [`Curve::Added`] adds in
+    /// What can be driven. Curves multiply, unless [`Property::is_additive`]; a [`Curve::Added`] adds in
     /// the unit given here, else in the property's own.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub enum Property {
@@ -60,7 +60,7 @@ crate::named! {
 
 impl Property {
     /// Whether its curves are turns that add up instead of factors that multiply.
-    pub fn adds(self) -> bool {
+    pub fn is_additive(self) -> bool {
         matches!(self, Property::Rotation | Property::Hue | Property::OffsetTurn)
     }
 }
@@ -150,11 +150,11 @@ impl Dynamics {
     /// With this row instead of the one of its kind for the same property and input. A factor that
     /// is always 1 needs no row.
     pub fn with(&self, property: Property, input: Input, curve: Curve) -> Self {
-        let adds = curve.adds();
+        let adds = curve.is_additive();
         let is_row = |drive: &&Drive| {
-            drive.property == property && drive.input == input && drive.curve.adds() == adds
+            drive.property == property && drive.input == input && drive.curve.is_additive() == adds
         };
-        let is_idle = if property.adds() && !curve.adds() {
+        let is_idle = if property.is_additive() && !curve.is_additive() {
             curve == Curve::Share(0.0)
         } else {
             curve.is_idle()
@@ -170,7 +170,7 @@ impl Dynamics {
     /// Without the row of a kind for a property and an input.
     pub fn without(&self, property: Property, input: Input, adds: bool) -> Self {
         let stays = |drive: &&Drive| {
-            drive.property != property || drive.input != input || drive.curve.adds() != adds
+            drive.property != property || drive.input != input || drive.curve.is_additive() != adds
         };
         Self { drives: self.drives.iter().filter(stays).cloned().collect() }
     }
@@ -188,7 +188,7 @@ impl Dynamics {
     fn of_kind(&self, property: Property, input: Input, adds: bool) -> Option<&Curve> {
         let mut drives =
             self.drives.iter().filter(|drive| drive.property == property && drive.input == input);
-        drives.find(|drive| drive.curve.adds() == adds).map(|drive| &drive.curve)
+        drives.find(|drive| drive.curve.is_additive() == adds).map(|drive| &drive.curve)
     }
 
     /// The share of a property that follows the pressure, `[0, 1]`: a slider shows a curve by its
@@ -196,7 +196,7 @@ impl Dynamics {
     pub fn pressure_share(&self, property: Property) -> f32 {
         let curve = self.curve(property, Input::Pressure).or(self.added(property, Input::Pressure));
         let fall = |curve: &Curve| match property {
-            Property::Size if curve.adds() => 1.0 - (curve.at(0.0) - curve.at(1.0)).exp2(),
+            Property::Size if curve.is_additive() => 1.0 - (curve.at(0.0) - curve.at(1.0)).exp2(),
             _ => curve.at(1.0) - curve.at(0.0),
         };
         curve.map_or(0.0, fall).max(0.0).min(1.0)
@@ -212,12 +212,12 @@ impl Dynamics {
     }
 
     /// Whether some property follows this input.
-    pub fn follow(&self, input: Input) -> bool {
+    pub fn has_input(&self, input: Input) -> bool {
         self.drives.iter().any(|drive| drive.input == input)
     }
 
     /// Whether something drives this property.
-    pub fn drive(&self, property: Property) -> bool {
+    pub fn is_driven(&self, property: Property) -> bool {
         self.drives.iter().any(|drive| drive.property == property)
     }
 
@@ -226,7 +226,7 @@ impl Dynamics {
         let rows = self.drives.iter().filter(|drive| drive.property == property);
         rows.fold((0.0, 1.0), |(sum, product), drive| {
             let y = drive.curve.at(inputs.of(drive.input, property));
-            if drive.curve.adds() || property.adds() {
+            if drive.curve.is_additive() || property.is_additive() {
                 (sum + y, product)
             } else {
                 (sum, product * y)

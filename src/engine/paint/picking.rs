@@ -26,7 +26,7 @@ impl Stroke {
         let tile = TileAt::of_pixel(pixel.x, pixel.y);
         if !at.is_finite()
             || !scene.size.rect().contains(pixel.x, pixel.y)
-            || !self.touches(scene, tile)
+            || !self.can_touch(scene, tile)
         {
             return false;
         }
@@ -41,16 +41,16 @@ impl Stroke {
     pub fn covered(self: &Arc<Self>, scene: &Scene) -> TileGrid {
         let paint = [self.as_paint()];
         let mut grid = TileGrid::for_rect(self.bounds(scene));
-        for at in TileAt::covering(self.bounds(scene)).filter(|&at| self.touches(scene, at)) {
+        for at in TileAt::covering(self.bounds(scene)).filter(|&at| self.can_touch(scene, at)) {
             grid.set(at, render_tile(&paint, scene, at).map(Arc::new));
         }
         grid
     }
 
     /// Whether any of the stroke's paint lies where something is covered.
-    pub fn meets(self: &Arc<Self>, scene: &Scene, covered: &CoverageGrid) -> bool {
+    pub fn has_paint_on(self: &Arc<Self>, scene: &Scene, covered: &CoverageGrid) -> bool {
         let paint = [self.as_paint()];
-        covered.iter().filter(|(at, _)| self.touches(scene, *at)).any(|(at, covered)| {
+        covered.iter().filter(|(at, _)| self.can_touch(scene, *at)).any(|(at, covered)| {
             let rendered = render_tile(&paint, scene, at);
             let painted = |tile: Tile| {
                 let pixels = tile.bytes().as_chunks::<4>().0.iter().zip(covered.bytes());

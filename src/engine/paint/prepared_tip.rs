@@ -27,14 +27,14 @@ pub enum PreparedTip {
 
 impl PreparedTip {
     pub fn of(brush: &Brush) -> Self {
-        let is_driven = brush.dynamics.drive(Property::Softness);
+        let is_driven = brush.dynamics.is_driven(Property::Softness);
         let softened =
             |source: &PictureSource| SoftenedStamps::of(source, brush.softness, is_driven);
         let textured = |texture: TipTexture| Self::Textured(softened(&texture.source(brush.size)));
         match &brush.tip {
             Tip::Round
                 if brush.falloff == Falloff::Smooth
-                    && !brush.dynamics.drive(Property::Elongation) =>
+                    && !brush.dynamics.is_driven(Property::Elongation) =>
             {
                 Self::Round
             }
@@ -99,7 +99,7 @@ impl PreparedTip {
         }
     }
 
-    pub fn brings_colors(&self) -> bool {
+    pub fn has_own_colors(&self) -> bool {
         match self {
             Self::Stamp(stamps) => stamps.is_colored(),
             Self::Hose(_, stamps) => stamps.iter().any(SoftenedStamps::is_colored),

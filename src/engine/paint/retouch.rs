@@ -236,7 +236,7 @@ impl RetouchStroke {
 
     /// The brush's own colour, which varies only after mixing.
     fn brush_color(&self, dab: &Dab) -> Color {
-        if tint::varies(&self.brush) { self.color } else { dab.color }
+        if tint::has_varied_color(&self.brush) { self.color } else { dab.color }
     }
 
     fn limits(&self) -> &CanvasPart {

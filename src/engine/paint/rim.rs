@@ -101,7 +101,7 @@ impl RimTable {
             Property::Offset,
         ];
         let ends_elsewhere =
-            strays.iter().any(|&v| v != 0.0) || driven.iter().any(|&p| brush.dynamics.drive(p));
+            strays.iter().any(|&v| v != 0.0) || driven.iter().any(|&p| brush.dynamics.is_driven(p));
         if ends_elsewhere || brush.falloff != Falloff::Smooth || brush.is_wet() {
             return None;
         }

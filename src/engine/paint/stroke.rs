@@ -115,8 +115,8 @@ impl Stroke {
     }
 
     /// Whether the stroke may paint on a tile.
-    pub fn touches(&self, scene: &Scene, at: TileAt) -> bool {
-        self.support(scene).touches(at)
+    pub fn can_touch(&self, scene: &Scene, at: TileAt) -> bool {
+        self.support(scene).can_touch(at)
     }
 
     /// The tiles of a canvas that the stroke touches, computed once.
@@ -252,7 +252,7 @@ pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option
 /// The same before it is quantised; `None` if no stroke touches the tile.
 pub fn render_pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<PlanarTile> {
     let front = scene.front();
-    let mut here = strokes.iter().filter(|s| s.touches(&front, at)).peekable();
+    let mut here = strokes.iter().filter(|s| s.can_touch(&front, at)).peekable();
     here.peek()?;
     let (mut pixels, mut scratch) = (PlanarTile::transparent(), DabScratch::default());
     here.for_each(|stroke| {

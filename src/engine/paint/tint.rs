@@ -9,11 +9,11 @@ use crate::math::{
 };
 
 /// Whether dabs of this brush differ in colour.
-pub fn varies(brush: &Brush) -> bool {
+pub fn has_varied_color(brush: &Brush) -> bool {
     let jitter = brush.jitter;
     let jitters = [jitter.hue_degrees, jitter.saturation, jitter.value].iter().any(|&v| v > 0.0);
     let driven = [Property::Hue, Property::Saturation, Property::Value, Property::Lightness];
-    jitters || driven.iter().any(|&property| brush.dynamics.drive(property))
+    jitters || driven.iter().any(|&property| brush.dynamics.is_driven(property))
 }
 
 /// The colour of a dab; alpha stays the stroke's.
@@ -28,7 +28,7 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
         dynamics.value(Property::Saturation, s, inputs) + unit(jitter.saturation) * either_way(1);
     let v = dynamics.value(Property::Value, v, inputs) + unit(jitter.value) * either_way(2);
     let [h, s, v] = [h + turns, unit(s), unit(v)];
-    let lit = if dynamics.drive(Property::Lightness) {
+    let lit = if dynamics.is_driven(Property::Lightness) {
         lightened([h, s, v], dynamics, inputs)
     } else {
         [h, s, v]

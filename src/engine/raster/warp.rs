@@ -263,7 +263,7 @@ impl<S: PixelSource> Warp<'_, S> {
         let window = SourceWindow {
             rect: wanted,
             pixels: self.source.read(wanted),
-            continues: self.source.continues(),
+            continues: self.source.has_continued_border(),
         };
         let (mut points, mut scratch) =
             (Box::<PointRow>::default(), Box::<rows::WarpScratch>::default());

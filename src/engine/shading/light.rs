@@ -32,7 +32,7 @@ impl Light {
     /// What an intensity may be.
     pub const INTENSITY: Range = 0.0..=10_000.0;
     /// Whether a vector has a direction: its length is representable.
-    pub fn points(direction: Vec3) -> bool {
+    pub fn has_direction(direction: Vec3) -> bool {
         let longest = direction.abs().max_element();
         direction.is_finite() && (1e-6..=1e6).contains(&longest)
     }

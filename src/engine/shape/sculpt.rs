@@ -115,7 +115,7 @@ impl Sculpting {
     }
 
     /// Whether strokes begin as those that are done.
-    pub fn goes_on(&self, strokes: &[SculptStroke]) -> bool {
+    pub fn is_continued_by(&self, strokes: &[SculptStroke]) -> bool {
         let Some((last, before)) = self.strokes.split_last() else { return true };
         let begins = |now: &SculptStroke| {
             let same = |a: &SculptStroke, b: &SculptStroke| {
@@ -347,13 +347,13 @@ mod tests {
             let strokes = |n: usize| vec![first.clone(), stroke(*tool, 0.6, &way[..n])];
             let mut going = Sculpting::of(&rough).go_on(&rough, std::slice::from_ref(&first));
             for n in [1, 2, 9, 30] {
-                assert!(going.goes_on(&strokes(n)), "{name} {n}");
+                assert!(going.is_continued_by(&strokes(n)), "{name} {n}");
                 going = going.go_on(&rough, &strokes(n));
                 assert!(going.layer() == &sculpted(&rough, &strokes(n)), "{name} {n}");
             }
-            assert!(!going.goes_on(&strokes(29)) && !going.goes_on(&[]));
+            assert!(!going.is_continued_by(&strokes(29)) && !going.is_continued_by(&[]));
             let other = vec![first.clone(), SculptStroke { size: 41.0, ..strokes(30).remove(1) }];
-            assert!(!going.goes_on(&other));
+            assert!(!going.is_continued_by(&other));
         }
     }
 

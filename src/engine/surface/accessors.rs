@@ -16,7 +16,7 @@ impl Surface {
         let mut shares = self.coverage.clone();
         for pixel in self.contours.pixels() {
             let (x, y) = (pixel.x as usize, pixel.y as usize);
-            match (pixel.own_sees_surface(), pixel.sees_surface()) {
+            match (pixel.is_own_on_surface(), pixel.is_other_on_surface()) {
                 (true, false) => shares.set(x, y, quantise(pixel.share)),
                 (false, true) => shares.set(x, y, quantise(1.0 - pixel.share)),
                 _ => (),

@@ -254,7 +254,7 @@ impl<'a> Deformation<'a> {
         out.rect = Some(rect);
         out.x.resize(n, 0.0);
         out.y.resize(n, 0.0);
-        if !are_short || !fill::fill_dab(self, rect, &columns, &mut out.x, &mut out.y) {
+        if !are_short || !fill::try_fill_dab(self, rect, &columns, &mut out.x, &mut out.y) {
             fill::fill(self, rect, &columns, &mut out.x, &mut out.y);
         }
         if let Some(reach) = self.reach.filter(|_| self.is_limited(rect)) {

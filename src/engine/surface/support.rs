@@ -34,7 +34,7 @@ impl DabExtent {
     /// Written so that NaN counts as inside: only a proof may exclude a block.
     #[inline(always)]
     #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN is not beyond")]
-    fn may_hold(self, image: BlockImage) -> bool {
+    fn can_hold(self, image: BlockImage) -> bool {
         let limit = self.radius_px + self.filter_px * image.pixel + ROUNDING_PX;
         !(image.near > limit + 1e-5 * image.near)
     }
@@ -151,7 +151,7 @@ impl<'s> SupportBounds<'s> {
     /// A rectangle of the canvas that holds all that an extent may reach where D is the identity;
     /// `None` where its numbers are not finite or too large.
     fn flat_rect(&self) -> Option<Rect> {
-        // A little more than `DabExtent::may_hold` allows for.
+        // A little more than `DabExtent::can_hold` allows for.
         let reach = 1.001 * (self.extent.radius_px + self.extent.filter_px + ROUNDING_PX) + 1.0;
         let is_told =
             self.at.is_finite() && self.at.abs().max_element() < 1e7 && (0.0..1e7).contains(&reach);
@@ -223,7 +223,7 @@ impl<'s> SupportBounds<'s> {
     }
 
     fn touch(&self, image: BlockImage) -> BlockOverlap {
-        if !self.extent.may_hold(image) {
+        if !self.extent.can_hold(image) {
             BlockOverlap::Nowhere
         } else if image.far < self.extent.radius_px {
             BlockOverlap::Everywhere

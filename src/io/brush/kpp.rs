@@ -32,7 +32,7 @@ impl KppPreset {
         self.settings.get(name).map_or("", String::as_str)
     }
 
-    fn is(&self, name: &str) -> bool {
+    fn is_true(&self, name: &str) -> bool {
         self.text(name) == "true"
     }
 
@@ -69,7 +69,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
     let brush = Brush {
         opacity: preset.number("OpacityValue").unwrap_or(1.0).max(0.0).min(1.0),
         flow: preset.number("FlowValue").unwrap_or(1.0).max(0.0).min(1.0),
-        erases: preset.text("CompositeOp") == "erase" || preset.is("EraserMode"),
+        erases: preset.text("CompositeOp") == "erase" || preset.is_true("EraserMode"),
         pickup: pickup(&preset),
         ..brush
     };
@@ -77,7 +77,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
     for (key, what) in
         [("Texture/Pattern/Enabled", "texture"), ("MaskingBrush/Enabled", "masked brush")]
     {
-        if preset.is(key) {
+        if preset.is_true(key) {
             notes.push(format!("its {what} has no counterpart"));
         }
     }
@@ -220,7 +220,7 @@ fn pickup(preset: &KppPreset) -> Pickup {
         return Pickup::default();
     }
     let unit = |name: &str, plain: f32| preset.number(name).unwrap_or(plain).max(0.0).min(1.0);
-    let color = if preset.is("PressureColorRate") { unit("ColorRateValue", 0.5) } else { 0.0 };
+    let color = if preset.is_true("PressureColorRate") { unit("ColorRateValue", 0.5) } else { 0.0 };
     Pickup { amount: 1.0 - color, length: unit("SmudgeRateValue", 1.0), ..Pickup::default() }
 }
 
@@ -237,7 +237,7 @@ const OPTIONS: [(&str, Property); 6] = [
 fn driven(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     let mut brush = brush;
     let mut follow = |brush: &mut Brush, option: &str, property: Property| {
-        if !preset.is(&format!("Pressure{option}"))
+        if !preset.is_true(&format!("Pressure{option}"))
             || preset.text(&format!("{option}UseCurve")) == "false"
         {
             return;
@@ -249,7 +249,7 @@ fn driven(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     for (option, property) in OPTIONS {
         follow(&mut brush, option, property);
     }
-    if preset.is("PressureScatter") {
+    if preset.is_true("PressureScatter") {
         // Theirs is a width, ours a radius.
         brush.scatter = (0.5 * preset.number("ScatterValue").unwrap_or(1.0)).max(0.0).min(10.0);
         follow(&mut brush, "Scatter", Property::Scatter);

@@ -30,7 +30,7 @@ pub fn encode(
     push_picture(&mut channels, "", whole, bits);
     let mut taken = BTreeSet::from(["normal".to_owned(), "depth".to_owned()]);
     for (_, layer) in document.walk() {
-        if layer.visible && layer.content.paints() {
+        if layer.visible && layer.content.has_pixels() {
             let Some(pixels) =
                 document.with_only(&[layer.id]).map_or(Ok(None), |alone| seen(&alone))?
             else {

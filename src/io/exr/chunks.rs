@@ -126,7 +126,7 @@ pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Re
         words.at = range.end;
         let Some(place) = place else { continue };
         if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_))
-            && !dwa_is_sane(header, body)
+            && !is_sane_dwa(header, body)
         {
             return Err(Error::decode(
                 file,
@@ -173,7 +173,7 @@ fn tile_block(header: &Header, x: usize, y: usize) -> Option<usize> {
 ///
 /// No section holds more than a few times the block's raw bytes, and the compressed sections fit
 /// into the chunk.
-fn dwa_is_sane(header: &Header, body: &[u8]) -> bool {
+fn is_sane_dwa(header: &Header, body: &[u8]) -> bool {
     let block = header.max_block_pixel_size();
     let raw = (block.x() as u64 * block.y() as u64)
         .saturating_mul(header.channels.bytes_per_pixel as u64);

@@ -38,7 +38,7 @@ impl<'a> JsonNode<'a> {
         self.ranged
     }
 
-    fn holds(&self, range: &RangeInclusive<f32>, number: f32) -> bool {
+    fn is_expected(&self, range: &RangeInclusive<f32>, number: f32) -> bool {
         if self.ranged { range.contains(&number) } else { number.is_finite() }
     }
 
@@ -125,7 +125,7 @@ impl<'a> JsonNode<'a> {
         }
         let quick = items
             .iter()
-            .map(|item| item.as_f64().map(|v| v as f32).filter(|v| self.holds(&range, *v)));
+            .map(|item| item.as_f64().map(|v| v as f32).filter(|v| self.is_expected(&range, *v)));
         if let Some(values) = quick.collect() {
             return Ok(values);
         }
@@ -138,7 +138,7 @@ impl<'a> JsonNode<'a> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a number"))?;
         let (low, high) = (*range.start(), *range.end());
         // As f32 first: a number just beyond the range in f64 may be its end in f32.
-        if !self.holds(&range, number as f32) {
+        if !self.is_expected(&range, number as f32) {
             return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
         }
         Ok(number as f32)

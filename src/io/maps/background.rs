@@ -35,7 +35,7 @@ pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32
 }
 
 /// Whether two numbers are equal up to lossy compression.
-fn same_number(a: f32, b: f32, lossy: bool) -> bool {
+fn is_same_number(a: f32, b: f32, lossy: bool) -> bool {
     let tolerance = if lossy { 0.024 } else { 0.0 };
     (a - b).abs() <= tolerance || (a.is_nan() && b.is_nan())
 }
@@ -52,7 +52,7 @@ impl FilledEdge {
         let texel = constant(stored, coverage)?;
         let mut holds = Plane::filled(stored.size, true);
         for (channel, number) in stored.channels.iter().zip(texel) {
-            channel.keep_where(&mut holds, |v| same_number(v, number, stored.lossy));
+            channel.keep_where(&mut holds, |v| is_same_number(v, number, stored.lossy));
         }
         Some(Self { texel, holds })
     }

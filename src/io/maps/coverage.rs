@@ -89,7 +89,7 @@ pub fn alpha(
         return None;
     }
     let alpha =
-        maps.iter().find_map(|m| m.alpha.as_ref().filter(|_| !encoding::holds_x_in_alpha(m)))?;
+        maps.iter().find_map(|m| m.alpha.as_ref().filter(|_| !encoding::has_x_in_alpha(m)))?;
     findings.found("mask", "alpha", 0.95);
     Some(alpha.map(srgb::quantise))
 }

@@ -219,7 +219,7 @@ pub fn planar(
 /// The slope given by the normals, divided by the step of the stored number v, is constant if v is
 /// linear in depth. For 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the
 /// farther it is): the exponent decides.
-pub fn looks_inverse(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<bool>) -> bool {
+pub fn is_inverse_depth(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<bool>) -> bool {
     let w = values.width();
     let at = samples::spread(inside);
     if at.iter().any(|&i| values.values()[i] < 1e-9) {

@@ -200,7 +200,7 @@ fn length_error(reading: &TexelReading, texels: &[[f32; 4]]) -> f32 {
 }
 
 /// Whether a file's alpha is no coverage but the x of normals (DXT5nm).
-pub fn holds_x_in_alpha(stored: &StoredMap) -> bool {
+pub fn has_x_in_alpha(stored: &StoredMap) -> bool {
     if stored.channels.len() != 4 || stored.step.is_none() {
         return false;
     }

@@ -36,7 +36,7 @@ pub fn choose(
     let (channels, name) = match (told, role) {
         (Some(told), _) => named(exr, told, role).ok_or_else(|| missing(file, exr, told))?,
         (None, MapRole::Normals) => {
-            let rank = |pass: &ExrPass| normal_rank(pass).filter(|_| may_hold_normals(exr, pass));
+            let rank = |pass: &ExrPass| normal_rank(pass).filter(|_| can_be_normals(exr, pass));
             best(exr, rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?
         }
         (None, MapRole::Depth) => {
@@ -56,7 +56,7 @@ pub fn choose(
 pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
     let rank = |p: &ExrPass| match role {
         MapRole::Normals => {
-            normal_rank(p).filter(|_| vector_channels(p).is_some() && may_hold_normals(exr, p))
+            normal_rank(p).filter(|_| vector_channels(p).is_some() && can_be_normals(exr, p))
         }
         MapRole::Depth => depth_rank(p).filter(|_| depth_channels(p).is_some()),
         MapRole::Mask => p.letters("a").map(|_| 0),
@@ -75,7 +75,7 @@ const MOST_LENGTH_ERROR: f64 = 0.1;
 /// Colours whose name does not mention normals may be anything, such as the finished picture:
 /// whether they are vectors of length 1, as stored or about ½. Other layers are judged by their
 /// names.
-fn may_hold_normals(exr: &ExrFile, pass: &ExrPass) -> bool {
+fn can_be_normals(exr: &ExrFile, pass: &ExrPass) -> bool {
     let colours = pass.letters("rgb").filter(|_| pass.letters("xyz").is_none());
     let Some(colours) = colours.filter(|_| normal_rank(pass).is_some_and(|rank| rank > SURE_RANK))
     else {

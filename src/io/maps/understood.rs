@@ -156,7 +156,7 @@ impl LoadedMaps<'_> {
         };
         let near_high = match &oriented {
             Some((_, near_high)) => *near_high,
-            None => depth_alone(near_override, leaning, self.findings),
+            None => find_depth_polarity(near_override, leaning, self.findings),
         };
         let unit = oriented.map(|o| o.0);
         let encoding = self.depth_encoding(stored, &values, unit.as_ref(), inside, near_high);
@@ -191,7 +191,7 @@ impl LoadedMaps<'_> {
             findings.found("depth.encoding", "ray-distance", 0.7);
             return DepthEncoding::RayDistance;
         }
-        let inverse = near_high && unit.is_some_and(|n| depth::looks_inverse(values, n, inside));
+        let inverse = near_high && unit.is_some_and(|n| depth::is_inverse_depth(values, n, inside));
         let encoding = if inverse { DepthEncoding::Inverse } else { DepthEncoding::Planar };
         findings.found("depth.encoding", encoding.name(), if unit.is_some() { 0.8 } else { 0.5 });
         encoding
@@ -199,7 +199,7 @@ impl LoadedMaps<'_> {
 }
 
 /// The polarity of depth without normals: the background is far.
-fn depth_alone(overrides: Option<bool>, leaning: f32, findings: &mut Findings) -> bool {
+fn find_depth_polarity(overrides: Option<bool>, leaning: f32, findings: &mut Findings) -> bool {
     let name = |high: bool| if high { "high" } else { "low" };
     match overrides {
         Some(high) => findings.found("depth.near", name(high), 0.95),

@@ -69,13 +69,13 @@ impl<'a> Archive<'a> {
     }
 
     /// Whether there is an entry of this name.
-    pub fn has(&self, name: &str) -> bool {
+    pub fn has_entry(&self, name: &str) -> bool {
         self.listed.contains_key(name) || self.found.contains_key(name)
     }
 
     /// An entry's bytes; its checksum holds.
     pub fn bytes(&self, name: &str, most: u64) -> Result<Vec<u8>> {
-        if !self.has(name) {
+        if !self.has_entry(name) {
             let missing = std::io::Error::new(
                 std::io::ErrorKind::NotFound,
                 "there is no such entry in the file",

@@ -135,7 +135,7 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
         let Ok(bytes) = reading.archive.bytes(name, reading.budget.file_bytes) else { continue };
         let painted = match picture::painted(Path::new(name), &bytes, 0, 0, reading.budget) {
             Ok(painted) => painted,
-            Err(error) if reading.fits_if_rounded(&error) => return Err(error),
+            Err(error) if reading.can_fit_if_rounded(&error) => return Err(error),
             Err(_) => continue,
         };
         let (own, tiles) = (painted.size, painted.tiles);

@@ -46,7 +46,7 @@ impl KritaReader<'_, '_> {
         for node in nodes.iter().rev() {
             let Some(layer) = self.layer(node)? else { continue };
             // Krita's layers that inherit alpha keep to all that lies beneath them in their group.
-            let clip_below = inherits_alpha(node) && !layers.is_empty();
+            let clip_below = is_inheriting_alpha(node) && !layers.is_empty();
             if clip_below {
                 layers = as_one_base(layers);
             }
@@ -198,7 +198,7 @@ impl KritaReader<'_, '_> {
 }
 
 /// Whether the alpha of a layer is not painted on: the last of its channels is switched off.
-fn inherits_alpha(node: &KritaNode) -> bool {
+fn is_inheriting_alpha(node: &KritaNode) -> bool {
     let flags = node.text("channelflags");
     flags.ends_with('0') && flags.contains('1')
 }

@@ -77,8 +77,10 @@ impl<'d> SeenLayers<'d> {
         let is_taken = |layer: &Layer| layer.transform.is_some() || layer.on.is_some();
         let takes_along = |layer: &Layer| is_taken(layer) && layer.content.group().is_some();
         let all = document.walk().into_iter().map(|(_, layer)| layer);
-        let others =
-            all.filter(|layer| layer.content.shapes() || takes_along(layer)).cloned().collect();
+        let others = all
+            .filter(|layer| layer.content.is_shaping_surface() || takes_along(layer))
+            .cloned()
+            .collect();
         Self { document, moved: document.moved_layers(), others }
     }
 

@@ -52,7 +52,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     notes.extend(document.notes_of_parts());
     // Without it the layers are painted before anything is seen.
     let picture =
-        archive.has(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();
+        archive.has_entry(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();
     Ok(ProjectContents { document, notes, is_whole, picture: picture.map(Asset::from) })
 }
 
@@ -84,9 +84,11 @@ pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget
 impl ProjectReader<'_> {
     fn document(&mut self) -> Result<Document> {
         let manifest = self.manifest();
-        let stack =
-            self.archive.has(STACK).then(|| self.archive.bytes(STACK, self.budget.json_bytes));
-        let parsed = match self.archive.has(DOCUMENT) {
+        let stack = self
+            .archive
+            .has_entry(STACK)
+            .then(|| self.archive.bytes(STACK, self.budget.json_bytes));
+        let parsed = match self.archive.has_entry(DOCUMENT) {
             false => None,
             true => match self.value(DOCUMENT) {
                 Ok(value) => Some(value),
@@ -103,7 +105,7 @@ impl ProjectReader<'_> {
             (Some(manifest), Some(Ok(text))) if stack_crc != Some(manifest.stack) => {
                 let restored = foreign::restored(self, &text, &value, manifest);
                 restored.or_else(|error| {
-                    if self.fits_if_rounded(&error) {
+                    if self.can_fit_if_rounded(&error) {
                         return Err(error);
                     }
                     self.lost(format!("{error}; the layers are as Rilievo saved them"));
@@ -120,8 +122,8 @@ impl ProjectReader<'_> {
     }
 
     fn manifest(&mut self) -> Option<Manifest> {
-        if !self.archive.has(MANIFEST) {
-            if self.archive.has(DOCUMENT) {
+        if !self.archive.has_entry(MANIFEST) {
+            if self.archive.has_entry(DOCUMENT) {
                 self.note("the list of the layers' pictures is missing; changes by other programs cannot be detected");
             }
             return None;
@@ -146,7 +148,7 @@ impl ProjectReader<'_> {
             Err(error) => {
                 // A newer version or a field out of range is no damage: leaving something out would
                 // not help.
-                if self.fits_if_rounded(&error)
+                if self.can_fit_if_rounded(&error)
                     || !repair::leave_out_damaged(self, &mut value, manifest)
                 {
                     return Err(error);
@@ -157,7 +159,7 @@ impl ProjectReader<'_> {
         let of_this_program = manifest.is_some_and(Manifest::is_of_this_program);
         if of_this_program {
             // A Photoshop file, which has no stack.xml, keeps masks beside the pixels of layers.
-            let has_masks_in_pixels = self.archive.has(STACK);
+            let has_masks_in_pixels = self.archive.has_entry(STACK);
             cache_previews(&document, &previews(&document, intact, has_masks_in_pixels));
         }
         Ok(document)
@@ -204,14 +206,14 @@ impl ProjectReader<'_> {
         let layers = match stack {
             Some(Ok(text)) => stack::read(self.file, &text, self.budget),
             Some(Err(error)) => Err(error),
-            None if self.archive.has(krita::MAINDOC) => {
+            None if self.archive.has_entry(krita::MAINDOC) => {
                 let read = krita::document(self);
-                return read.or_else(|error| match self.fits_if_rounded(&error) {
+                return read.or_else(|error| match self.can_fit_if_rounded(&error) {
                     true => Err(error),
                     false => foreign::leftovers(self, error),
                 });
             }
-            None if self.archive.has(PROCREATE_PREVIEW) => {
+            None if self.archive.has_entry(PROCREATE_PREVIEW) => {
                 return foreign::shown(self, PROCREATE_PREVIEW, PROCREATE_NOTE);
             }
             None => {

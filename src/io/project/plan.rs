@@ -104,13 +104,13 @@ impl Planner<'_> {
     /// Layers that are composed with each other.
     fn scope(&self, layers: &[Arc<Layer>]) -> Vec<PlanItem> {
         let runs = runs(layers);
-        let last = runs.iter().rposition(|run| self.reads_beneath(run));
+        let last = runs.iter().rposition(|run| self.is_composed_with_beneath(run));
         let mut items = Vec::new();
         if let Some(last) = last {
             items.extend(self.composed_with_beneath(&runs[..=last]));
         }
         let above = last.map_or(0, |last| last + 1);
-        for runs in runs[above..].chunk_by(|a, b| keep_to_surface(a) == keep_to_surface(b)) {
+        for runs in runs[above..].chunk_by(|a, b| are_on_surface(a) == are_on_surface(b)) {
             items.extend(
                 self.within_edge(runs)
                     .unwrap_or_else(|| runs.iter().flat_map(|run| self.run(run)).collect()),
@@ -122,7 +122,7 @@ impl Planner<'_> {
     /// Runs of layers on the surface in a group whose mask is its edge; `None` where each layer may
     /// as well have the edge itself.
     fn within_edge(&self, runs: &[&[Arc<Layer>]]) -> Option<Vec<PlanItem>> {
-        let edge = self.edge.clone().filter(|_| runs.iter().all(|run| keep_to_surface(run)))?;
+        let edge = self.edge.clone().filter(|_| runs.iter().all(|run| are_on_surface(run)))?;
         let bare = Planner { edge: None, ..*self };
         let items: Vec<PlanItem> =
             runs.iter().flat_map(|run| bare.run(run)).map(with_whole_rim).collect();
@@ -175,7 +175,7 @@ impl Planner<'_> {
     fn clipped_by_format(&self, run: &[Arc<Layer>]) -> Option<Vec<PlanItem>> {
         let (base, rest) = run.split_first()?;
         let is_said = |layer: &Arc<Layer>| {
-            !layer.clip_below || !layer.visible || self.says_how_it_meets(layer)
+            !layer.clip_below || !layer.visible || self.can_express_blending(layer)
         };
         let can = self.words.clipping
             && is_base(base)
@@ -246,25 +246,25 @@ impl Planner<'_> {
     }
 
     /// A visible run that cannot be shown without composing it with what lies beneath.
-    fn reads_beneath(&self, run: &[Arc<Layer>]) -> bool {
+    fn is_composed_with_beneath(&self, run: &[Arc<Layer>]) -> bool {
         let Some((base, rest)) = run.split_first() else { return false };
         if !base.visible || base.clip_below {
             return false;
         }
         let clips = rest.iter().any(|layer| layer.clip_below && layer.visible);
         match base.content.role() {
-            Role::Adjusts(_) => clips || !self.says_adjustment(base),
+            Role::Adjusts(_) => clips || !self.can_express_adjustment(base),
             Role::Shapes(_) => false,
             Role::Groups(group) if group.pass_through && !clips => {
                 let is_faded = base.opacity < 1.0 || base.mask.is_some();
-                is_faded || runs(&group.layers).iter().any(|run| self.reads_beneath(run))
+                is_faded || runs(&group.layers).iter().any(|run| self.is_composed_with_beneath(run))
             }
-            _ => !self.says_how_it_meets(base),
+            _ => !self.can_express_blending(base),
         }
     }
 
     /// Whether the format can express an adjustment, with its mask, on all that lies beneath it.
-    fn says_adjustment(&self, layer: &Layer) -> bool {
+    fn can_express_adjustment(&self, layer: &Layer) -> bool {
         let is_cut = layer.clip_to_surface && self.document.surface.is_some();
         (self.words.adjusts)(&layer.content)
             && !is_cut
@@ -273,18 +273,19 @@ impl Planner<'_> {
             && layer.mask.as_ref().is_none_or(|mask| self.has_word_for(mask))
     }
 
-    fn says_how_it_meets(&self, layer: &Layer) -> bool {
+    fn can_express_blending(&self, layer: &Layer) -> bool {
         !layer.blend_linear
             && (self.words.says)(layer.blend)
-            && (!matches!(layer.content.role(), Role::Adjusts(_)) || self.says_adjustment(layer))
+            && (!matches!(layer.content.role(), Role::Adjusts(_))
+                || self.can_express_adjustment(layer))
     }
 }
 
 /// These layers show nothing beyond the surface.
-fn keep_to_surface(layers: &[Arc<Layer>]) -> bool {
+fn are_on_surface(layers: &[Arc<Layer>]) -> bool {
     layers.iter().all(|layer| match layer.content.role() {
-        Role::Groups(group) => keep_to_surface(&group.layers),
-        Role::Paints => layer.clip_to_surface && !layer.content.shows_off_surface(),
+        Role::Groups(group) => are_on_surface(&group.layers),
+        Role::Paints => layer.clip_to_surface && !layer.content.is_shown_off_surface(),
         Role::Adjusts(_) => layer.clip_to_surface,
         Role::Shapes(_) => true,
     })
@@ -311,7 +312,7 @@ fn pictures_seen(items: &[PlanItem]) -> usize {
 
 /// Whether layers above may be clipped to it; normal layers do not interrupt clipping.
 fn is_base(layer: &Layer) -> bool {
-    !layer.clip_below && !layer.content.shapes()
+    !layer.clip_below && !layer.content.is_shaping_surface()
 }
 
 /// The layers, split before each base: a layer that is neither clipped nor a normal layer.

@@ -36,7 +36,7 @@ impl ProjectReader<'_> {
 
     /// Whether something was refused that may fit once paint has 8 bits: then nothing is left out,
     /// and the file is read again (`deep_paint`).
-    pub fn fits_if_rounded(&self, error: &Error) -> bool {
+    pub fn can_fit_if_rounded(&self, error: &Error) -> bool {
         let is_deep = |name: &str| {
             self.archive.beginning(name, PNG_HEADER).is_some_and(|bytes| is_deep_png(&bytes))
         };

@@ -92,7 +92,7 @@ pub fn newer_brightness(data: &mut ByteCursor) -> Option<ColorAdjustment> {
         return None;
     }
     let (brightness, contrast) = (said.number("Brgh")?, said.number("Cntr")?);
-    let own = BrightnessContrast { brightness, contrast, legacy: said.flag("useLegacy") };
+    let own = BrightnessContrast { brightness, contrast, legacy: said.is_set("useLegacy") };
     Some(ColorAdjustment::BrightnessContrast(own).held())
 }
 
@@ -200,7 +200,7 @@ fn black_white(data: &mut ByteCursor, colours: &Colours) -> Option<BlackWhite> {
     let tint = said.object("tintColor").and_then(|tint| fill::colour(tint, colours));
     Some(BlackWhite {
         weights: std::array::from_fn(weight),
-        is_tinted: said.flag("useTint"),
+        is_tinted: said.is_set("useTint"),
         color: tint.unwrap_or(begins.color),
     })
 }

@@ -106,8 +106,8 @@ fn effects(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
     let said =
         if key == *b"lrFX" { None } else { data.u32().and_then(|_| descriptor::read(&mut data)) };
     let is_off = |effects: &DescriptorObject| {
-        let is_there = |object: &DescriptorObject| object.flag("enab");
-        effects.is_false("masterFXSwitch") || !effects.any(&is_there)
+        let is_there = |object: &DescriptorObject| object.is_set("enab");
+        effects.is_false("masterFXSwitch") || !effects.has_any(&is_there)
     };
     // The old block repeats what a new one says, where there is one.
     match (said, key == *b"lrFX") {
@@ -121,7 +121,7 @@ fn effects(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
 fn stroked(record: &mut LayerRecord, data: &mut ByteCursor) {
     record.is_shape = true;
     let Some(stroke) = descriptor::read(data) else { return };
-    record.stroked = stroke.flag("strokeEnabled");
+    record.stroked = stroke.is_set("strokeEnabled");
     record.unfilled = stroke.is_false("fillEnabled");
 }
 

@@ -47,7 +47,7 @@ impl DescriptorObject {
         }
     }
 
-    pub fn flag(&self, name: &str) -> bool {
+    pub fn is_set(&self, name: &str) -> bool {
         self.get(name) == Some(&DescriptorValue::Flag(true))
     }
 
@@ -86,12 +86,12 @@ impl DescriptorObject {
     }
 
     /// This, or an object anywhere within it, is so.
-    pub fn any(&self, is_so: &impl Fn(&DescriptorObject) -> bool) -> bool {
+    pub fn has_any(&self, is_so: &impl Fn(&DescriptorObject) -> bool) -> bool {
         let within = |value: &DescriptorValue| match value {
-            DescriptorValue::Object(object) => object.any(is_so),
-            DescriptorValue::List(list) => list
-                .iter()
-                .any(|value| matches!(value, DescriptorValue::Object(object) if object.any(is_so))),
+            DescriptorValue::Object(object) => object.has_any(is_so),
+            DescriptorValue::List(list) => list.iter().any(
+                |value| matches!(value, DescriptorValue::Object(object) if object.has_any(is_so)),
+            ),
             _ => false,
         };
         is_so(self) || self.0.iter().any(|(_, value)| within(value))

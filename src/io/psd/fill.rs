@@ -149,7 +149,7 @@ fn gradient(said: &DescriptorObject, colours: &Colours) -> Option<GradientFill> 
     let offset = said.object("Ofst");
     let along = |name: &str| offset.map_or(0.0, |offset| share(offset, name, 0.0));
     let mut stops = stops(said.object("Grad")?, colours)?;
-    if said.flag("Rvrs") {
+    if said.is_set("Rvrs") {
         stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
         stops.reverse();
     }

@@ -24,7 +24,7 @@ pub fn can_be_isolated(size: Size, records: &[LayerRecord]) -> bool {
         if record.clipped || (is_group && record.blend != NORMAL) {
             return false;
         }
-        if record.blend != NORMAL && !ground.holds(record) {
+        if record.blend != NORMAL && !ground.is_wholly_over(record) {
             return false;
         }
         if !is_group {
@@ -55,7 +55,7 @@ struct OpaqueGround {
 
 impl OpaqueGround {
     /// Wherever a layer paints on the canvas.
-    fn holds(&self, record: &LayerRecord) -> bool {
+    fn is_wholly_over(&self, record: &LayerRecord) -> bool {
         self.pixels(record).all(|(at, alpha)| alpha == 0 || self.solid[at])
     }
 

@@ -270,7 +270,7 @@ pub fn write_painter(painter: &Painter, base: &Painter) -> JsonObject {
 /// A direction of any length but 0.
 pub fn direction(node: &JsonNode) -> Result<Vec3> {
     let v = node.vector(-1e6..=1e6)?;
-    if node.is_ranged() && !Light::points(v) {
+    if node.is_ranged() && !Light::has_direction(v) {
         return Err(node.refused("has no length, so it has no direction"));
     }
     Ok(v)

@@ -68,7 +68,7 @@ use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::{path::Path, sync::Arc};
 pub use version::VERSION;
-use version::{needs_second_version, unwraps};
+use version::{has_unwrapped, is_of_second_version};
 
 /// The source of a document.
 #[derive(Clone, Copy)]
@@ -362,9 +362,9 @@ pub fn print(document: &Document) -> String {
 fn head(document: &Document, list: &SelectionList) -> JsonObject {
     let mut out = JsonObject::default();
     out.set("format", "rilievo".into());
-    let is_second = needs_second_version(document)
+    let is_second = is_of_second_version(document)
         || selections::is_needed(document, list)
-        || unwraps(document)
+        || has_unwrapped(document)
         || guides::is_needed(document);
     out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));

@@ -13,7 +13,7 @@ pub const VERSION: i64 = 2;
 
 /// Whether a layer is on the unwrapped surface, or sees itself, which the first version does not
 /// know.
-pub fn unwraps(document: &Document) -> bool {
+pub fn has_unwrapped(document: &Document) -> bool {
     let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
     let is_new = |layer: &Layer| match &layer.content {
         Content::Image(live) => {
@@ -39,7 +39,7 @@ pub fn unwraps(document: &Document) -> bool {
 }
 
 /// Whether the first version has no words for something in a document.
-pub fn needs_second_version(document: &Document) -> bool {
+pub fn is_of_second_version(document: &Document) -> bool {
     let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
     let is_new = |layer: &Layer| {
         let is_carried = layer.on.is_some() || layer.content.has_homes();

@@ -146,7 +146,7 @@ fn each_layer(
     let extension = args.to.extension().unwrap_or_default().to_string_lossy();
     let mut targets = Vec::new();
     for (i, (_, layer)) in document.walk().into_iter().enumerate() {
-        if !layer.content.paints() {
+        if !layer.content.has_pixels() {
             continue;
         }
         let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };

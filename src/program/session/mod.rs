@@ -20,7 +20,7 @@ pub mod view;
 pub use actions::Action;
 pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
-pub use open_document::{CloneSource, Edit, OpenDocument, is_same, looks_same};
+pub use open_document::{CloneSource, Edit, OpenDocument, is_same, is_same_look};
 pub use open_document::{chosen, labels};
 pub use path::{LayerPath, LayerPaths};
 pub use picture_part::PicturePart;
@@ -176,7 +176,7 @@ impl Session {
     }
 
     /// Whether a guide is being dragged.
-    pub fn drags_guide(&self) -> bool {
+    pub fn is_dragging_guide(&self) -> bool {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_guide())
     }
 

@@ -356,11 +356,11 @@ pub fn is_same(a: &Document, b: &Document) -> bool {
             .zip(&b.selections)
             .all(|(a, b)| a.name == b.name && Arc::ptr_eq(&a.selection, &b.selection));
     let same_aids = a.guides == b.guides && a.assistants == b.assistants;
-    same_active && same_kept && same_aids && looks_same(a, b)
+    same_active && same_kept && same_aids && is_same_look(a, b)
 }
 
 /// Whether both show the same picture, whatever is selected.
-pub fn looks_same(a: &Document, b: &Document) -> bool {
+pub fn is_same_look(a: &Document, b: &Document) -> bool {
     let same_layers = a.layers.len() == b.layers.len()
         && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));
     let (old, new) = (&a.parts.list, &b.parts.list);

@@ -5,7 +5,7 @@ mod endings;
 mod maps;
 
 pub use endings::{
-    DOCUMENTS, PICTURES, SAVED, exported, holds_everything, is_document, is_openable, is_saved_to,
+    DOCUMENTS, PICTURES, SAVED, exported, is_document, is_openable, is_saved_to, is_whole_document,
     with_document_extension, without_ending,
 };
 pub use maps::{

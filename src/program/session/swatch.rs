@@ -26,7 +26,7 @@ pub fn painted(preset: &BrushPreset, side: u32) -> Option<Vec<u8>> {
     if !(1..=4096).contains(&side) {
         return None;
     }
-    let follows_relief = preset.brush.dynamics.follow(Input::Curvature);
+    let follows_relief = preset.brush.dynamics.has_input(Input::Curvature);
     let surface = ball(side as usize, if follows_relief { GROOVES } else { 0.0 })?;
     painted_on(preset, Arc::new(surface))
 }
@@ -38,7 +38,7 @@ pub fn painted_on(preset: &BrushPreset, surface: Arc<Surface>) -> Option<Vec<u8>
     let BrushPreset { operator, brush, .. } = preset;
     let background =
         if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
-    if brush.needs_paint() {
+    if brush.is_dependent_on_paint() {
         let drawn = retouched::drawn(preset, surface, side / NATURAL_SIDE, SLATE)?;
         return Some(flatten(&drawn, &Progress::default())?.to_straight_rgba(size.rect()));
     }

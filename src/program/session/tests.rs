@@ -104,7 +104,7 @@ fn new_light_suits_what_is_painted() {
     assert_eq!(layers[2].blend, BlendMode::Multiply, "toon darkens what it is laid on");
     let Content::Shading(light) = &layers[3].content else { panic!("no light") };
     assert_eq!(layers[3].name, "Painter's light");
-    assert!(light.params().lights_beneath(), "there is paint beneath");
+    assert!(light.params().is_lighting_beneath(), "there is paint beneath");
     let is_in = |mood: Mood| mood.is_of(light.params());
     assert!(is_in(Mood::Moon) && !is_in(Mood::Studio));
 }

@@ -25,7 +25,7 @@ pub fn handles(layer: &Layer, canvas: Size) -> Vec<Vec2> {
     match &layer.content {
         Content::Image(live) => live.params().bend.anchors.iter().map(|anchor| anchor.at).collect(),
         Content::Gradient(live) => vec![live.params().from, live.params().to],
-        Content::Shading(live) if !live.params().model.needs_environment() => {
+        Content::Shading(live) if !live.params().model.is_lit_by_environment() => {
             lights::handles(&live.params().lights, canvas)
         }
         _ => Vec::new(),

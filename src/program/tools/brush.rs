@@ -64,7 +64,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     };
     let is_eraser = purpose == StrokePurpose::Erase;
     let mut brush = context.tools.brush.clone();
-    if !context.tools.crosses_parts && begins_on_part(&document, layer, pen.place()) {
+    if !context.tools.crosses_parts && is_begun_on_part(&document, layer, pen.place()) {
         brush.bounded = PaintLimit::Object;
     }
     if is_eraser {
@@ -108,7 +108,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
 
 /// Whether a mark on a layer begins on a part, and is no drawing from which parts have outlines:
 /// on that a mark may go beyond them, to change them.
-fn begins_on_part(document: &Document, layer: &Layer, at: Vec2) -> bool {
+fn is_begun_on_part(document: &Document, layer: &Layer, at: Vec2) -> bool {
     let is_outline = |part: &Arc<Part>| match part.outline() {
         Some(OutlineSource::Layer { layer: of, .. }) => *of == layer.name,
         _ => false,

@@ -130,7 +130,7 @@ impl ToolKind {
     }
 
     /// Whether the pen snaps to guides, the grid and edges in all uses.
-    pub fn snaps(self) -> bool {
+    pub fn is_snapping_tool(self) -> bool {
         use ToolKind::{
             Assistants, Crop, Gradient, Move, SelectEllipse, SelectRectangle, Transform,
         };
@@ -141,13 +141,13 @@ impl ToolKind {
     }
 
     /// Whether it makes selections.
-    pub fn selects(self) -> bool {
+    pub fn is_selection_tool(self) -> bool {
         use ToolKind::{Lasso, SelectEllipse, SelectRectangle, SurfaceWand, Wand};
         matches!(self, SelectRectangle | SelectEllipse | Lasso | Wand | SurfaceWand)
     }
 
     /// Whether it works on the parts of the shape.
-    pub fn shapes(self) -> bool {
+    pub fn is_shape_tool(self) -> bool {
         matches!(self, ToolKind::Shape | ToolKind::Touch | ToolKind::Sculpt)
     }
 }

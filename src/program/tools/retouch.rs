@@ -50,7 +50,7 @@ pub(super) fn refused(
     purpose: StrokePurpose,
 ) -> Option<Outcome> {
     let mode = context.tools.brush.mode;
-    if purpose != StrokePurpose::Paint || !context.tools.brush.needs_paint() {
+    if purpose != StrokePurpose::Paint || !context.tools.brush.is_dependent_on_paint() {
         return None;
     }
     if mode.is_clone() && pen.keys.alt {

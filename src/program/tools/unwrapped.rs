@@ -22,14 +22,14 @@ const MOST_STEPS: f32 = 4096.0;
 const CUT_PX: f32 = 6.0 * STEP_PX;
 
 /// Whether a tool works on the sheet; others need what they hold to lie as in the picture.
-pub fn works(tool: ToolKind) -> bool {
+pub fn is_for_unwrapped(tool: ToolKind) -> bool {
     use ToolKind::{Brush, Eraser, Eyedropper, Fill, Hand, SurfaceWand, Wand, Zoom};
-    moves_pieces(tool)
+    is_moving_pieces(tool)
         || matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | SurfaceWand | Wand | Zoom)
 }
 
 /// Whether a tool moves, scales and turns what the selected layer shows on one piece of the sheet.
-pub fn moves_pieces(tool: ToolKind) -> bool {
+pub fn is_moving_pieces(tool: ToolKind) -> bool {
     matches!(tool, ToolKind::Image | ToolKind::Gradient)
 }
 
@@ -88,7 +88,7 @@ pub fn point(
     tool: ToolKind,
 ) -> GestureStart {
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
-    if moves_pieces(tool) {
+    if is_moving_pieces(tool) {
         return pieces::press(context, pen, &layout);
     }
     let sheet = Sheet { layout, surface };

@@ -6,7 +6,7 @@ use super::{Canvas, visible_rect};
 use crate::Error;
 use crate::math::Size;
 use crate::render_thread::RenderRequest;
-use crate::session::{CanvasView, Session, looks_same};
+use crate::session::{CanvasView, Session, is_same_look};
 use crate::tools::ToolKind;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use std::time::Duration;
@@ -44,7 +44,7 @@ impl Canvas {
         if !self
             .wanted
             .as_ref()
-            .is_some_and(|(old, dragged)| *dragged == is_dragged && looks_same(old, &drawn))
+            .is_some_and(|(old, dragged)| *dragged == is_dragged && is_same_look(old, &drawn))
         {
             // Any part of the picture may be in sight on the sheet.
             let visible = if open.unwrapped().is_some() {
@@ -130,8 +130,8 @@ impl Canvas {
 /// change few tiles, and the user looks at them closely. Nor does selecting, which changes nothing
 /// in the picture.
 fn is_dragged(session: &Session) -> bool {
-    let paints =
-        matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) || session.tool.selects();
+    let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Eraser)
+        || session.tool.is_selection_tool();
     let paints = session.is_drawing() && paints;
     !paints && session.active().is_some_and(|open| open.is_previewing())
 }

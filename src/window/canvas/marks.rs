@@ -10,7 +10,7 @@ use crate::paint::{BrushMode, Scene, Stroke as PaintStroke};
 use crate::session::Session;
 use crate::surface::unwrap::PlaneLayout;
 use crate::theme::color32;
-use crate::tools::unwrapped::moves_pieces;
+use crate::tools::unwrapped::is_moving_pieces;
 use crate::tools::{ToolKind, anchors, outline};
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use std::sync::Arc;
@@ -95,7 +95,7 @@ pub fn draw_unwrapped(
         let p = screen_from_sheet.transform_point2(p);
         pos2(p.x, p.y)
     };
-    if moves_pieces(tool) {
+    if is_moving_pieces(tool) {
         let px_per_pt = 1.0 / screen_from_sheet.matrix2.x_axis.length().max(1e-6);
         pieces::draw(painter, session, layout, under, px_per_pt, &to_screen);
     }

@@ -182,7 +182,7 @@ impl Canvas {
         };
         in_front.draw(&painter, screen_from_canvas, size);
         if let Some(wobble) = self.wobble.as_mut().filter(|_| layout.is_none()) {
-            if wobble.goes_on(ui, open.shown()) {
+            if wobble.is_going_on(ui, open.shown()) {
                 return wobble.draw(&painter, screen_from_canvas);
             }
             // The event that ended it does nothing else.

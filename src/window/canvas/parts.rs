@@ -65,7 +65,7 @@ impl PartMarks {
         under: Option<Vec2>,
         tool: ToolKind,
     ) {
-        let (Some(document), true) = (session.shown(), tool.shapes()) else { return };
+        let (Some(document), true) = (session.shown(), tool.is_shape_tool()) else { return };
         let areas = self.known.areas(document).to_vec();
         let to_screen = |p: Vec2| {
             let p = screen_from_canvas.transform_point2(p);

@@ -284,7 +284,7 @@ impl PointerState {
         let Some((watch, reading)) = ReportFilter::begin(report, false) else { return };
         (self.last, self.watch, self.pulls) = (report.at, Some(watch), true);
         let (pen, px_per_pt) = (self.reading(reading, listening), 1.0 / listening.view.zoom);
-        let vertical = rulers::pulls_upright(area, &listening.view, report.at);
+        let vertical = rulers::is_upright_pull(area, &listening.view, report.at);
         listening.actions.push(Action::Guide(GuideAction::Pull { vertical, pen, px_per_pt }));
         self.holding = PointerGesture::Drawing;
     }
@@ -324,7 +324,8 @@ impl PointerState {
     fn release(&mut self, listening: &mut FrameInput) {
         match self.holding {
             PointerGesture::Drawing => {
-                let is_guide = std::mem::take(&mut self.pulls) || listening.session.drags_guide();
+                let is_guide =
+                    std::mem::take(&mut self.pulls) || listening.session.is_dragging_guide();
                 if is_guide && rulers::is_on(self.area, listening.session, self.last) {
                     // A guide that is dropped on a ruler is removed.
                     listening.pens.push(PenSample::at(Vec2::splat(*COORDINATE.start())));

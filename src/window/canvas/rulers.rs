@@ -26,7 +26,7 @@ pub fn is_on(area: Rect, session: &Session, at: Pos2) -> bool {
 }
 
 /// Whether a guide that is pulled out at a point of a ruler is upright on the canvas.
-pub fn pulls_upright(area: Rect, view: &CanvasView, at: Pos2) -> bool {
+pub fn is_upright_pull(area: Rect, view: &CanvasView, at: Pos2) -> bool {
     // The upper ruler's guides are level as seen.
     let is_upper = at.y < area.top() && at.x >= area.left();
     is_upper != (axis_along(view) == Some(0) || axis_along(view).is_none())
@@ -166,7 +166,7 @@ mod tests {
         let view = CanvasView { center: Vec2::ZERO, zoom: 1.0, turn_rad: 0.0, mirrored: false };
         let quarter = CanvasView { turn_rad: std::f32::consts::FRAC_PI_2, ..view };
         let (upper, left) = (pos2(300.0, 95.0), pos2(95.0, 300.0));
-        assert_eq!([upper, left].map(|at| pulls_upright(area, &view, at)), [false, true]);
-        assert_eq!([upper, left].map(|at| pulls_upright(area, &quarter, at)), [true, false]);
+        assert_eq!([upper, left].map(|at| is_upright_pull(area, &view, at)), [false, true]);
+        assert_eq!([upper, left].map(|at| is_upright_pull(area, &quarter, at)), [true, false]);
     }
 }

@@ -6,7 +6,7 @@ use crate::document::Document;
 use crate::document::view::wobble::WobbleScene;
 use crate::math::Affine2;
 use crate::raster::TileGrid;
-use crate::session::looks_same;
+use crate::session::is_same_look;
 use eframe::egui::{
     Color32, ColorImage, Context, Event, Painter, TextureHandle, TextureOptions, Ui, pos2,
 };
@@ -35,7 +35,7 @@ impl Wobble {
     }
 
     /// Whether it continues: nothing was pressed, and the document is the same.
-    pub fn goes_on(&self, ui: &Ui, document: &Document) -> bool {
+    pub fn is_going_on(&self, ui: &Ui, document: &Document) -> bool {
         let stops = |event: &Event| {
             matches!(
                 event,
@@ -43,7 +43,7 @@ impl Wobble {
                     | Event::PointerButton { pressed: true, .. }
             )
         };
-        looks_same(&self.of, document) && !ui.input(|input| input.events.iter().any(stops))
+        is_same_look(&self.of, document) && !ui.input(|input| input.events.iter().any(stops))
     }
 
     pub fn draw(&mut self, painter: &Painter, screen_from_canvas: Affine2) {

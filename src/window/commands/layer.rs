@@ -62,12 +62,12 @@ fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
 }
 
 /// Whether something is true of the selected layer.
-fn layer_is(session: &Session, is: impl FnOnce(&Layer) -> bool) -> bool {
+fn is_so_of_layer(session: &Session, is: impl FnOnce(&Layer) -> bool) -> bool {
     session.layer().is_some_and(|layer| is(layer))
 }
 
 fn is_live(session: &Session) -> bool {
-    layer_is(session, |layer| {
+    is_so_of_layer(session, |layer| {
         !matches!(
             layer.content,
             Content::Pixels(_) | Content::RadianceScaling(_) | Content::Adjustment(_)
@@ -76,15 +76,15 @@ fn is_live(session: &Session) -> bool {
 }
 
 fn is_shown(session: &Session) -> bool {
-    layer_is(session, |layer| layer.visible)
+    is_so_of_layer(session, |layer| layer.visible)
 }
 
 fn is_clipped(session: &Session) -> bool {
-    layer_is(session, |layer| layer.clip_below)
+    is_so_of_layer(session, |layer| layer.clip_below)
 }
 
 fn is_locked(session: &Session, lock: LayerLock) -> bool {
-    layer_is(session, |layer| layer.lock == lock)
+    is_so_of_layer(session, |layer| layer.lock == lock)
 }
 
 fn is_alone(session: &Session) -> bool {
@@ -92,11 +92,11 @@ fn is_alone(session: &Session) -> bool {
 }
 
 fn has_mask(session: &Session) -> bool {
-    layer_is(session, |layer| layer.mask.is_some())
+    is_so_of_layer(session, |layer| layer.mask.is_some())
 }
 
-fn mask_is(session: &Session, is: impl FnOnce(&LayerMask) -> bool) -> bool {
-    layer_is(session, |layer| layer.mask.as_ref().is_some_and(is))
+fn is_so_of_mask(session: &Session, is: impl FnOnce(&LayerMask) -> bool) -> bool {
+    is_so_of_layer(session, |layer| layer.mask.as_ref().is_some_and(is))
 }
 
 fn is_on_mask(session: &Session) -> bool {
@@ -290,15 +290,15 @@ pub const COMMANDS: &[MenuCommand] = &[
         requests.request(WindowRequest::Choose(FilePurpose::Part(PicturePart::Mask)))
     }),
     row("Invert mask", &[], "Shows what the mask hides, and hides what it shows", has_mask, |session, requests| {
-        let on = !mask_is(session, |mask| mask.invert);
+        let on = !is_so_of_mask(session, |mask| mask.invert);
         set(session, requests, Property::MaskInverted { on });
     })
-    .ticked(|session, _| mask_is(session, |mask| mask.invert)),
+    .ticked(|session, _| is_so_of_mask(session, |mask| mask.invert)),
     row("Use mask", &[], "Disables the mask, or enables it again", has_mask, |session, requests| {
-        let on = mask_is(session, |mask| !mask.disabled);
+        let on = is_so_of_mask(session, |mask| !mask.disabled);
         set(session, requests, Property::MaskDisabled { on });
     })
-    .ticked(|session, _| mask_is(session, |mask| !mask.disabled)),
+    .ticked(|session, _| is_so_of_mask(session, |mask| !mask.disabled)),
     row("Delete mask", &[], "Removes the mask: the whole layer is visible again", has_mask, |session, requests| {
         set(session, requests, Property::Mask { mask: None })
     }),

@@ -75,19 +75,19 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("Bend: flat", &[key(Key::F1)], operators::FLAT.hint, always, |session, requests| {
         operators::give(session, requests, operators::FLAT.begins)
     })
-    .ticked(|session, _| operators::has(session, operators::FLAT.begins)),
+    .ticked(|session, _| operators::has_operator(session, operators::FLAT.begins)),
     row("Bend: wrap", &[key(Key::F2)], operators::TEXTURE.hint, always, |session, requests| {
         operators::give(session, requests, operators::TEXTURE.begins)
     })
-    .ticked(|session, _| operators::has(session, operators::TEXTURE.begins)),
+    .ticked(|session, _| operators::has_operator(session, operators::TEXTURE.begins)),
     row("Bend: near and far", &[], operators::DEPTH_TEXTURE.hint, always, |session, requests| {
         operators::give(session, requests, operators::DEPTH_TEXTURE.begins)
     })
-    .ticked(|session, _| operators::has(session, operators::DEPTH_TEXTURE.begins)),
+    .ticked(|session, _| operators::has_operator(session, operators::DEPTH_TEXTURE.begins)),
     row("Bend: gloss", &[key(Key::F3)], operators::SHADING.hint, always, |session, requests| {
         operators::give(session, requests, operators::SHADING.begins)
     })
-    .ticked(|session, _| operators::has(session, operators::SHADING.begins)),
+    .ticked(|session, _| operators::has_operator(session, operators::SHADING.begins)),
     row(
         "Bend: true mirror",
         &[key(Key::F4)],
@@ -95,5 +95,5 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |session, requests| operators::give(session, requests, operators::REFLECTION.begins),
     )
-    .ticked(|session, _| operators::has(session, operators::REFLECTION.begins)),
+    .ticked(|session, _| operators::has_operator(session, operators::REFLECTION.begins)),
 ];

@@ -39,7 +39,7 @@ impl CommandPalette {
         if field.changed() {
             self.at = 0;
         }
-        let found = find::found(&self.typed, |entry| can(entry, session));
+        let found = find::found(&self.typed, |entry| can_be_done(entry, session));
         let (up, down, enter) = ui.input(|i| {
             (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter))
         });
@@ -86,11 +86,11 @@ fn row(
     let keys = keys.map(|keys| shown(ui.ctx(), keys)).unwrap_or_default();
     let beside = [entry.kind(), &keys].join("  ");
     let button = Button::selectable(is_next, entry.name()).shortcut_text(beside.trim());
-    ui.add_enabled(can(entry, session), button.min_size([400.0, 0.0].into()))
+    ui.add_enabled(can_be_done(entry, session), button.min_size([400.0, 0.0].into()))
 }
 
 /// Whether it can be done now.
-fn can(entry: PaletteEntry, session: &Session) -> bool {
+fn can_be_done(entry: PaletteEntry, session: &Session) -> bool {
     match entry {
         PaletteEntry::Command(command) => (command.can)(session),
         PaletteEntry::Tool(_) | PaletteEntry::Panel(_) | PaletteEntry::Setting(..) => true,

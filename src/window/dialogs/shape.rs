@@ -35,7 +35,7 @@ pub fn find_drawing(
 ) -> Option<(LayerId, DrawingTraits)> {
     let others = document.walk().into_iter().rev().map(|(_, layer)| layer);
     let others =
-        others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
+        others.filter(|layer| layer.visible && layer.content.has_pixels()).map(|layer| layer.id);
     let mut first = None;
     for id in selected.into_iter().chain(others).take(MOST_LOOKS) {
         let Some(traits) = drawing::traits_of(document, id) else { continue };

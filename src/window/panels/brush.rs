@@ -323,7 +323,7 @@ fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
 fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to: Option<Dynamics> = None;
     for Drive { property, input, curve: shape } in brush.dynamics.drives() {
-        let plus = if shape.adds() { " plus" } else { "" };
+        let plus = if shape.is_additive() { " plus" } else { "" };
         let label = format!(
             "{}{plus} by {}",
             word(&Property::ALL, property),
@@ -335,7 +335,7 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
                 let remove = ui.small_button("Remove").on_hover_text("Removes this row");
                 named(&remove, &format!("Remove {label}"));
                 if remove.clicked() {
-                    to = Some(brush.dynamics.without(*property, *input, shape.adds()));
+                    to = Some(brush.dynamics.without(*property, *input, shape.is_additive()));
                 }
             });
         });

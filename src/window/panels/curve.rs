@@ -29,7 +29,7 @@ pub fn points(curve: &Curve, span: f32) -> Vec<Vec2> {
 
 /// The curve through points of the square, of the kind of another.
 fn through(like: &Curve, points: Vec<Vec2>, span: f32) -> Option<Curve> {
-    if like.adds() {
+    if like.is_additive() {
         Curve::added(points.iter().map(|p| vec2(p.x, (2.0 * p.y - 1.0) * span)).collect())
     } else {
         Curve::through(points)

@@ -91,7 +91,7 @@ pub fn shading(
                 .map(|c| c.map(|to| Property::Occlusion { to })),
         );
     }
-    if shading.model.bounces() {
+    if shading.model.is_bouncing() {
         let hint = "How often rays that meet the surface are reflected again; 0 shows the \
                     environment only";
         let most = *Shading::BOUNCES.end() as f32;
@@ -127,9 +127,9 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
             }
         });
     };
-    if shading.model.needs_environment() || shading.model == Model::Ashikhmin {
+    if shading.model.is_lit_by_environment() || shading.model == Model::Ashikhmin {
         let file = shading.environment.as_ref().map(|environment| &*environment.file);
-        let none = if shading.lacks_environment() {
+        let none = if shading.is_without_environment() {
             "None yet: the layer is black"
         } else {
             "None: lit by the lights"

@@ -2,7 +2,9 @@
 //! tool. Floor 7.
 
 use super::{assistants, brush_mode, crop, fill, liquify, select, shaping, transform};
-use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
+use crate::operators::{
+    OPERATORS, OfferedOperator, OperatorOwner, give, has_operator, hint_of, set, whose,
+};
 use crate::paint::Brush;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
@@ -41,7 +43,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool == ToolKind::Fill {
         return drop(ui.weak("Fills are not bent: they color the pixels that they cover"));
     }
-    if session.tool.shapes() {
+    if session.tool.is_shape_tool() {
         return drop(ui.weak(
             "The shape is what everything bends over: parts, nearest first, are in the panel Shape",
         ));
@@ -52,7 +54,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool == ToolKind::Crop {
         return drop(ui.weak("Everything moves with the canvas; paint beyond it is kept"));
     }
-    if session.tool.selects() {
+    if session.tool.is_selection_tool() {
         return drop(
             ui.weak("Selections limit where you can paint: every brush, fill, gradient and eraser respects them"),
         );
@@ -64,7 +66,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     };
     ui.label(RichText::new(about).weak());
     for OfferedOperator { label, begins, hint } in OPERATORS {
-        let is_on = has(session, begins);
+        let is_on = has_operator(session, begins);
         if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
             give(session, requests, begins);
         }
@@ -97,8 +99,8 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                 requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
             }
         }
-        tool if tool.selects() => select::options(ui, session, requests),
-        tool if tool.shapes() => shaping::options(ui, session, requests),
+        tool if tool.is_selection_tool() => select::options(ui, session, requests),
+        tool if tool.is_shape_tool() => shaping::options(ui, session, requests),
         ToolKind::Transform => transform::options(ui, session, requests),
         ToolKind::Liquify => {
             liquify::options(ui, session, requests);

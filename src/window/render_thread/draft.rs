@@ -97,7 +97,7 @@ impl DraftRender {
         self.pass.passes() == 0
     }
 
-    pub fn would_be_quick_in_whole_pixels(&self) -> bool {
+    pub fn is_quick_in_whole_pixels(&self) -> bool {
         let whole = (self.step * self.step) as f32 / DRAFT_SHARE;
         self.pass.passes() > 1 && self.pass.took().mul_f32(whole) < FINE
     }

@@ -308,7 +308,7 @@ impl MainWindow {
             ctx.request_discard("an action");
         }
         for action in requests.actions {
-            if !self.holds(&action) && !self.begin_edit(&action) {
+            if !self.hold_action(&action) && !self.begin_edit(&action) {
                 self.apply(&action);
             }
         }

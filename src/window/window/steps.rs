@@ -24,19 +24,19 @@ const STEPS: [HintStep; 3] = [
     ),
 ];
 
-fn any(session: &Session, is: impl Fn(&Content) -> bool) -> bool {
+fn has_any(session: &Session, is: impl Fn(&Content) -> bool) -> bool {
     session
         .shown()
         .is_some_and(|document| document.walk().iter().any(|(_, layer)| is(&layer.content)))
 }
 
 fn has_image(session: &Session) -> bool {
-    any(session, |content| matches!(content, Content::Image(_)))
+    has_any(session, |content| matches!(content, Content::Image(_)))
 }
 
 fn has_bent_stroke(session: &Session) -> bool {
     let bent = |stroke: &crate::paint::Stroke| stroke.operator() != Operator::None;
-    any(
+    has_any(
         session,
         |content| matches!(content, Content::Strokes(live) if live.params().strokes.iter().any(|s| bent(s))),
     )

@@ -95,7 +95,7 @@ impl BusyInput {
 
     /// Drops what is typed on after a field is gone, such as that of a layer that an edit merged
     /// away; until a pause, or a click. Returns whether it did.
-    fn drops_rest(&mut self, ctx: &Context) -> bool {
+    fn drop_rest(&mut self, ctx: &Context) -> bool {
         let ended = |input: &InputState| {
             let keys = [Key::Enter, Key::Escape, Key::Tab];
             input.pointer.any_pressed() || keys.into_iter().any(|key| input.key_pressed(key))
@@ -121,7 +121,7 @@ impl BusyInput {
     }
 
     /// Whether a dialog came a moment ago, whose text field is not ready.
-    fn awaits_field(&mut self, ctx: &Context) -> bool {
+    fn is_awaiting_field(&mut self, ctx: &Context) -> bool {
         let Some(frames) =
             self.is_new_for.filter(|frames| *frames < READY_FRAMES && !ctx.text_edit_focused())
         else {
@@ -139,16 +139,16 @@ impl MainWindow {
         if !self.dialogs.is_empty() {
             (self.busy.is_typing, self.busy.of_dialog) =
                 (false, ctx.memory(|memory| memory.focused()));
-            return match self.busy.awaits_field(ctx) {
+            return match self.busy.is_awaiting_field(ctx) {
                 true => self.busy.hold(ctx),
                 false => self.busy.give(ctx),
             };
         }
-        if self.busy.drops_rest(ctx) {
+        if self.busy.drop_rest(ctx) {
             return;
         }
         let front = self.session.active().map(|open| open.key);
-        if self.jobs.awaits_dialog() {
+        if self.jobs.is_awaiting_dialog() {
             self.busy.went_on |= ctx.input(|input| input.pointer.any_pressed());
             if !self.busy.went_on && !ctx.text_edit_focused() {
                 self.busy.meant = TypedFor::Dialog;
@@ -156,7 +156,7 @@ impl MainWindow {
             }
         }
         (self.busy.went_on, self.busy.is_new_for) =
-            (self.busy.went_on && self.jobs.awaits_dialog(), None);
+            (self.busy.went_on && self.jobs.is_awaiting_dialog(), None);
         if self.jobs.editing().is_some() {
             if !ctx.egui_wants_keyboard_input() {
                 self.busy.meant = TypedFor::Canvas(front);
@@ -174,14 +174,14 @@ impl MainWindow {
 
     /// After the requests of a frame: whether a dialog came, or will.
     pub(super) fn expect_dialog(&mut self, dialogs_before: usize) {
-        if self.jobs.awaits_dialog() || self.dialogs.len() > dialogs_before {
+        if self.jobs.is_awaiting_dialog() || self.dialogs.len() > dialogs_before {
             self.busy.is_new_for = Some(0);
         }
     }
 
     /// During an edit the document can be viewed but not changed. What is set meanwhile waits;
     /// strokes are not begun. Returns whether the action is done with.
-    pub(super) fn holds(&mut self, action: &Action) -> bool {
+    pub(super) fn hold_action(&mut self, action: &Action) -> bool {
         if self.jobs.editing().is_none() || matches!(action, Action::View(_)) {
             return false;
         }

@@ -58,7 +58,7 @@ impl MainWindow {
         self.session.drop_gesture();
         let Some(open) = self.session.active() else { return };
         let (key, document) = (open.key, open.document().clone());
-        let knows_losses = knows_losses || storage::holds_everything(&file);
+        let knows_losses = knows_losses || storage::is_whole_document(&file);
         let terms = self.session.saving(&file, over);
         self.put(Pending::Save(Box::new(Saving {
             key,

@@ -37,13 +37,13 @@ impl Carrier<'_> {
         // lost.
         if has_picture
             && (layer.transform.is_some() || layer.is_warped())
-            && !self.change.holds_all()
+            && !self.change.has_whole_old_canvas()
         {
             let shown = in_place(layer, &LayerMap::none(self.change.from));
             if shown.transform.is_none() && !shown.is_warped() {
                 return self.carried(&shown, &self.frame_of(&shown));
             }
-            if !shown.content.shapes() {
+            if !shown.content.is_shaping_surface() {
                 return self.carried(&under_its_mask(layer, self.change.from), &self.change.map);
             }
         }

@@ -110,7 +110,7 @@ impl Document {
         let follows = match body.outline() {
             Some(OutlineSource::Object(_)) => true,
             Some(OutlineSource::Layer { layer, .. }) => {
-                self.layer_named(layer).is_some_and(|layer| moves_with_shape(layer))
+                self.layer_named(layer).is_some_and(|layer| is_moved_with_shape(layer))
             }
             _ => false,
         };
@@ -144,12 +144,12 @@ impl Document {
 
 /// Whether a layer moves with the shape: it is clipped to the surface and is no light, or has a
 /// painted mask; for a group, whether all in it does.
-fn moves_with_shape(layer: &Layer) -> bool {
+fn is_moved_with_shape(layer: &Layer) -> bool {
     match &layer.content {
         Content::Group(group) => {
-            !group.layers.is_empty() && group.layers.iter().all(|layer| moves_with_shape(layer))
+            !group.layers.is_empty() && group.layers.iter().all(|layer| is_moved_with_shape(layer))
         }
-        content => layer.clip_to_surface && (content.goes_with_shape() || has_painted_mask(layer)),
+        content => layer.clip_to_surface && (content.is_tied_to_shape() || has_painted_mask(layer)),
     }
 }
 
@@ -162,7 +162,7 @@ fn has_painted_mask(layer: &Layer) -> bool {
 fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<Vec<Arc<Layer>>> {
     let one = |layer: &Arc<Layer>| {
         let own = around.within(layer);
-        if !moves_with_shape(layer) {
+        if !is_moved_with_shape(layer) {
             let Content::Group(group) = &layer.content else { return Some(masked(layer, map)) };
             let layers = carried(&group.layers, &own, map)?;
             let content = Content::Group(Group { layers, ..group.clone() });

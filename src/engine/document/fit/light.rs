@@ -61,7 +61,7 @@ pub fn radiance_scaling(radiance: &RadianceScaling) -> Fit {
     scaling(&radiance.scaling)?;
     features(&radiance.features)?;
     reference(radiance.reference)?;
-    if Light::points(radiance.light) {
+    if Light::has_direction(radiance.light) {
         Ok(())
     } else {
         Err("the direction of the light has no length".into())
@@ -102,7 +102,7 @@ fn term(term: &Term) -> Fit {
 fn light(light: &Light) -> Fit {
     within("the intensity of a light", light.intensity, &Light::INTENSITY)?;
     match light.kind {
-        LightKind::Directional { direction } if Light::points(direction) => Ok(()),
+        LightKind::Directional { direction } if Light::has_direction(direction) => Ok(()),
         LightKind::Directional { .. } => Err("the direction of a light has no length".into()),
         LightKind::Point { position } => position
             .to_array()

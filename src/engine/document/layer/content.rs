@@ -143,12 +143,12 @@ trait LayerKind {
 
     /// Whether it moves with the shape that it lies on: light does not, nor what is the same
     /// everywhere.
-    fn goes_with_shape(&self) -> bool {
+    fn is_tied_to_shape(&self) -> bool {
         true
     }
 
     /// Whether it shows something where no surface is, even if it is clipped to the surface.
-    fn shows_off_surface(&self) -> bool {
+    fn is_shown_off_surface(&self) -> bool {
         false
     }
 
@@ -253,12 +253,12 @@ impl Content {
     }
 
     /// It has pixels of its own.
-    pub fn paints(&self) -> bool {
+    pub fn has_pixels(&self) -> bool {
         matches!(self.role(), Role::Paints)
     }
 
     /// It changes the surface for layers above.
-    pub fn shapes(&self) -> bool {
+    pub fn is_shaping_surface(&self) -> bool {
         matches!(self.role(), Role::Shapes(_))
     }
 
@@ -269,13 +269,13 @@ impl Content {
     }
 
     /// It moves with the shape that it lies on.
-    pub(in crate::document) fn goes_with_shape(&self) -> bool {
-        self.kind().goes_with_shape()
+    pub(in crate::document) fn is_tied_to_shape(&self) -> bool {
+        self.kind().is_tied_to_shape()
     }
 
     /// It shows something where no surface is, even if it is clipped to the surface.
-    pub fn shows_off_surface(&self) -> bool {
-        self.kind().shows_off_surface()
+    pub fn is_shown_off_surface(&self) -> bool {
+        self.kind().is_shown_off_surface()
     }
 
     /// The group that it is, if it is one.
@@ -406,7 +406,7 @@ impl Content {
     }
 
     /// Its appearance depends on the whole picture beneath it.
-    pub(in crate::document) fn reads_all_beneath(&self) -> bool {
+    pub(in crate::document) fn is_composed_of_beneath(&self) -> bool {
         matches!(self.role(), Role::Adjusts(adjustment) if adjustment.reach() == Reach::Picture)
     }
 }

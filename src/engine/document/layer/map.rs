@@ -105,7 +105,7 @@ impl LayerMap {
     }
 
     /// Nor does it move anything that lies on a home of its own.
-    pub(in crate::document) fn moves_nothing(&self) -> bool {
+    pub(in crate::document) fn is_still(&self) -> bool {
         self.is_none() && self.without_homes().is_identity_on(self.canvas)
     }
 

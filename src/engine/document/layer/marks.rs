@@ -12,7 +12,7 @@ pub(in crate::document) trait Marks {
     /// white.
     fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile>;
     /// Where another population of a contour pixel sees no surface the tile's own pixels stay.
-    fn stay(&self) -> bool {
+    fn is_kept_off_surface(&self) -> bool {
         true
     }
 

@@ -132,7 +132,7 @@ impl LayerMask {
         curvature: Option<&Curvature>,
         at: TileAt,
     ) -> TileCoverage {
-        if !self.acts_on(scene) {
+        if !self.is_active_on(scene) {
             return coverage;
         }
         if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) =
@@ -167,7 +167,7 @@ impl LayerMask {
     }
 
     /// It is shown, and what it is derived from is there.
-    pub(in crate::document) fn acts_on(&self, scene: &Scene) -> bool {
+    pub(in crate::document) fn is_active_on(&self, scene: &Scene) -> bool {
         let needs_surface = !matches!(self.kind, MaskKind::File { .. });
         !(self.disabled || needs_surface && scene.surface.is_none())
     }

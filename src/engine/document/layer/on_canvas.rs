@@ -91,7 +91,7 @@ impl CanvasCache {
         let mut alike = entries.iter().rev().filter(|entry| entry.map == *map);
         let same = alike.clone().find(|entry| entry.own.is_identical(&layer.content));
         let last = same.or_else(|| alike.next());
-        let same_mask = |a: &Option<LayerMask>| match (a, &layer.mask) {
+        let is_same_mask = |a: &Option<LayerMask>| match (a, &layer.mask) {
             (Some(a), Some(b)) => a.is_same(b),
             (a, b) => a.is_none() && b.is_none(),
         };
@@ -99,7 +99,7 @@ impl CanvasCache {
             || layer.content.on_canvas(map, None),
             |last| layer.content.on_canvas(map, Some((&last.own, &last.content))),
         );
-        let mask = match last.filter(|last| same_mask(&last.own_mask)) {
+        let mask = match last.filter(|last| is_same_mask(&last.own_mask)) {
             Some(last) => last.mask.clone(),
             None if map.is_none() => layer.mask.clone(),
             None => layer.mask.as_ref().map(|mask| mask_on_canvas(mask, map)),

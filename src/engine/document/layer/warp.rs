@@ -98,7 +98,7 @@ impl LayerWarp {
     }
 
     /// What a mesh takes from beyond the canvas is nothing; liquify continues the picture's border.
-    pub(in crate::document) fn continues(&self) -> bool {
+    pub(in crate::document) fn has_continued_border(&self) -> bool {
         self.mesh.is_none()
     }
 
@@ -203,7 +203,7 @@ impl LayerWarp {
 
     /// What is read for a rectangle: where the border is continued, the border.
     fn within(&self, rect: Rect) -> Rect {
-        if !self.continues() {
+        if !self.has_continued_border() {
             return rect;
         }
         let (w, h) = (self.canvas.width as i32, self.canvas.height as i32);

@@ -6,7 +6,9 @@ use super::body::{PlacedOutline, SolvedOutline, joined, lost};
 use super::form_cache::{MadePart, NewForm, Stages};
 use super::modifiers::{ResumePoint, with_lines, with_modifier};
 use super::outlines::OutlineKey;
-use super::unchanged::{same_inks, same_kind, same_list, same_shape, split_whole_px};
+use super::unchanged::{
+    are_same_inks, are_same_parts, is_same_kind, is_same_shape, split_whole_px,
+};
 use super::whole::Whole;
 use super::{Part, PartKind, Parts};
 use crate::document::{Document, Progress};
@@ -108,9 +110,9 @@ impl Document {
         };
         let is_lost = standing.as_ref().is_some_and(|own| own.is_lost);
         if let Some(made) = known.as_ref().filter(|made| {
-            same_shape(&made.part, part)
-                && same_list(&made.modifiers, &modifiers)
-                && same_inks(&made.inks, &inks)
+            is_same_shape(&made.part, part)
+                && are_same_parts(&made.modifiers, &modifiers)
+                && are_same_inks(&made.inks, &inks)
         }) {
             if made.moved == moved && Arc::ptr_eq(&made.part, part) && is_unchanged(made) {
                 return Some((made.clone(), None));
@@ -123,7 +125,7 @@ impl Document {
         }
         let free = free.unwrap_or_else(found);
         let outline = standing.map(|own| own.outline);
-        let is_kind = known.as_ref().is_some_and(|made| same_kind(&made.part.kind, &part.kind));
+        let is_kind = known.as_ref().is_some_and(|made| is_same_kind(&made.part.kind, &part.kind));
         let kept = known.as_ref().and_then(|made| made.kept.clone());
         let staged =
             kept.as_ref().filter(|_| is_kind).and_then(|kept| Some((kept, kept.stages.as_ref()?)));
@@ -141,9 +143,9 @@ impl Document {
         let stages = kept.and_then(|kept| kept.stages.clone());
         let beneath = known.zip(stages).and_then(|(made, stages)| {
             let as_many = made.modifiers.len() == modifiers.len()
-                && same_list(&made.modifiers[..last], &modifiers[..last]);
+                && are_same_parts(&made.modifiers[..last], &modifiers[..last]);
             let is_same =
-                as_many && Arc::ptr_eq(&stages.plain, &plain) && same_inks(&made.inks, &inks);
+                as_many && Arc::ptr_eq(&stages.plain, &plain) && are_same_inks(&made.inks, &inks);
             let resume =
                 std::mem::take(&mut *made.resume.lock().unwrap_or_else(PoisonError::into_inner));
             is_same.then_some((stages.before_last, resume))

@@ -54,7 +54,12 @@ impl DrawnLayer {
             Box::new(WarpedLayer { warps: alone.warps_of(layer.id), alone })
         });
         let maps = || Scene { size: document.size, surface: document.maps_surface().cloned() };
-        Some(Self { layer: layer.clone(), map, warped, maps: follows_surface(layer).then(maps) })
+        Some(Self {
+            layer: layer.clone(),
+            map,
+            warped,
+            maps: has_surface_selections(layer).then(maps),
+        })
     }
 
     /// Where the layer's pixels are.
@@ -153,12 +158,12 @@ impl Document {
 }
 
 /// Whether strokes of a layer, or in it, were painted in selections by the surface.
-fn follows_surface(layer: &Layer) -> bool {
+fn has_surface_selections(layer: &Layer) -> bool {
     let is_of_surface =
         |stroke: &Arc<Stroke>| stroke.selection().is_some_and(|own| own.selection.made.is_some());
     match &layer.content {
         Content::Strokes(live) => live.params().strokes.iter().any(is_of_surface),
-        Content::Group(group) => group.layers.iter().any(|layer| follows_surface(layer)),
+        Content::Group(group) => group.layers.iter().any(|layer| has_surface_selections(layer)),
         _ => false,
     }
 }

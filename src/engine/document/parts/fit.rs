@@ -247,7 +247,7 @@ impl PartKind {
                         .to_array()
                         .iter()
                         .try_for_each(|v| within("a light", *v, &ProfilePicture::LIGHT))?;
-                    if Light::points(light) {
+                    if Light::has_direction(light) {
                         Ok(())
                     } else {
                         Err("the direction of a light has no length".into())

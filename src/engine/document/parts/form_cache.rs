@@ -8,7 +8,7 @@ use super::drawn::LastDrawn;
 use super::flats_cache::FlatsCache;
 use super::modifiers::ResumePoint;
 use super::outlines::OutlineKey;
-use super::unchanged::{same_list, split_whole_px};
+use super::unchanged::{are_same_parts, split_whole_px};
 use crate::document::Document;
 use crate::math::{Rect, Size, Vec2};
 use crate::memory::{CacheReservation, FORMS};
@@ -259,7 +259,7 @@ impl Document {
     /// was changed since.
     pub(super) fn made_area(&self, part: &Arc<Part>) -> Option<Arc<FormArea>> {
         let made = self.parts.cache.get(&part.id)?;
-        (Arc::ptr_eq(&made.part, part) && same_list(&made.modifiers, &self.modifiers_of(part)))
+        (Arc::ptr_eq(&made.part, part) && are_same_parts(&made.modifiers, &self.modifiers_of(part)))
             .then_some(made.area)
     }
 

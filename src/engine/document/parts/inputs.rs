@@ -8,7 +8,7 @@
 
 use super::Part;
 use super::outlines::OutlineKey;
-use super::unchanged::{same_list, same_surface};
+use super::unchanged::{are_same_parts, is_same_surface};
 use crate::document::{Document, Progress};
 use crate::math::Size;
 use crate::surface::Surface;
@@ -35,9 +35,9 @@ impl Document {
             || !self.parts.is_ahead
                 && of == self.surface.as_ref().map(Arc::as_ptr)
                 && made.size == self.size
-                && same_surface(&made.maps, &self.parts.maps)
-                && same_list(&made.list, &self.parts.list)
-                && same_outlines(&made.outlines, &self.outline_keys())
+                && is_same_surface(&made.maps, &self.parts.maps)
+                && are_same_parts(&made.list, &self.parts.list)
+                && are_same_outlines(&made.outlines, &self.outline_keys())
     }
 
     /// The document with the surface that its parts, layers and maps make now, with what lies on
@@ -77,7 +77,7 @@ impl Document {
     }
 }
 
-fn same_outlines(a: &[Option<OutlineKey>], b: &[Option<OutlineKey>]) -> bool {
+fn are_same_outlines(a: &[Option<OutlineKey>], b: &[Option<OutlineKey>]) -> bool {
     let same = |(a, b): (&Option<OutlineKey>, &Option<OutlineKey>)| match (a, b) {
         (Some(a), Some(b)) => a.is_same(b),
         (a, b) => a.is_none() && b.is_none(),

@@ -82,7 +82,7 @@ pub fn with_modifier(
                 sample.0 = still.transform_point2(sample.0);
             }
             let made = known
-                .filter(|known| known.goes_on(&through))
+                .filter(|known| known.is_continued_by(&through))
                 .unwrap_or_else(|| Sculpting::of(form));
             let made = made.go_on(form, &through);
             let form = form.clone().with_added(made.layer());

@@ -3,7 +3,7 @@
 
 use super::body::of_surface;
 use super::form_cache::{FormArea, MadePart, MadeSurface};
-use super::unchanged::same_surface;
+use super::unchanged::is_same_surface;
 use crate::document::Document;
 use crate::shape::{Combine, Form, Relief};
 use crate::surface::Surface;
@@ -25,7 +25,7 @@ pub struct Whole<'d> {
 impl<'d> Whole<'d> {
     pub fn new(document: &'d Document) -> Self {
         let is_same = |made: &&MadeSurface| {
-            made.size == document.size && same_surface(&made.maps, &document.parts.maps)
+            made.size == document.size && is_same_surface(&made.maps, &document.parts.maps)
         };
         let last = lock(document)
             .as_ref()

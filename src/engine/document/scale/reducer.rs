@@ -69,7 +69,7 @@ impl BegunLayer {
     }
 
     /// Scales some more tiles; whether that was all.
-    fn go_on(&mut self, pixels: &PixelLayer, scale: &CanvasScale) -> bool {
+    fn advance(&mut self, pixels: &PixelLayer, scale: &CanvasScale) -> bool {
         let now = self.left.split_off(self.left.len().saturating_sub(Self::AT_ONCE));
         scale.fill_tiles(&pixels.tiles, &now, &mut self.tiles);
         self.left.is_empty()
@@ -247,7 +247,7 @@ impl DocumentReducer {
                 let begun =
                     self.begun.take().filter(|begun| begun.of.as_ptr() == Arc::as_ptr(&layer));
                 let mut begun = begun.unwrap_or_else(|| BegunLayer::new(&layer, pixels, &scale));
-                if !begun.go_on(pixels, &scale) {
+                if !begun.advance(pixels, &scale) {
                     self.begun = Some(begun);
                     return true;
                 }

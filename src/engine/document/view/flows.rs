@@ -62,7 +62,7 @@ fn shown(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
     let covered = |x: usize, y: usize| surface.is_none_or(|s| s.coverage(x, y) > 0);
     let lines = marks.map(|mark| mark.line);
     let grey = smeared_noise(&lines, LineStyle::for_size(marks.size()), |from, to| {
-        surface.is_none_or(|s| passes(s.links_plane(), from, to))
+        surface.is_none_or(|s| is_passable(s.links_plane(), from, to))
     });
     let full = strong(marks, covered);
     painted(marks.size(), surface, |x, y| {
@@ -75,7 +75,7 @@ fn shown(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
 
 /// Whether a line may go from a pixel to the next without leaving the surface; at a corner, along
 /// both sides.
-fn passes(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
+fn is_passable(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
     let linked = |(x, y): (usize, usize), bit: u8| plane.at(x, y) & bit != 0;
     let across = if to.0 > from.0 { links::RIGHT } else { links::LEFT };
     let along = if to.1 > from.1 { links::DOWN } else { links::UP };

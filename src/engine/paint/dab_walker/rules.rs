@@ -95,7 +95,7 @@ impl Due {
 
 impl DabRules {
     pub fn new(brush: &Brush, operator: Operator, color: Color, scene: &Scene) -> Self {
-        let follows = |input| brush.dynamics.follow(input);
+        let follows = |input| brush.dynamics.has_input(input);
         let measured = SurfaceMetric::of(scene, operator)
             .filter(|_| brush.spacing_on == DistanceMetric::Surface);
         let curvature = scene.surface.as_ref().filter(|_| follows(Input::Curvature));
@@ -111,7 +111,7 @@ impl DabRules {
             reads_pen: matches!(brush.tip, Tip::Hose(_)) || PEN.into_iter().any(follows),
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
             measured,
-            varies_in_color: tint::varies(brush),
+            varies_in_color: tint::has_varied_color(brush),
             rims: RimTable::of(brush),
         }
     }
@@ -240,7 +240,7 @@ impl DabRules {
     /// The ratio of the tip's shorter side to its longer one.
     fn ratio(&self, inputs: &DabInputs) -> f32 {
         let plain = self.brush.ratio();
-        if !self.brush.dynamics.drive(Property::Elongation) {
+        if !self.brush.dynamics.is_driven(Property::Elongation) {
             return plain;
         }
         1.0 / self.value(Property::Elongation, 1.0 / plain, inputs).max(1.0).min(MOST_ELONGATION)

@@ -44,7 +44,7 @@ impl Curve {
     }
 
     /// Its outputs are added.
-    pub fn adds(&self) -> bool {
+    pub fn is_additive(&self) -> bool {
         matches!(self, Curve::Added(_))
     }
 
@@ -55,8 +55,10 @@ impl Curve {
             Curve::Share(p) => return 1.0 - p * (1.0 - x),
             Curve::Points(points) | Curve::Added(points) => points,
         };
-        let mut before =
-            points.first().copied().unwrap_or(vec2(0.0, if self.adds() { 0.0 } else { 1.0 }));
+        let mut before = points
+            .first()
+            .copied()
+            .unwrap_or(vec2(0.0, if self.is_additive() { 0.0 } else { 1.0 }));
         for &point in points.iter() {
             if x <= point.x {
                 let width = point.x - before.x;

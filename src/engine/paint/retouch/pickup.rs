@@ -39,7 +39,7 @@ pub(super) fn mixed(
     let unit = |v: f32| v.max(0.0).min(1.0);
     let value = |property, plain: f32| unit(brush.dynamics.value(property, plain, &dab.inputs));
     let [r, g, b, _] = own.to_f32();
-    if brush.picks_up() {
+    if brush.is_picking_up() {
         let length = value(Property::PickupLength, brush.pickup.length);
         let length = if held.is_none() { 0.0 } else { length };
         if length < 1.0
@@ -53,7 +53,7 @@ pub(super) fn mixed(
     let own = [r, g, b, 1.0];
     let held = held.unwrap_or(own);
     let mixed: [f32; 4] = std::array::from_fn(|c| own[c] + (held[c] - own[c]) * amount);
-    if tint::varies(brush) { tinted(brush, mixed, dab) } else { mixed }
+    if tint::has_varied_color(brush) { tinted(brush, mixed, dab) } else { mixed }
 }
 
 /// The mixed colour, varied as the brush varies a dab's.

@@ -45,7 +45,7 @@ impl StrokeDabs {
             scene: scene.clone(),
             tip: PreparedTip::of(brush),
             grain: None,
-            varies_in_color: tint::varies(brush),
+            varies_in_color: tint::has_varied_color(brush),
             dabs: Vec::new(),
             tiles: HashMap::new(),
         }
@@ -148,7 +148,7 @@ impl StrokeDabs {
 
     /// An empty stroke tile for the stroke's dabs. `grain`: the tile's.
     pub fn stroke_tile(&self, grain: Option<Arc<GrainTile>>) -> StrokeTile {
-        let has_colors = self.varies_in_color || self.tip.brings_colors();
+        let has_colors = self.varies_in_color || self.tip.has_own_colors();
         let tile = if has_colors { StrokeTile::colors() } else { StrokeTile::one_color() };
         match grain {
             Some(grain) => tile.under(grain),
@@ -208,7 +208,7 @@ impl TileReach {
         self.scene.is_same(scene)
     }
 
-    pub fn touches(&self, at: TileAt) -> bool {
+    pub fn can_touch(&self, at: TileAt) -> bool {
         self.index(at)
             .and_then(|i| self.bits.get(i / 64).map(|word| word >> (i % 64) & 1 == 1))
             .unwrap_or(false)

@@ -98,7 +98,7 @@ pub fn render_many(
 
 /// The dabs of a stroke; `None` if it is known to touch none of the tiles.
 fn place_dabs(stroke: &Stroke, front: &Scene, tiles: &[TileAt]) -> Option<Arc<StrokeDabs>> {
-    let misses = |support: Arc<TileReach>| !tiles.iter().any(|&at| support.touches(at));
+    let misses = |support: Arc<TileReach>| !tiles.iter().any(|&at| support.can_touch(at));
     (!stroke.known_support(front).is_some_and(misses)).then(|| stroke.stroke_dabs(front))
 }
 

@@ -7,7 +7,7 @@ use crate::raster::tile::TILE;
 
 impl BlendMode {
     /// Its formula also holds for light brighter than white.
-    fn keeps_light(self) -> bool {
+    fn is_valid_above_white(self) -> bool {
         matches!(self, BlendMode::Normal | BlendMode::Multiply)
     }
 }
@@ -17,7 +17,7 @@ impl PlanarTile {
     /// to white see both sides clipped; the backdrop's light beyond white then shows through as far
     /// as the paint leaves it.
     pub fn blend_bright(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {
-        if mix.mode.keeps_light() && !mix.linear {
+        if mix.mode.is_valid_above_white() && !mix.linear {
             return self.blend(mix, paint, coverage);
         }
         let mut excess = self.clone();

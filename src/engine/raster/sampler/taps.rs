@@ -68,7 +68,7 @@ impl Taps {
     /// Writes every tap's rounded colour to a pixel of its own.
     pub fn singles(&self, at: TapPositions, out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
-        if wide::reads(self, at) {
+        if wide::can_read(self, at) {
             return wide::singles(self, at, out);
         }
         self.singles_portably(at, 0, out);
@@ -77,7 +77,7 @@ impl Taps {
     /// Writes the rounded mean of the next `count` taps to each run's pixel of `out`.
     pub fn means(&self, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
-        if wide::reads(self, at) {
+        if wide::can_read(self, at) {
             return wide::means(self, at, runs, out);
         }
         self.means_portably(at, runs, out);
@@ -86,7 +86,7 @@ impl Taps {
     /// Writes the rounded means of the next taps to each group's pixels of `out`.
     pub fn group_means(&self, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
-        if wide::reads(self, at) {
+        if wide::can_read(self, at) {
             return wide::group_means(self, at, groups, out);
         }
         self.group_means_portably(at, groups, out);

@@ -66,7 +66,7 @@ impl SideRow {
         );
     }
 
-    fn reduces(&self, k: usize) -> bool {
+    fn is_reduced(&self, k: usize) -> bool {
         self.tent[k] < 1.0
     }
 
@@ -116,7 +116,7 @@ impl SourceWindow {
         down.fill(&c[..n], &d[..n]);
         let (mut some_cubic, mut some_reduced) = (false, false);
         for k in shown() {
-            let reduces = right.reduces(k) || down.reduces(k);
+            let reduces = right.is_reduced(k) || down.is_reduced(k);
             linear.takes[k] =
                 filter == Resampling::Linear && right.is_linear(k) && down.is_linear(k);
             some_cubic |= !reduces && !linear.takes[k];
@@ -134,7 +134,7 @@ impl SourceWindow {
             if scratch.linear.takes[k] {
                 continue;
             }
-            let reduces = scratch.sides.iter().any(|side| side.reduces(k));
+            let reduces = scratch.sides.iter().any(|side| side.is_reduced(k));
             out[k] = match reduces {
                 true => self.patch(points, k, filter, scratch, taps),
                 false => self.under_cubic(points, k, &scratch.cubic),

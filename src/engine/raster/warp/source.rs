@@ -9,7 +9,7 @@ pub(super) trait PixelSource: Sync {
     /// The part of a rectangle that must be read.
     fn held(&self, rect: Rect) -> Rect;
     /// Whether the border is repeated beyond what is held; else there is nothing.
-    fn continues(&self) -> bool;
+    fn has_continued_border(&self) -> bool;
     /// The pixels of a rectangle, row by row.
     fn read(&self, rect: Rect) -> Vec<[f32; 4]>;
 }
@@ -28,7 +28,7 @@ fn nearest(rect: Rect, within: Rect) -> Rect {
 }
 
 impl PixelSource for GridSource<'_> {
-    fn continues(&self) -> bool {
+    fn has_continued_border(&self) -> bool {
         self.continues
     }
 
@@ -82,7 +82,7 @@ pub(super) struct PlaneSource<'a> {
 }
 
 impl PixelSource for PlaneSource<'_> {
-    fn continues(&self) -> bool {
+    fn has_continued_border(&self) -> bool {
         true
     }
 

@@ -122,7 +122,7 @@ impl Shading {
 
     /// What is seen of the lamps, if the page is shaded.
     pub(super) fn ground_maps(&self, surface: &Surface) -> Vec<Arc<ShareMap>> {
-        match self.shows_ground() {
+        match self.has_ground_shadow() {
             true => self.shadows.maps(surface, &self.lights),
             false => Vec::new(),
         }

@@ -52,17 +52,17 @@ crate::named! {
 
 impl Model {
     /// Whether it is lit by an environment alone: lights have no effect.
-    pub fn needs_environment(self) -> bool {
+    pub fn is_lit_by_environment(self) -> bool {
         matches!(self, Model::DiffuseEnvironment | Model::Mirror | Model::Refraction)
     }
 
     /// Whether lights have an effect on it.
     pub fn has_lamps(self) -> bool {
-        !self.needs_environment() && !matches!(self, Model::LitSphere | Model::AmbientOcclusion)
+        !self.is_lit_by_environment() && !matches!(self, Model::LitSphere | Model::AmbientOcclusion)
     }
 
     /// Whether its rays can meet the surface itself before they reach the environment.
-    pub fn bounces(self) -> bool {
+    pub fn is_bouncing(self) -> bool {
         matches!(self, Model::Mirror | Model::Refraction | Model::Ashikhmin)
     }
 }
@@ -167,12 +167,12 @@ impl Shading {
 
     /// How many bounces its rays make; 0 without an environment, which they look for.
     fn bounces_made(&self) -> u32 {
-        if self.model.bounces() && self.environment.is_some() { self.bounces } else { 0 }
+        if self.model.is_bouncing() && self.environment.is_some() { self.bounces } else { 0 }
     }
 
     /// Whether its model needs an environment but has none: it paints black.
-    pub fn lacks_environment(&self) -> bool {
-        self.model.needs_environment() && self.environment.is_none()
+    pub fn is_without_environment(&self) -> bool {
+        self.model.is_lit_by_environment() && self.environment.is_none()
     }
 
     /// The model with its default material: no environment, no sphere, and one light if it needs
@@ -242,12 +242,12 @@ impl Shading {
     }
 
     /// Whether it lights the picture beneath it in place of a colour of its own.
-    pub fn lights_beneath(&self) -> bool {
+    pub fn is_lighting_beneath(&self) -> bool {
         self.model == Model::Painter && self.painter.beneath
     }
 
     /// Whether it shows something off the surface: a shadow on the page.
-    pub fn shows_ground(&self) -> bool {
+    pub fn has_ground_shadow(&self) -> bool {
         self.model.has_lamps() && self.shadows.has_ground() && !self.lights.is_empty()
     }
 

@@ -24,7 +24,7 @@ impl Shading {
         let rows = bytes.as_chunks_mut::<{ 4 * TILE }>().0;
         let shaded =
             self.shade_rows(scene, at, |y, light, coverage| show(light, coverage, &mut rows[y]));
-        if self.shows_ground() {
+        if self.has_ground_shadow() {
             self.ground_pixels(scene, at, |y, x, share| {
                 let color = [self.shadows.color.r, self.shadows.color.g, self.shadows.color.b];
                 let pixel = &mut rows[y][4 * x..4 * x + 4];
@@ -49,7 +49,7 @@ impl Shading {
                 a[x] = 1.0;
             }
         })?;
-        if self.shows_ground() {
+        if self.has_ground_shadow() {
             let color = self.shadows.color.to_f32();
             self.ground_pixels(scene, at, |y, x, share| {
                 let PixelRow { rgb, a } = &mut pixels.rows_mut()[y];

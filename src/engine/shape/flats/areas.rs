@@ -87,7 +87,7 @@ pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
     // Side by side before corner to corner.
     const STEPS: [(i32, i32); 8] =
         [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
-    let may_take = |labels: &Plane<u32>, x: i32, y: i32| {
+    let can_take = |labels: &Plane<u32>, x: i32, y: i32| {
         labels.get(x, y) == Some(0) && may(x as usize, y as usize)
     };
     let size = (labels.width(), labels.height());
@@ -102,7 +102,7 @@ pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
         let label = labels.at(x, y);
         for (dx, dy) in STEPS {
             let (x, y) = (x as i32 + dx, y as i32 + dy);
-            if may_take(labels, x, y) {
+            if can_take(labels, x, y) {
                 labels.set(x as usize, y as usize, label);
                 ahead.push_back((x as usize, y as usize));
             }

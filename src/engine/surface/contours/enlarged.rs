@@ -52,7 +52,7 @@ impl<'m> EnlargedContours<'m> {
             let mut known = known.into_iter().peekable();
             let at = |x: usize| {
                 let contour = known.next_if(|pixel| pixel.x == x as i32);
-                let ends = coverage[x] > 0 && ends_beside(maps.links, x, y);
+                let ends = coverage[x] > 0 && is_beside_end(maps.links, x, y);
                 (contour.is_some() || ends)
                     .then(|| DividedPixel::new(maps, (x as i32, y as i32), contour))
             };
@@ -203,7 +203,7 @@ impl ContourLine {
 }
 
 /// One of the eight pixels around one is not of the same piece.
-fn ends_beside(of: &Plane<u8>, x: usize, y: usize) -> bool {
+fn is_beside_end(of: &Plane<u8>, x: usize, y: usize) -> bool {
     let has = |dx: i32, dy: i32, link: u8| {
         of.get(x as i32 + dx, y as i32 + dy).is_some_and(|set| set & link != 0)
     };
@@ -245,7 +245,7 @@ mod tests {
                     x: 0,
                     y: 0,
                     share,
-                    own_sees_surface: true,
+                    is_own_on_surface: true,
                     others: 0,
                     other_at,
                     own_turn: Vec2::ZERO,

@@ -37,16 +37,16 @@ pub struct FarSide {
 
 /// Brings a tile's pixels into the order of the far side, and leaves out what does not fit.
 pub(super) fn sort(pixels: &mut Vec<ContourPixel>) {
-    let seen = pixels.iter().filter(|pixel| pixel.sees_surface()).count();
+    let seen = pixels.iter().filter(|pixel| pixel.is_other_on_surface()).count();
     if seen > Contours::MOST_SEEN {
         // The least shared go first.
         pixels.sort_by(|a, b| {
-            a.sees_surface().cmp(&b.sees_surface()).then(a.share.total_cmp(&b.share))
+            a.is_other_on_surface().cmp(&b.is_other_on_surface()).then(a.share.total_cmp(&b.share))
         });
         pixels.truncate(pixels.len() - (seen - Contours::MOST_SEEN));
     }
     let block = |v: i32| v / BLOCK as i32;
-    pixels.sort_by_key(|p| match p.sees_surface() {
+    pixels.sort_by_key(|p| match p.is_other_on_surface() {
         true => (false, block(p.y), block(p.x), p.y, p.x),
         false => (true, 0, 0, p.y, p.x),
     });

@@ -45,7 +45,7 @@ const CREASE_TOLERANCE_PX: f32 = 0.1;
 /// Finds the contours of a surface. The same whatever the number of threads: tiles are found one by
 /// one.
 pub fn find(maps: &ContourMaps) -> Found {
-    let mask = MaskReading { is_soft: is_soft(maps.coverage), holds_means: holds_means(maps) };
+    let mask = MaskReading { is_soft: is_soft(maps.coverage), has_means: has_means(maps) };
     let columns = maps.size.width.div_ceil(TILE as u32) as usize;
     let rows = maps.size.height.div_ceil(TILE as u32) as usize;
     let of_row = |row: usize| {
@@ -77,11 +77,11 @@ struct MaskReading {
     is_soft: bool,
     /// Partly covered pixels hold means of what is covered, else readings of their centres, if
     /// these are covered.
-    holds_means: bool,
+    has_means: bool,
 }
 
 /// Whether most pixels that are hardly covered hold values, although their centres are not covered.
-fn holds_means(maps: &ContourMaps) -> bool {
+fn has_means(maps: &ContourMaps) -> bool {
     let Some(valid) = maps.valid else { return true };
     let counts = (0..maps.coverage.height()).into_par_iter().map(|y| {
         let hardly = maps
@@ -207,11 +207,11 @@ impl Examined {
             told.is_none_or(|told| is_between(told, own.nbar(own_at), Vec2::ZERO))
         };
         let amended = continued.filter(is_mixed).map(|own| own.reading(Vec2::ZERO));
-        let is_of_middle = mask.holds_means && amended.is_none();
+        let is_of_middle = mask.has_means && amended.is_none();
         let turn = |own: Continued| own.nbar(own_at) - own.nbar(Vec2::ZERO);
         let own_turn = continued.filter(|_| !is_of_middle).map_or(Vec2::ZERO, turn);
         let contour =
-            ContourPixel { x, y, share, own_sees_surface: true, others: 0, other_at, own_turn };
+            ContourPixel { x, y, share, is_own_on_surface: true, others: 0, other_at, own_turn };
         Self { contour: Some(contour), amended }
     }
 
@@ -281,7 +281,7 @@ fn across(window: &PixelWindow, linked: u8, is_soft: bool) -> Option<Across> {
         } else {
             let (own, other) = window.pieces(center, there);
             let is_near = window.depth(CENTER) <= window.depth(i);
-            Across { own, other, is_near, is_crease: window.goes_on(link) }
+            Across { own, other, is_near, is_crease: window.is_linked_across(link) }
         };
         let size = if across.other == 0 { window.nothing() } else { across.other }.count_ones();
         // A single pixel is a mixed one, or noise.
@@ -306,7 +306,7 @@ fn contour_pixel(
     let own_at = other_at * (-(1.0 - share) / share.max(0.25));
     let continued = Continued::from(window, own & !(1 << CENTER));
     let own_turn = continued.map_or(Vec2::ZERO, |own| own.nbar(own_at) - own.nbar(Vec2::ZERO));
-    Some(ContourPixel { x, y, share, own_sees_surface: own != 0, others, other_at, own_turn })
+    Some(ContourPixel { x, y, share, is_own_on_surface: own != 0, others, other_at, own_turn })
 }
 
 /// How the middle pixel is shared; `None` where no single edge passes.
@@ -315,7 +315,7 @@ fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
         // Noise and detail turn like a crease here and there; an edge of the surface is straight
         // for some pixels.
         let is_edge = |line: &ContourLine| {
-            line.explains(across.own, window.inside, 0.0, CREASE_TOLERANCE_PX, EXPLAINED_PX)
+            line.is_separating(across.own, window.inside, 0.0, CREASE_TOLERANCE_PX, EXPLAINED_PX)
         };
         let guess = ContourLine::of_mask(across.own, window.inside).filter(is_edge)?;
         let line = ContourLine::of_depths(window, across.own, across.other).unwrap_or(guess);

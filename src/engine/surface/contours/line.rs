@@ -100,7 +100,7 @@ impl ContourLine {
         let wide =
             Self::of_moments(near, known, STRAIGHT_SIGMA, &STRAIGHT_WEIGHTS).filter(|wide| {
                 let is_alike = wide.toward_near.dot(narrow.toward_near) >= ALIKE;
-                is_alike && wide.explains(near, known, 0.0, TOLERANCE_PX, WINDOW_PX)
+                is_alike && wide.is_separating(near, known, 0.0, TOLERANCE_PX, WINDOW_PX)
             });
         Some(wide.unwrap_or(narrow))
     }
@@ -151,13 +151,13 @@ impl ContourLine {
         let line = Self { distance_px: here / steepness, toward_near: slope / steepness };
         [line, line.turned()]
             .into_iter()
-            .find(|line| line.explains(own, own | other, 0.0, TOLERANCE_PX, EXPLAINED_PX))
+            .find(|line| line.is_separating(own, own | other, 0.0, TOLERANCE_PX, EXPLAINED_PX))
     }
 
     /// Pixels within `reach_px` of the middle one lie on their side of the line, but for a little.
     ///
     /// * `bend`: the contour's curvature, as far as it is known, per px.
-    pub fn explains(
+    pub fn is_separating(
         &self,
         near: u64,
         known: u64,

@@ -44,7 +44,7 @@ pub struct ContourPixel {
     /// the pixel, or no surface where they hold none.
     pub share: f32,
     /// Its own population sees a surface.
-    own_sees_surface: bool,
+    is_own_on_surface: bool,
     /// Which pixels of the window around it belong to the other population's piece of surface; none
     /// where it sees no surface.
     others: u64,
@@ -67,18 +67,18 @@ impl ContourPixel {
     }
 
     /// The other population sees a surface.
-    pub fn sees_surface(&self) -> bool {
+    pub fn is_other_on_surface(&self) -> bool {
         self.others != 0
     }
 
     /// Its own population sees a surface: the mask covers the pixel.
-    pub fn own_sees_surface(&self) -> bool {
-        self.own_sees_surface
+    pub fn is_own_on_surface(&self) -> bool {
+        self.is_own_on_surface
     }
 
     /// Both populations see a surface.
     pub fn is_between_parts(&self) -> bool {
-        self.own_sees_surface && self.sees_surface()
+        self.is_own_on_surface && self.is_other_on_surface()
     }
 }
 
@@ -143,7 +143,7 @@ impl Contours {
         for mut tile in found {
             let start = contours.pixels.len();
             far_side::sort(&mut tile);
-            let seen = tile.partition_point(ContourPixel::sees_surface);
+            let seen = tile.partition_point(ContourPixel::is_other_on_surface);
             let far_row = contours.far_rows.len() as u32;
             contours.pixels.extend(&tile);
             contours.far_rows.extend(far_side::rows(start..start + seen));

@@ -54,7 +54,7 @@ impl ContourLine {
             (0..PASSES).try_fold(start, |fitted, _| normals.rim(fitted.line))?;
         let in_reach = (-1.2..1.5).contains(&line.distance_px)
             && line.toward_near.dot(guess.toward_near) >= ALIKE;
-        let agrees = in_reach && line.explains(near, known, bend, TOLERANCE_PX, EXPLAINED_PX);
+        let agrees = in_reach && line.is_separating(near, known, bend, TOLERANCE_PX, EXPLAINED_PX);
         if !agrees || explained < LEAST_EXPLAINED {
             return None;
         }

@@ -171,7 +171,8 @@ fn a_shaded_rim_reads_the_middle_of_what_is_covered_whether_or_not_its_maps_do()
     };
     for told in [Told::OfCenters, Told::Means, Told::OfNothing] {
         let shaded = shaded_surface(told);
-        for pixel in shaded.contours().pixels().iter().filter(|pixel| !pixel.sees_surface()) {
+        for pixel in shaded.contours().pixels().iter().filter(|pixel| !pixel.is_other_on_surface())
+        {
             let covered = samples(pixel.x, pixel.y).flatten().count();
             assert!((pixel.share - covered as f32 / 144.0).abs() < 0.01, "{pixel:?}");
         }
@@ -226,7 +227,7 @@ fn rows_hold_every_contour_pixel_of_a_tile_once() {
     let surface = surface(0);
     for at in TileAt::covering(SIZE.rect()) {
         let Some(contours) = surface.contours().on(at) else { continue };
-        let key = |p: &ContourPixel| (p.y, p.x, p.sees_surface());
+        let key = |p: &ContourPixel| (p.y, p.x, p.is_other_on_surface());
         let rows = at.rect().y0..at.rect().y1;
         let mut found: Vec<_> =
             rows.flat_map(|y| contours.in_row(y).map(key).collect::<Vec<_>>()).collect();

@@ -94,7 +94,7 @@ impl<'m> PixelWindow<'m> {
     }
 
     /// The surface of the middle pixel goes on across one of its sides, if at a crease.
-    pub fn goes_on(&self, link: u8) -> bool {
+    pub fn is_linked_across(&self, link: u8) -> bool {
         self.maps.all_links.at(self.x as usize, self.y as usize) & link != 0
     }
 

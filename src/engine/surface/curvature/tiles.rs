@@ -121,7 +121,7 @@ impl TileScratch {
             });
             let [hxx, hxy, hyy] = out.each_mut().map(|plane| &mut plane[from..from + tile.cols]);
             let slopes = [&sx[y * STRIDE..(y + 3) * STRIDE], &sy[y * STRIDE..(y + 3) * STRIDE]];
-            if all_linked(links) {
+            if are_all_linked(links) {
                 difference_joined_row(slopes, hxx, hxy, hyy);
             } else {
                 difference_row(slopes, links, hxx, hxy, hyy);
@@ -147,7 +147,7 @@ impl TileScratch {
         let reached = first.max(0) as usize..(tile.x0 + tile.cols + 1 + reach).min(links.len());
         let mut joined_chunks = [true; CHUNKS];
         let mut joined_down = [true; CHUNKS];
-        if all_linked(&links[reached]) {
+        if are_all_linked(&links[reached]) {
             self.down[at.clone()].fill(1.0);
         } else {
             let last_row = y + 1 == surface.size().height as usize;
@@ -160,9 +160,10 @@ impl TileScratch {
             let down = |l: u8| if last_row { 1.0 } else { bit(l, links::DOWN) };
             copy_row(links, first + reach as isize, 1.0, &mut self.down[at.clone()], down);
             joined_chunks = std::array::from_fn(|i| {
-                all_set(&self.joined[i * LANES..(i + 1) * LANES + 2 * reach])
+                are_all_set(&self.joined[i * LANES..(i + 1) * LANES + 2 * reach])
             });
-            joined_down = std::array::from_fn(|i| all_set(lanes(&self.down, at.start + i * LANES)));
+            joined_down =
+                std::array::from_fn(|i| are_all_set(lanes(&self.down, at.start + i * LANES)));
         }
         self.joined_rows[row] =
             std::array::from_fn(|i| if joined_down[i] { above[i] + 1 } else { 0 });
@@ -269,12 +270,12 @@ struct ColumnTaps<'a> {
 
 crate::widest! {
     /// Every pixel continues into its four neighbours.
-    pub(super) fn all_linked(links: &[u8]) -> bool {
+    pub(super) fn are_all_linked(links: &[u8]) -> bool {
         links.iter().fold(15, |all, &l| all & l) == 15
     }
 
     /// No joint is missing.
-    fn all_set(joined: &[f32]) -> bool {
+    fn are_all_set(joined: &[f32]) -> bool {
         joined.iter().fold(true, |all, &j| all & (j != 0.0))
     }
 

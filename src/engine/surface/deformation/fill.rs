@@ -5,7 +5,7 @@
 mod kernels;
 mod rows;
 
-pub(super) use rows::fill_dab;
+pub(super) use rows::try_fill_dab;
 
 use super::{Deformation, LaidPlanes, Pin};
 use crate::math::{Rect, simd::prefetch};
@@ -72,7 +72,7 @@ pub(super) fn fill(
             }
             let (out_x, out_y) = (&mut row_x[at..at + n], &mut row_y[at..at + n]);
             let is_laid = unwrapped.zip(maps).is_some_and(|((planes, surface), maps)| {
-                laid_span(planes, surface, maps, out_x, out_y)
+                try_laid_span(planes, surface, maps, out_x, out_y)
             });
             if !is_laid {
                 let [place_x, place_y] = &mut scratch.place;
@@ -89,7 +89,7 @@ pub(super) fn fill(
 
 /// D_s over a span that the surface covers wholly; `false` where it does not, and nothing is
 /// written.
-fn laid_span(
+fn try_laid_span(
     planes: &LaidPlanes,
     surface: &Surface,
     at: MapSpan,

@@ -169,8 +169,8 @@ fn each<const N: usize>(
             *figure = row[i];
         }
         let bent = bend.image(figures, (low, high), flat);
-        let outside = if extent.may_hold(flat) { u32::from(all[i] < 1.0) } else { 0 };
-        touched[i] = outside | if extent.may_hold(bent) { u32::from(some[i] > 0.0) } else { 0 };
+        let outside = if extent.can_hold(flat) { u32::from(all[i] < 1.0) } else { 0 };
+        touched[i] = outside | if extent.can_hold(bent) { u32::from(some[i] > 0.0) } else { 0 };
         let longest = if some[i] > 0.0 { bent.pixel } else { 1.0 };
         // What is no number stays none.
         pixel[i] = if longest < 1.0 { 1.0 } else { longest };
@@ -181,7 +181,7 @@ crate::widest! {
     fn still(corner: Vec2, extent: DabExtent, touched: &mut [u32; BLOCKS]) {
         for (i, touched) in touched.iter_mut().enumerate() {
             let (low, high) = corners(corner, i);
-            *touched = u32::from(extent.may_hold(BlockImage::flat(low, high)));
+            *touched = u32::from(extent.can_hold(BlockImage::flat(low, high)));
         }
     }
 

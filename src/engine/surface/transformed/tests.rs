@@ -52,7 +52,7 @@ fn values(surface: &Surface) -> Vec<Vec<u32>> {
         surface.normal_planes().into_iter().chain([surface.depth_plane()]).map(bits).collect();
     all.extend([surface.coverage_plane(), surface.links_plane()].map(bytes));
     let pixel = |p: &crate::surface::ContourPixel| {
-        [p.x as u32, p.y as u32, p.share.to_bits(), p.sees_surface().into()]
+        [p.x as u32, p.y as u32, p.share.to_bits(), p.is_other_on_surface().into()]
     };
     all.push(surface.contours().pixels().iter().flat_map(pixel).collect());
     all

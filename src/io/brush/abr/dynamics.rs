@@ -65,21 +65,21 @@ pub fn carried<'a>(
 ) -> AbrConversion<'a> {
     let mut carried =
         AbrConversion { preset, brush: Brush { dynamics: Dynamics::none(), ..brush }, notes };
-    if preset.flag("useTipDynamics") {
+    if preset.is_set("useTipDynamics") {
         carried.shape();
     }
-    if preset.flag("useScatter") {
+    if preset.is_set("useScatter") {
         carried.scatter();
     }
-    if preset.flag("usePaintDynamics") {
+    if preset.is_set("usePaintDynamics") {
         carried.follow(Property::Opacity, "opVr", "minimumOpacity");
         carried.follow(Property::Flow, "prVr", "minimumFlow");
     }
-    if preset.flag("useColorDynamics") {
+    if preset.is_set("useColorDynamics") {
         carried.color();
     }
-    let nested = preset.object("dualBrush").is_some_and(|dual| dual.flag("useDualBrush"));
-    let is_on = |key: &str| preset.flag(key) || (key == "useDualBrush" && nested);
+    let nested = preset.object("dualBrush").is_some_and(|dual| dual.is_set("useDualBrush"));
+    let is_on = |key: &str| preset.is_set(key) || (key == "useDualBrush" && nested);
     let left_out: Vec<&str> =
         LEFT_OUT.iter().filter(|(key, _)| is_on(key)).map(|(_, word)| *word).collect();
     if !left_out.is_empty() {
@@ -158,7 +158,7 @@ impl AbrConversion<'_> {
         if let Some(roundness) = self.preset.object("roundnessDynamics") {
             self.round(roundness);
         }
-        if self.preset.flag("flipX") || self.preset.flag("flipY") {
+        if self.preset.is_set("flipX") || self.preset.is_set("flipY") {
             self.notes.push("its dabs are not mirrored at random".to_owned());
         }
     }
@@ -194,7 +194,7 @@ impl AbrConversion<'_> {
         if let Some(input) = dynamics.and_then(|part| self.input(part)) {
             self.drive(Property::Scatter, input, Some(Curve::Share(1.0)));
         }
-        if !self.preset.flag("bothAxes") && self.brush.scatter > 0.0 {
+        if !self.preset.is_set("bothAxes") && self.brush.scatter > 0.0 {
             self.notes.push("it scatters to all sides, not across the stroke alone".to_owned());
         }
         // Several dabs at a place are as dense as places that many times closer.
@@ -226,12 +226,12 @@ impl AbrConversion<'_> {
 
     /// The texture that it takes paint away by; its pattern is in the collection.
     pub fn textured(&mut self, file: &Path, patterns: &[PatternResource], tips: &mut TipNames) {
-        if !self.preset.flag("useTexture") {
+        if !self.preset.is_set("useTexture") {
             return;
         }
         let id = self.preset.object("Txtr").and_then(|texture| texture.text("Idnt"));
         let pattern = id.and_then(|id| patterns.iter().find(|pattern| pattern.id() == id));
-        let inverted = self.preset.flag("InvT");
+        let inverted = self.preset.is_set("InvT");
         let Some(picture) = pattern.and_then(|pattern| grain_picture(pattern, inverted)) else {
             return self
                 .notes

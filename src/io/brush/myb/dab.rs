@@ -152,7 +152,7 @@ fn pickup(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
 impl MyPaintSettings<'_> {
     /// What `opaque` is multiplied by: the pressure, if the file does not say.
     fn opaque_multiply(&mut self) -> Added {
-        if self.has("opaque_multiply") {
+        if self.has_setting("opaque_multiply") {
             self.added("opaque_multiply", 0.0)
         } else {
             self.pressure()

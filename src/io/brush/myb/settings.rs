@@ -60,7 +60,7 @@ impl<'a> MyPaintSettings<'a> {
         self.all.get(name).and_then(|value| number(value.get("base_value")?)).unwrap_or(0.0)
     }
 
-    pub fn has(&self, name: &str) -> bool {
+    pub fn has_setting(&self, name: &str) -> bool {
         self.all.contains_key(name)
     }
 

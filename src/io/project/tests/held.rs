@@ -24,7 +24,7 @@ fn of(layers: Vec<Layer>) -> Document {
 }
 
 /// It fits, and comes back equal when saved and opened: nothing became pixels.
-fn comes_back(document: &Document) -> Vec<u8> {
+fn is_stored_as(document: &Document) -> Vec<u8> {
     assert_eq!(document.fits(None), Ok(()));
     let bytes = written(document);
     let back = read_back(&bytes);
@@ -62,20 +62,20 @@ fn forty_nested_groups_come_back() {
         let group = Group { layers: vec![Arc::new(inner)], pass_through: i.is_multiple_of(2) };
         Layer::new(format!("Group {i}"), Content::Group(group))
     };
-    comes_back(&of(vec![(0..40).fold(fill(), into)]));
-    comes_back(&of(vec![(0..Document::DEEPEST).fold(strokes(vec![drawn(5)]), into)]));
+    is_stored_as(&of(vec![(0..40).fold(fill(), into)]));
+    is_stored_as(&of(vec![(0..Document::DEEPEST).fold(strokes(vec![drawn(5)]), into)]));
 }
 
 #[test]
 fn two_thousand_and_a_hundred_layers_come_back() {
     let named =
         |i: usize| Layer { name: format!("Layer {i}"), opacity: 1.0 / (i + 1) as f32, ..fill() };
-    comes_back(&of((0..2_100).map(named).collect()));
+    is_stored_as(&of((0..2_100).map(named).collect()));
 }
 
 #[test]
 fn a_stroke_of_nine_hundred_thousand_readings_comes_back() {
-    let bytes = comes_back(&of(vec![strokes(vec![drawn(900_000), drawn(40)])]));
+    let bytes = is_stored_as(&of(vec![strokes(vec![drawn(900_000), drawn(40)])]));
     let description = entries(&bytes).into_iter().find(|(name, _)| name == DOCUMENT).unwrap().1;
     assert!(description.len() < 12_000_000, "{} bytes", description.len());
 }
@@ -94,7 +94,7 @@ fn sculpting_comes_back_whatever_the_number_of_readings() {
         PartKind::Sweep { balls: vec![Ball { at: vec2(24.0, 20.0), radius: 15.0 }], puff: 1.0 };
     let sculpt = PartKind::Sculpt { on: "ball".into(), strokes };
     let parts = [Part::new("ball", ball), Part::new("sculpt", sculpt)];
-    comes_back(&of(vec![fill()]).with_parts(parts.map(Arc::new).to_vec()));
+    is_stored_as(&of(vec![fill()]).with_parts(parts.map(Arc::new).to_vec()));
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn factors_of_any_digits_come_back() {
         let shape = TransformShape::Matrix([1.0 + a, b, -c, 1.0 + d, 90.0 * e, -1e-9 * f]);
         Layer { transform: Some(LayerTransform { shape, filter: Default::default() }), ..fill() }
     };
-    comes_back(&of((0..500).map(turned).collect()));
+    is_stored_as(&of((0..500).map(turned).collect()));
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn a_mask_that_is_a_step_comes_back() {
         DerivedMask::Depth { from: 1.0, to: 0.0 },
     ];
     let masked = |kind| Layer { mask: Some(LayerMask::new(kind)), ..fill() };
-    comes_back(&of(kinds.into_iter().map(masked).collect()));
+    is_stored_as(&of(kinds.into_iter().map(masked).collect()));
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn a_material_under_an_environment_keeps_its_lamp() {
         ..Shading::new(Model::Ashikhmin)
     };
     assert_eq!(shading.lights.len(), 1);
-    comes_back(&of(vec![Layer::new("Metal", Content::Shading(Live::new(shading)))]));
+    is_stored_as(&of(vec![Layer::new("Metal", Content::Shading(Live::new(shading)))]));
 }
 
 #[test]

@@ -86,7 +86,7 @@ impl PointerAction {
 fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) {
     session.drop_gesture();
     let layout = session.active().and_then(OpenDocument::layout);
-    if layout.is_some() && !unwrapped::works(tool) {
+    if layout.is_some() && !unwrapped::is_for_unwrapped(tool) {
         let how =
             "This tool works in the picture: leave the unwrapped view (View, Unwrapped) to use it.";
         return session.notes.push(how.into());
@@ -172,7 +172,7 @@ fn targets(
     px_per_pt: f32,
 ) -> SnapTargets {
     let moving = if matches!(tool, ToolKind::Move | ToolKind::Transform) { chosen } else { &[] };
-    match is_line || tool.snaps() {
+    match is_line || tool.is_snapping_tool() {
         true => SnapTargets::of(document, &session.tools.aids, moving, px_per_pt),
         false => SnapTargets::default(),
     }
@@ -239,8 +239,8 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
                 .and_then(|id| document.layer(id))
                 .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
     let looks_only = is_moved_whole
-        || tool.shapes()
-        || tool.selects()
+        || tool.is_shape_tool()
+        || tool.is_selection_tool()
         || matches!(
             tool,
             ToolKind::Eyedropper

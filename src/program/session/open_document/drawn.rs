@@ -54,7 +54,7 @@ fn alone(document: &Document, id: LayerId) -> Option<Document> {
         let mut found = false;
         let layers = layers.iter().map(|layer| {
             let mut next = Layer::clone(layer);
-            next.visible = layer.id == id || (layer.visible && layer.content.shapes());
+            next.visible = layer.id == id || (layer.visible && layer.content.is_shaping_surface());
             if let Some(group) = next.content.group_mut()
                 && layer.id != id
             {

@@ -16,17 +16,17 @@ pub const PICTURES: [&str; 18] = [
 
 /// Whether a file is a document by the ending of its name.
 pub fn is_document(file: &Path) -> bool {
-    ends_in(file, &DOCUMENTS)
+    has_extension(file, &DOCUMENTS)
 }
 
 /// Whether a document can be saved to a file of this name.
 pub fn is_saved_to(file: &Path) -> bool {
-    ends_in(file, &SAVED)
+    has_extension(file, &SAVED)
 }
 
 /// Whether a file of this name holds all of a document, for every program that opens it.
-pub fn holds_everything(file: &Path) -> bool {
-    !ends_in(file, &SAVED[1..])
+pub fn is_whole_document(file: &Path) -> bool {
+    !has_extension(file, &SAVED[1..])
 }
 
 /// Extensions of the files that a picture is exported to, or the whole document for Photoshop.
@@ -34,20 +34,20 @@ pub fn exported() -> impl Iterator<Item = &'static str> {
     ExportFormat::ALL.iter().map(|(_, extension)| *extension).chain([SAVED[1]])
 }
 
-pub(super) fn ends_in(file: &Path, extensions: &[&str]) -> bool {
+pub(super) fn has_extension(file: &Path, extensions: &[&str]) -> bool {
     let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     extensions.contains(&extension.as_str())
 }
 
 /// The files of a folder that a document could be opened from, for a picker.
 pub fn is_openable(file: &Path) -> bool {
-    ends_in(file, &DOCUMENTS) || ends_in(file, &PICTURES)
+    has_extension(file, &DOCUMENTS) || has_extension(file, &PICTURES)
 }
 
 /// With one of these extensions, else with this one: it is appended, because what follows a name's
 /// last point may be part of the name.
 pub fn with_document_extension(file: PathBuf, extension: &str, extensions: &[&str]) -> PathBuf {
-    if ends_in(&file, extensions) { file } else { file.with_added_extension(extension) }
+    if has_extension(&file, extensions) { file } else { file.with_added_extension(extension) }
 }
 
 /// A name without the extension of a file that can be opened or written; unchanged if it has none.

@@ -2,7 +2,7 @@
 //! here: pairs of names (`io::maps::pairs`).
 
 use super::FileUse;
-use super::endings::{PICTURES, ends_in};
+use super::endings::{PICTURES, has_extension};
 use crate::Result;
 use crate::document::Progress;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// The normals of a file, and its depth if it holds both.
 pub(super) fn with_own_depth(file: &Path) -> SurfaceSource {
-    maps_of(Some(file), Some(file).filter(|file| holds_depth(file)))
+    maps_of(Some(file), Some(file).filter(|file| has_depth(file)))
 }
 
 /// A surface made of these files, with every convention detected.
@@ -40,9 +40,9 @@ pub fn import_watched(
 }
 
 /// Whether an EXR of normals holds depth too, as renderers write them.
-fn holds_depth(file: &Path) -> bool {
+fn has_depth(file: &Path) -> bool {
     let budget = Budget::of_this_machine();
-    ends_in(file, &["exr"])
+    has_extension(file, &["exr"])
         && read_file(file, budget.file_bytes)
             .and_then(|bytes| inspect::describe(file, &bytes, &budget))
             .is_ok_and(|found| !found.depths.is_empty())
@@ -77,7 +77,7 @@ pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
         .flatten();
     let mut others: Vec<PathBuf> = beside
         .map(|entry| entry.path())
-        .filter(|other| other != file && ends_in(other, &PICTURES))
+        .filter(|other| other != file && has_extension(other, &PICTURES))
         .collect();
     others.sort_unstable();
     for other in others {

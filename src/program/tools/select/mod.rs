@@ -69,7 +69,7 @@ impl SelectSettings {
 /// The pen comes down with one of the selection tools.
 pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {
     match kind {
-        ToolKind::SelectRectangle | ToolKind::SelectEllipse if moves(context, pen) => {
+        ToolKind::SelectRectangle | ToolKind::SelectEllipse if is_grabbing(context, pen) => {
             shapes::moving(context, pen)
         }
         ToolKind::SelectRectangle => shapes::press(context, pen, shapes::SelectionShape::Rectangle),
@@ -87,7 +87,7 @@ pub fn closed(document: &Document, points: &[Vec2], settings: &SelectSettings) -
 }
 
 /// Whether the pen grabs the present selection: it comes down within it, and would replace it.
-fn moves(context: &ToolContext, pen: PenSample) -> bool {
+fn is_grabbing(context: &ToolContext, pen: PenSample) -> bool {
     let at = pen.place().floor().as_ivec2();
     let document = context.document;
     // A drag within a selection of the whole canvas makes a new rectangle.

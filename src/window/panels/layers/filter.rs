@@ -25,7 +25,7 @@ impl LayerFilter {
         *self == Self::default()
     }
 
-    fn finds(&self, layer: &Layer) -> bool {
+    fn is_match(&self, layer: &Layer) -> bool {
         layer.name.to_lowercase().contains(&self.text.to_lowercase())
             && self.kind.is_none_or(|kind| layer.content.label() == kind)
             && self.label.is_none_or(|label| layer.label == label)
@@ -56,7 +56,7 @@ impl LayerFilter {
             if let Some(group) = group {
                 self.list(&group.layers, depth + 1, is_folded, &mut inner);
             }
-            if !inner.is_empty() || self.finds(layer) {
+            if !inner.is_empty() || self.is_match(layer) {
                 rows.push((layer, depth));
                 rows.append(&mut inner);
             }

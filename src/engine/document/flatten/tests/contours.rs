@@ -250,7 +250,7 @@ fn disc(hard: bool) -> Arc<Surface> {
 /// Every rim pixel of a disc: how much of it is covered, and what it shows.
 fn rim(surface: &Arc<Surface>, pixels: impl Fn(i32, i32) -> [f32; 4]) -> Vec<(f32, [f32; 4])> {
     let covered = |p: &crate::surface::ContourPixel| {
-        if p.own_sees_surface() { p.share } else { 1.0 - p.share }
+        if p.is_own_on_surface() { p.share } else { 1.0 - p.share }
     };
     let mut rim: Vec<_> =
         surface.contours().pixels().iter().map(|p| (covered(p), pixels(p.x, p.y))).collect();

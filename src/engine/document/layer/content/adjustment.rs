@@ -30,7 +30,7 @@ impl LayerKind for LiveAdjustment {
         Content::Adjustment(self.clone())
     }
 
-    fn goes_with_shape(&self) -> bool {
+    fn is_tied_to_shape(&self) -> bool {
         false
     }
 

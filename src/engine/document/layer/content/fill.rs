@@ -27,7 +27,7 @@ impl LayerKind for Color {
         Content::Fill(*self)
     }
 
-    fn goes_with_shape(&self) -> bool {
+    fn is_tied_to_shape(&self) -> bool {
         false
     }
 

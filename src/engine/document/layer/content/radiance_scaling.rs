@@ -32,7 +32,7 @@ impl LayerKind for RadianceScaling {
         Content::RadianceScaling(scaling)
     }
 
-    fn goes_with_shape(&self) -> bool {
+    fn is_tied_to_shape(&self) -> bool {
         false
     }
 

@@ -21,7 +21,7 @@ impl Marks for Shading {
     }
 
     /// Off the surface it shows nothing.
-    fn stay(&self) -> bool {
+    fn is_kept_off_surface(&self) -> bool {
         false
     }
 }
@@ -54,18 +54,22 @@ impl LayerKind for Live<Shading> {
     }
 
     fn role(&self) -> Role<'_> {
-        if self.params().lights_beneath() { Role::Adjusts(self.params()) } else { Role::Paints }
+        if self.params().is_lighting_beneath() {
+            Role::Adjusts(self.params())
+        } else {
+            Role::Paints
+        }
     }
 
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
-        if self.params().lights_beneath() {
+        if self.params().is_lighting_beneath() {
             return TileContent::Nothing;
         }
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
 
     fn painted_far_side(&self, scene: &FarScene) -> TileContent {
-        if self.params().lights_beneath() {
+        if self.params().is_lighting_beneath() {
             return TileContent::Nothing;
         }
         // Off the surface it shows nothing.
@@ -77,11 +81,11 @@ impl LayerKind for Live<Shading> {
     }
 
     fn marks(&self) -> Option<&dyn Marks> {
-        (!self.params().lights_beneath()).then_some(self.params() as &dyn Marks)
+        (!self.params().is_lighting_beneath()).then_some(self.params() as &dyn Marks)
     }
 
-    fn shows_off_surface(&self) -> bool {
-        self.params().shows_ground()
+    fn is_shown_off_surface(&self) -> bool {
+        self.params().has_ground_shadow()
     }
 
     fn drafted(&self) -> Option<Content> {
@@ -137,10 +141,10 @@ impl LayerKind for Live<Shading> {
     fn lacks(&self) -> Option<(&'static str, String)> {
         let shading = self.params();
         let reason = || format!("is missing; “{}” shows nothing else", shading.model.name());
-        shading.lacks_environment().then(|| ("environment", reason()))
+        shading.is_without_environment().then(|| ("environment", reason()))
     }
 
-    fn goes_with_shape(&self) -> bool {
+    fn is_tied_to_shape(&self) -> bool {
         false
     }
 

@@ -72,7 +72,7 @@ impl WarpTiles {
             let tile = self.source.cell(from).map(|cell| once(cell, || compose(from)).clone());
             grid.set(from, tile.flatten());
         }
-        let border = self.warp.continues().then_some(self.canvas);
+        let border = self.warp.has_continued_border().then_some(self.canvas);
         warped_tile_within(&grid, border, map, self.warp.filter, at)
     }
 }

@@ -78,7 +78,7 @@ impl CutLines {
 
 impl Cut {
     /// Whether a part is nearer than the one that a whole pixel belongs to.
-    fn may_take(&self, part: u16, x: usize, y: usize) -> bool {
+    fn can_take(&self, part: u16, x: usize, y: usize) -> bool {
         let owner = self.owner.at(x, y);
         part != NO_PART && owner > 0 && u32::from(part) + 1 > owner && self.drawn.at(x, y)[3] == 255
     }
@@ -108,14 +108,14 @@ fn is_off_color(cut: &Cut, part: u16, (x, y): (usize, usize)) -> bool {
 fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     let size = (cut.drawn.width(), cut.drawn.height());
     let is_marked = |x: usize, y: usize| marks.at(x, y) > 0;
-    let may_take = |part: u16, x: usize, y: usize| {
-        is_marked(x, y) && cut.may_take(part, x, y) && cut.is_ink_between(part, (x, y))
+    let can_take = |part: u16, x: usize, y: usize| {
+        is_marked(x, y) && cut.can_take(part, x, y) && cut.is_ink_between(part, (x, y))
     };
     let seed = |(x, y): (usize, usize)| {
         let beside =
             around(x, y, 1).filter_map(|(x, y)| cut.nearest.get(x, y)).map(|[first, _]| first);
         let part = beside.filter(|part| *part != NO_PART).max()?;
-        may_take(part, x, y).then_some((x, y, part))
+        can_take(part, x, y).then_some((x, y, part))
     };
     let seeds: Vec<(usize, usize, u16)> =
         pixels(size).filter(|(x, y)| is_marked(*x, *y)).filter_map(seed).collect();
@@ -135,7 +135,7 @@ fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     };
     let widths: Vec<usize> = count(&own_side).into_iter().zip(count(&seeds)).map(width).collect();
     let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
-    let found = walked(cut, &seeds, &widths, may_take);
+    let found = walked(cut, &seeds, &widths, can_take);
     found.into_iter().for_each(|(x, y, part)| taker.set(x, y, part));
     taker
 }
@@ -178,7 +178,7 @@ fn soft_border(cut: &Cut, taker: &Plane<u16>) -> Vec<(usize, usize, u16)> {
         let part = taker.at(x, y);
         let free = around(x, y, 1).filter(|(x, y)| taker.get(*x, *y) == Some(NO_PART));
         let free =
-            free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| cut.may_take(part, *x, *y));
+            free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| cut.can_take(part, *x, *y));
         border.extend(free.map(|(x, y)| (x, y, part)));
     }
     border

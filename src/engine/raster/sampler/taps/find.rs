@@ -13,7 +13,7 @@ crate::widest! {
             return [-1; 2];
         }
         let (wide, high) = (w as f32, h as f32);
-        if all_lie(at.x, 0.5, wide - 0.5) && all_lie(at.y, 0.5, high - 0.5) {
+        if are_within(at.x, 0.5, wide - 0.5) && are_within(at.y, 0.5, high - 0.5) {
             return find_folded(at, |c, n| pair(c - 0.5, n), index, across, down);
         }
         match at.outside {
@@ -21,7 +21,10 @@ crate::widest! {
             Outside::Clamp => find_folded(at, |c, n| pair(within(c, n) - 0.5, n), index, across, down),
             Outside::Repeat => find_folded(at, |c, n| pair_or_seam(repeated(c, n), n), index, across, down),
             // Few pictures are bent so far that they repeat twice.
-            Outside::Mirror if all_lie(at.x, -2.0 * wide, 1.999 * wide) && all_lie(at.y, -2.0 * high, 1.999 * high) => {
+            Outside::Mirror
+                if are_within(at.x, -2.0 * wide, 1.999 * wide)
+                    && are_within(at.y, -2.0 * high, 1.999 * high) =>
+            {
                 find_folded(at, |c, n| pair(within(mirrored_once(c, n), n) - 0.5, n), index, across, down)
             }
             Outside::Mirror => find_folded(at, |c, n| pair(within(mirrored(c, n), n) - 0.5, n), index, across, down),
@@ -31,7 +34,7 @@ crate::widest! {
 
 /// Every position is a number between two.
 #[inline(always)]
-fn all_lie(positions: &[f32], low: f32, high: f32) -> bool {
+fn are_within(positions: &[f32], low: f32, high: f32) -> bool {
     positions.iter().fold(0, |beyond, &c| beyond | u32::from(!(c >= low && c <= high))) == 0
 }
 

@@ -6,7 +6,7 @@ use std::arch::x86_64::*;
 
 /// Whether the functions below may run: the processor has AVX2, and every tap's texels are the
 /// level's.
-pub fn reads(taps: &Taps, at: TapPositions) -> bool {
+pub fn can_read(taps: &Taps, at: TapPositions) -> bool {
     let width = at.level.size.width as usize;
     let all_within =
         usize::try_from(taps.range[1]).is_ok_and(|most| most + width + 1 < at.level.texels.len());
@@ -15,7 +15,7 @@ pub fn reads(taps: &Taps, at: TapPositions) -> bool {
 
 /// As `Taps::singles`; call only where [`reads`] said so.
 pub fn singles(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
-    assert!(reads(taps, at));
+    assert!(can_read(taps, at));
     // SAFETY: the processor has AVX2, and no index lies beyond `range`, whose texels are in the
     // level.
     unsafe {
@@ -29,7 +29,7 @@ pub fn singles(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
 
 /// As `Taps::means`; call only where [`reads`] said so.
 pub fn means(taps: &Taps, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
-    assert!(reads(taps, at));
+    assert!(can_read(taps, at));
     // SAFETY: as above.
     unsafe {
         if taps.range[0] < 0 {
@@ -42,7 +42,7 @@ pub fn means(taps: &Taps, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]
 
 /// As `Taps::group_means`; call only where [`reads`] said so.
 pub fn group_means(taps: &Taps, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
-    assert!(reads(taps, at));
+    assert!(can_read(taps, at));
     // SAFETY: as above.
     unsafe {
         if taps.range[0] < 0 {

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 /// D in some columns of each row of `rect`; `false`, and nothing is written, where that is not one
 /// anchor's plain offset over pixels that the maps hold.
-pub(in crate::surface::deformation) fn fill_dab(
+pub(in crate::surface::deformation) fn try_fill_dab(
     deformation: &Deformation,
     rect: Rect,
     columns: impl Fn(i32) -> Range<i32>,
@@ -26,7 +26,7 @@ pub(in crate::surface::deformation) fn fill_dab(
         return false;
     }
     if let Some(planes) = &deformation.planes {
-        return fill_laid(deformation, surface, planes, rect, columns, out_x, out_y);
+        return try_fill_laid(deformation, surface, planes, rect, columns, out_x, out_y);
     }
     if matches!(kernel, Kernel::Still) {
         return false;
@@ -69,7 +69,7 @@ fn span_of(rect: Rect, columns: Range<i32>, y: i32) -> MapSpan {
 }
 
 /// The same for a dab on the unwrapped surface: what other objects cover lies out of its reach.
-fn fill_laid(
+fn try_fill_laid(
     deformation: &Deformation,
     surface: &Surface,
     planes: &LaidPlanes,

@@ -42,7 +42,7 @@ pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {
 pub(super) fn lit_layer(model: Model, document: &Document) -> Layer {
     let mut shading = Shading::fitting(model, document.size);
     let is_painted =
-        document.walk().iter().any(|(_, layer)| layer.visible && layer.content.paints());
+        document.walk().iter().any(|(_, layer)| layer.visible && layer.content.has_pixels());
     shading.painter.beneath = model == Model::Painter && is_painted;
     let name = document.free_layer_name(&model_name(model));
     let mut layer = Layer::new(name, Content::Shading(Live::new(shading)));

@@ -159,7 +159,7 @@ fn selected(open: &OpenDocument) -> Result<LayerId, PartRefusal> {
 fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
     let document = open.document();
     let layer = document.layer(selected(open)?).ok_or(NO_LAYER)?;
-    if !layer.content.paints() {
+    if !layer.content.has_pixels() {
         return Err("This layer has no paint of its own, so it has no outline. Select another.");
     }
     if document.layer_named(&layer.name).is_none_or(|named| named.id != layer.id) {

@@ -67,7 +67,7 @@ fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
         ["snowman", "Base"]
     );
     let Content::Shading(light) = &document.layers[1].content else { panic!("no light") };
-    assert!(light.params().lights_beneath() && light.params().shadows.on);
+    assert!(light.params().is_lighting_beneath() && light.params().shadows.on);
     let surface = document.surface.as_ref().unwrap();
     assert!(surface.normal(48, 84).z > 0.98 && surface.normal(70, 84).x > 0.3);
     let lit = flatten(document, &Progress::default()).unwrap();

@@ -232,7 +232,7 @@ fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[
                 flatten_rounding_once(document, &progress)
                     .map(|tiles| tiles.to_straight_rgba(document.size.rect()))
             };
-            let once = document.shows_rounding().then(once).flatten();
+            let once = document.is_rounding_visible().then(once).flatten();
             same_bytes(
                 "exported, another picture",
                 once.as_deref().unwrap_or(picture),
