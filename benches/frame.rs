@@ -70,7 +70,7 @@ fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Co
     }))
 }
 
-/// A ramp of three colours to a point.
+/// A ramp of three colors to a point.
 fn ramp(to: Vec2) -> Content {
     let stop = |t: f32, r: u8| GradientStop { t, color: Color { r, g: 90, b: 30, a: 255 } };
     Content::Gradient(Live::new(Gradient {

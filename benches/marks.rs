@@ -105,7 +105,7 @@ fn runs(count: usize, mut work: impl FnMut()) -> Vec<f64> {
     (0..count).map(run).collect()
 }
 
-/// A fill of a blank canvas, and of blots of two greys.
+/// A fill of a blank canvas, and of blots of two grays.
 fn fills() {
     let side = LARGE.width as usize;
     let is_island = |x: usize, y: usize| hash::unit(3, (x / 24) as u32, (y / 24) as u32) < 0.3;

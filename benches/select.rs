@@ -29,7 +29,7 @@ static POOL: LazyLock<rayon::ThreadPool> = LazyLock::new(|| {
     rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("a thread pool")
 });
 
-/// Blots of two greys, grown together into one large region with many islands.
+/// Blots of two grays, grown together into one large region with many islands.
 static PICTURE: LazyLock<TileGrid> = LazyLock::new(|| {
     let side = LARGE.width as usize;
     let is_island = |x: usize, y: usize| hash::unit(3, (x / 24) as u32, (y / 24) as u32) < 0.3;

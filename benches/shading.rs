@@ -259,7 +259,7 @@ fn rendered_on(bencher: Bencher, run: Run, scene: &Scene, shading: &Shading) {
 
 const HD: (u32, u32) = (1920, 1080);
 
-/// A document of one colour under the painter's light.
+/// A document of one color under the painter's light.
 fn painted(scene: &Scene, angle: f32) -> Document {
     let mut shading = Shading::new(Model::Painter);
     shading.painter.beneath = true;

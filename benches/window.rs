@@ -255,7 +255,7 @@ mod x11 {
             Ok(())
         }
 
-        /// The middle of the area that is pale compared with the window's own colours.
+        /// The middle of the area that is pale compared with the window's own colors.
         fn middle_of_canvas(&self) -> Result<(i32, i32)> {
             let all = self.pixels(0, 0, SCREEN.0, SCREEN.1)?;
             let is_pale = |x: i32, y: i32| {

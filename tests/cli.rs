@@ -170,7 +170,7 @@ fn a_painting_goes_onto_another_object_fitted_to_its_canvas() {
     let picture = desk.rendered("a.png", &["--normal", other.to_str().unwrap()]).to_rgba8();
     assert_eq!(picture.dimensions(), (64, 40));
     let alpha = |x, y| picture.get_pixel(x, y)[3];
-    // 40 px high and centred, the sphere spans 12 … 52.
+    // 40 px high and centered, the sphere spans 12 … 52.
     assert_eq!((alpha(8, 20), alpha(15, 20), alpha(48, 20), alpha(55, 20)), (0, 255, 255, 0));
     refused(
         &desk.render("elsewhere/other.png", &["--normal", other.to_str().unwrap()]),

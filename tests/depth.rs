@@ -14,7 +14,7 @@ fn said(output: &Output) -> String {
 
 const STEPS: u32 = 4096;
 
-/// The colour of a step of a ramp; bytes cannot tell 16 of them apart.
+/// The color of a step of a ramp; bytes cannot tell 16 of them apart.
 fn step(x: u32) -> [u16; 4] {
     let v = (x * 65535 / (STEPS - 1)) as u16;
     [v, 65535 - v, 9, 65535]

@@ -25,7 +25,7 @@ fn drawn(draw: impl FnOnce(&Path)) -> RgbaImage {
     image::open(&file).unwrap().into_rgba8()
 }
 
-/// The colour at a pixel, without alpha.
+/// The color at a pixel, without alpha.
 fn rgb(picture: &RgbaImage, x: u32, y: u32) -> [i32; 3] {
     let [r, g, b, _] = picture.get_pixel(x, y).0.map(i32::from);
     [r, g, b]
@@ -59,7 +59,7 @@ fn strokes_are_painted_on_waves_and_kept() {
 fn a_drawing_in_flat_colours_becomes_a_lit_shape() {
     let picture = drawn(|file| shape_from_drawing::shape(file).unwrap());
     assert_eq!(picture.get_pixel(2, 2).0[3], 0, "nothing beside the drawing");
-    // Lit from the upper right: one flat colour is brighter there than at the lower left.
+    // Lit from the upper right: one flat color is brighter there than at the lower left.
     let light = |x, y| rgb(&picture, x, y).into_iter().sum::<i32>();
     assert!(light(290, 150) > light(120, 290) + 60, "{} and {}", light(290, 150), light(120, 290));
 }

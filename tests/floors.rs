@@ -1,4 +1,4 @@
-//! The floors hold: arrows between modules point down only, neighbours do not import each other,
+//! The floors hold: arrows between modules point down only, neighbors do not import each other,
 //! and the lower floors touch neither files nor clocks nor threads. Reads the sources, so that the
 //! table below cannot be forgotten.
 

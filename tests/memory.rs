@@ -33,7 +33,7 @@ fn chunk(kind: &[u8; 4], body: &[u8]) -> Vec<u8> {
         .concat()
 }
 
-/// A PNG of one colour of `bits` and a kind, with chunks in front of its pixels.
+/// A PNG of one color of `bits` and a kind, with chunks in front of its pixels.
 fn png_of(size: Size, kind: png::ColorType, bits: png::BitDepth, before: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);

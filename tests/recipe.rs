@@ -36,7 +36,7 @@ impl Files for InMemory {
     }
 }
 
-/// A PNG of one colour.
+/// A PNG of one color.
 fn png(width: u32, height: u32, rgba: [u8; 4]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let picture = image::RgbaImage::from_pixel(width, height, image::Rgba(rgba));

@@ -49,7 +49,7 @@ pub enum Remedy {
     MorePixels,
     /// More memory than is free.
     MoreMemory,
-    /// A background colour behind transparent parts.
+    /// A background color behind transparent parts.
     Background,
 }
 

@@ -273,7 +273,7 @@ impl Sprite<'_> {
         Some(())
     }
 
-    /// Packets of colours: how many to skip, how many follow.
+    /// Packets of colors: how many to skip, how many follow.
     fn old_palette(&mut self, chunk: &mut LittleEndian) -> Option<()> {
         let mut index = 0usize;
         for _ in 0..chunk.u16()? {

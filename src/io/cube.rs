@@ -1,5 +1,5 @@
-//! Colour look-up tables of `.cube` files, as colour graders exchange them: a text with a size and
-//! a line of three numbers for each entry. Floor 5. Not here: reading colours from tables
+//! Color look-up tables of `.cube` files, as color graders exchange them: a text with a size and
+//! a line of three numbers for each entry. Floor 5. Not here: reading colors from tables
 //! (`paint::adjustment`).
 
 use crate::paint::adjustment::ColorTable;

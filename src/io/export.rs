@@ -82,7 +82,7 @@ impl ExportFormat {
 /// How a picture is written.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportOptions {
-    /// The colour behind transparent parts; none by default.
+    /// The color behind transparent parts; none by default.
     pub background: Option<Color>,
     /// Quality of a JPEG, 1 … 100.
     pub quality: u8,
@@ -138,7 +138,7 @@ impl OutputFile {
         Ok(Self { named: named.into(), terms })
     }
 
-    /// Flattens a document and writes it, with as many bits as requested; nothing if cancelled. A
+    /// Flattens a document and writes it, with as many bits as requested; nothing if canceled. A
     /// shape that is still to be made is made first.
     pub fn write_document(
         &self,
@@ -159,7 +159,7 @@ impl OutputFile {
 
     /// The target is the old file or the new one, never a part of it.
     pub fn replace(&self, bytes: &[u8]) -> Result<()> {
-        // It can be cancelled only during painting: writing is short.
+        // It can be canceled only during painting: writing is short.
         replace(&Disk, &self.named, bytes, &self.terms, &Progress::default()).map(drop)
     }
 }
@@ -211,7 +211,7 @@ pub fn encode(
     }
 }
 
-/// Straight pixels over a colour, as a normal layer above a fill would show.
+/// Straight pixels over a color, as a normal layer above a fill would show.
 fn lay_on(rgba: &mut [u8], background: Color) {
     let under = background.premultiplied();
     for pixel in rgba.chunks_exact_mut(4) {

@@ -23,7 +23,7 @@ pub struct FileDescription {
     pub format: &'static str,
     /// The size of the picture.
     pub size: Size,
-    /// For pictures: `r`, `g`, `b`, `a`, or `y` if grey. For EXR: the channels' whole names.
+    /// For pictures: `r`, `g`, `b`, `a`, or `y` if gray. For EXR: the channels' whole names.
     pub channels: Vec<String>,
     /// Bits of a channel; of EXR those of the widest.
     pub bits: u8,
@@ -35,15 +35,15 @@ pub struct FileDescription {
     pub normals: Vec<String>,
     /// The depth of each channel.
     pub depths: Vec<String>,
-    /// No two colour channels differ.
+    /// No two color channels differ.
     pub is_grey: bool,
-    /// Whether it is a colour picture whose texels, read as normals, have length 1.
+    /// Whether it is a color picture whose texels, read as normals, have length 1.
     pub looks_like_normals: bool,
     /// A defect that could be worked around.
     pub warning: Option<&'static str>,
 }
 
-/// Describes a file. Of an EXR only some rows of colours that may be normals are decoded; other
+/// Describes a file. Of an EXR only some rows of colors that may be normals are decoded; other
 /// formats' pixels all are, so that damage shows.
 pub fn describe(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     if ExrFile::is_exr(bytes) {
@@ -101,7 +101,7 @@ fn describe_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDes
     })
 }
 
-/// Colours spread over the picture.
+/// Colors spread over the picture.
 fn texels(image: &image::DynamicImage) -> Vec<[f32; 3]> {
     use image::GenericImageView;
     let (w, h) = image.dimensions();
@@ -165,7 +165,7 @@ mod tests {
         let sunny =
             described(rgb, |i| dome(i).map_or(Vec3::ZERO, |n| vec3(0.9, 0.7, 0.4) * n.y.max(0.05)));
         assert_eq!([signed.normals.len(), biased.normals.len(), sunny.normals.len()], [1, 1, 0]);
-        // The red of colours is not depth either.
+        // The red of colors is not depth either.
         assert_eq!([signed.depths.len(), sunny.depths.len()], [0, 0]);
         let named = described(["N.R", "N.G", "N.B"], |i| dome(i).unwrap_or(Vec3::ZERO) * 0.3);
         assert_eq!(named.normals, ["N"], "what is called so is one, whatever its length");

@@ -1,4 +1,4 @@
-//! Opens documents: recognises a file by its content and reads it as a document.
+//! Opens documents: recognizes a file by its content and reads it as a document.
 //! Floor 5. Saving is `save`; the formats are modules of their own.
 
 #![warn(missing_docs)]

@@ -1,5 +1,5 @@
 //! Pictures to paint with: any readable file as sRGB bytes or linear light, in its upright
-//! position. Floor 5. Not here: normal, depth and mask maps, which are data and whose colour tags
+//! position. Floor 5. Not here: normal, depth and mask maps, which are data and whose color tags
 //! are ignored (`maps`).
 
 mod light;
@@ -27,7 +27,7 @@ use std::path::Path;
 /// * `file`: for messages (and for TGA, which only its name identifies).
 ///
 /// Integer files become sRGB bytes (through their ICC profile where it says something else), float
-/// files linear light. EXR gives its colour layer, straight alpha; integers of 16 bits are kept
+/// files linear light. EXR gives its color layer, straight alpha; integers of 16 bits are kept
 /// along with the bytes. Fails with a sentence on anything damaged, unknown or beyond `budget`. The
 /// picture keeps `bytes`, so that a project can store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
@@ -123,7 +123,7 @@ pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
     }
 }
 
-/// Reads a mask: encoded luminance × alpha, 255 wholly covered. Colour profiles are ignored.
+/// Reads a mask: encoded luminance × alpha, 255 wholly covered. Color profiles are ignored.
 pub fn decode_coverage(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Plane<u8>> {
     let plane = if ExrFile::is_exr(bytes) {
         let exr = ExrFile::open(file, bytes, budget)?;
@@ -160,10 +160,10 @@ fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
     srgb::quantise(srgb::luminance(r, g, b) * a)
 }
 
-/// Straight RGBA bytes in the colours of an ICC profile as sRGB; unchanged if `through_profile`
+/// Straight RGBA bytes in the colors of an ICC profile as sRGB; unchanged if `through_profile`
 /// finds nothing to do.
 ///
-/// * `is_grey`: red, green and blue are equal, and the profile is one of grey.
+/// * `is_grey`: red, green and blue are equal, and the profile is one of gray.
 pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> {
     let Some(image) = image::RgbaImage::from_raw(size.width, size.height, rgba) else {
         return Vec::new();
@@ -194,10 +194,10 @@ pub fn to_srgb_deep(size: Size, texels: Vec<[u16; 4]>, is_grey: bool, icc: &[u8]
     image.and_then(|image| through_profile(&image, icc)).unwrap_or(texels)
 }
 
-/// Straight sRGB of an integer image in the colours of its ICC profile, 16 bits a channel.
+/// Straight sRGB of an integer image in the colors of its ICC profile, 16 bits a channel.
 ///
 /// `None` where the profile is sRGB as far as a byte can tell (so that such files keep their
-/// bytes), does not belong to the image's kind of colour, or cannot be used.
+/// bytes), does not belong to the image's kind of color, or cannot be used.
 fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
     let profile = ColorProfile::new_from_slice(icc).ok()?;
     let grey = matches!(
@@ -240,7 +240,7 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
     Some(texels)
 }
 
-/// Linear light of float texels in the colours of an ICC profile; beyond white it is clipped.
+/// Linear light of float texels in the colors of an ICC profile; beyond white it is clipped.
 ///
 /// `None` where the profile's light is sRGB's and linear (so that such files keep what is beyond
 /// white), or cannot be used.
@@ -283,7 +283,7 @@ fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]
     run(texels)
 }
 
-/// Colours spread over the cube (or the ramp), opaque.
+/// Colors spread over the cube (or the ramp), opaque.
 fn probe(layout: Layout) -> Vec<u16> {
     let level = |i: usize| (i * 13107) as u16;
     match layout {

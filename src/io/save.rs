@@ -27,7 +27,7 @@ pub struct EncodedDocument {
     pub notes: Vec<String>,
 }
 
-/// The bytes that a document is saved as under this name; `None` if cancelled. A shape that is
+/// The bytes that a document is saved as under this name; `None` if canceled. A shape that is
 /// still to be made is made first. A project is read back as a file is opened, and compared with
 /// the document: it fails where the two differ.
 pub fn encode(
@@ -55,7 +55,7 @@ pub fn encode(
 }
 
 impl EncodedDocument {
-    /// Writes it; `None` if cancelled. Fails as [`save`] does.
+    /// Writes it; `None` if canceled. Fails as [`save`] does.
     pub fn save(
         &self,
         file: &Path,
@@ -67,7 +67,7 @@ impl EncodedDocument {
     }
 }
 
-/// Saves a document; `None` if cancelled, and then nothing has changed.
+/// Saves a document; `None` if canceled, and then nothing has changed.
 ///
 /// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits
 /// for it. Returns once the file and its folder are on the disk. The previous version is kept next

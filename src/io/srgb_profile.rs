@@ -1,4 +1,4 @@
-//! The colour profile of sRGB that this program writes into pictures.
+//! The color profile of sRGB that this program writes into pictures.
 //! Floor 5. Not here: reading other profiles (`picture`).
 
 use moxcms::ColorProfile;

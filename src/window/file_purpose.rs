@@ -13,7 +13,7 @@ pub enum FilePurpose {
     Place,
     ImportUnwrapped,
     Brush,
-    /// A table of colours.
+    /// A table of colors.
     ColorTable,
     NormalMap,
     DepthMap,

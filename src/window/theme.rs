@@ -1,5 +1,5 @@
-//! The theme: neutral greys, so that the window does not affect the perception of the picture's
-//! colours, and one accent. Floor 7.
+//! The theme: neutral grays, so that the window does not affect the perception of the picture's
+//! colors, and one accent. Floor 7.
 
 use eframe::egui::{self, Color32, CornerRadius, Stroke, Style, TextStyle, Theme, Visuals, vec2};
 
@@ -8,7 +8,7 @@ pub const ACCENT: Color32 = Color32::from_rgb(0x4d, 0x9d, 0xe0);
 /// The squares behind what is transparent.
 pub const CHECKER: [Color32; 2] = [Color32::from_gray(0x9a), Color32::from_gray(0x7e)];
 
-/// A colour of the document as the window shows it.
+/// A color of the document as the window shows it.
 pub fn color32(color: crate::math::srgb::Color) -> Color32 {
     Color32::from_rgba_unmultiplied(color.r, color.g, color.b, color.a)
 }
@@ -18,7 +18,7 @@ pub fn color32(color: crate::math::srgb::Color) -> Color32 {
 pub enum Look {
     #[default]
     Dark,
-    /// Middle grey, for judging colours.
+    /// Middle gray, for judging colors.
     Grey,
     Light,
 }
@@ -57,7 +57,7 @@ impl Look {
 
     /// Shows the window so.
     pub fn show(self, ctx: &egui::Context) {
-        // The toolkit has two themes; grey takes the place of the dark one.
+        // The toolkit has two themes; gray takes the place of the dark one.
         let (theme, visuals) = match self {
             Self::Dark | Self::Grey => (Theme::Dark, Visuals::dark()),
             Self::Light => (Theme::Light, Visuals::light()),
@@ -72,7 +72,7 @@ pub fn surround(visuals: &Visuals) -> Color32 {
     Color32::from_gray(Look::of(visuals).greys().surround)
 }
 
-/// Shades of grey, from the deepest ground to the text. `weak`: hints and what is said about a row.
+/// Shades of gray, from the deepest ground to the text. `weak`: hints and what is said about a row.
 struct Greys {
     surround: u8,
     deepest: u8,

@@ -263,7 +263,7 @@ pub fn bar(ui: &mut Ui, share: Option<f32>, width_pt: f32) {
     }
 }
 
-/// A field of colour that can be clicked.
+/// A field of color that can be clicked.
 pub fn swatch(ui: &mut Ui, label: &str, color: Color, size: egui::Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label));

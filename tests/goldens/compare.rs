@@ -14,7 +14,7 @@ pub const GAP: u32 = 4;
 /// How much brighter the picture of a difference is than the difference.
 const AMPLIFIED: u8 = 8;
 
-/// How far two pictures are apart, in steps of a byte of premultiplied colour: transparent pixels
+/// How far two pictures are apart, in steps of a byte of premultiplied color: transparent pixels
 /// are all equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {

@@ -87,7 +87,7 @@ fn dot(x: u32, y: u32) -> [u8; 4] {
     [0, 0, 0, if (60..200).contains(&squared) { 255 } else { 0 }]
 }
 
-/// Grey from left to right, with a hole.
+/// Gray from left to right, with a hole.
 fn mask(x: u32, y: u32) -> [u8; 4] {
     let grey = if x.abs_diff(50) < 9 && y.abs_diff(30) < 12 { 0 } else { 3 * x as u8 };
     [grey, grey, grey, 255]

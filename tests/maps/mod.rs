@@ -42,7 +42,7 @@ impl Ball {
         self.surface[y * SIDE + x]
     }
 
-    /// Whether a pixel and its neighbours are on the surface.
+    /// Whether a pixel and its neighbors are on the surface.
     pub fn is_inner(&self, x: usize, y: usize) -> bool {
         x > 0
             && y > 0

@@ -1,4 +1,4 @@
-//! Colours of paint adjusted for good, within the selection. Floor 4. Not here: adjustment layers
+//! Colors of paint adjusted for good, within the selection. Floor 4. Not here: adjustment layers
 //! (`layer::content`), what adjustments do (`paint::adjustment`).
 
 use super::{Content, Document, LayerId, LayerLock, PixelLayer};

@@ -26,7 +26,7 @@ impl Histogram {
     const MOST_TILES: usize = 96;
 
     /// Of what lies beneath an adjustment in its scope; `None` if it is no visible adjustment, or
-    /// cancelled.
+    /// canceled.
     pub fn beneath(document: &Document, layer: LayerId, progress: &Progress) -> Option<Self> {
         let prepared = PreparedDocument::new(document, progress)?;
         let sought = prepared.adjustment_of(layer);
@@ -48,7 +48,7 @@ impl Histogram {
         Some(counts.iter().fold(Self::default(), Self::plus))
     }
 
-    /// Pixels that are at least half there, by their straight colours.
+    /// Pixels that are at least half there, by their straight colors.
     fn add(&mut self, pixels: &PlanarTile) {
         for row in pixels.rows() {
             for (x, &a) in row.a.iter().enumerate().filter(|(_, a)| **a >= 0.5) {

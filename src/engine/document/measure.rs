@@ -24,7 +24,7 @@ struct Meter<'a> {
 
 impl PreparedDocument {
     /// Measures what lies beneath the next adjustment, or takes it from the cache; `None` if
-    /// cancelled.
+    /// canceled.
     pub(super) fn measure(
         &self,
         adjusted: &AdjustmentLayer,
@@ -98,10 +98,10 @@ impl Meter<'_> {
     }
 }
 
-/// The greatest luminance (Rec. 709, linear light, straight colour) of a tile, over the surface
+/// The greatest luminance (Rec. 709, linear light, straight color) of a tile, over the surface
 /// where there is one.
 ///
-/// Pixels less than half covered, by paint or by surface, do not count: their straight colours are
+/// Pixels less than half covered, by paint or by surface, do not count: their straight colors are
 /// mostly rounding. 0 if a quick test shows that the tile has none above `known`.
 fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt, known: f32) -> f32 {
     if bound(pixels.rows()) <= known {

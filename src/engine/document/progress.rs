@@ -1,4 +1,4 @@
-//! The progress of long work, and whether it was cancelled. Floor 4. Higher floors display it;
+//! The progress of long work, and whether it was canceled. Floor 4. Higher floors display it;
 //! nothing here draws or waits.
 
 #![warn(missing_docs)]
@@ -49,13 +49,13 @@ impl Progress {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the work was cancelled.
+    /// Whether the work was canceled.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 }
 
-/// One result per tile, in the order of the tiles; `None` if cancelled.
+/// One result per tile, in the order of the tiles; `None` if canceled.
 pub(super) fn in_parallel<T: Send>(
     tiles: &[TileAt],
     progress: &Progress,

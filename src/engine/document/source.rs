@@ -21,7 +21,7 @@ pub struct SurfaceSource {
     /// Where the shape is; absent: found from alpha and background values.
     pub mask: Option<MaskSource>,
     /// `"matrix"`: canvas from the pixels of the maps, a, b, c, d, e, f: x′ = a x + c y + e, y′ = b
-    /// x + d y + f. Without one the maps are as large as the canvas allows, centred.
+    /// x + d y + f. Without one the maps are as large as the canvas allows, centered.
     pub matrix: Option<[f64; 6]>,
 }
 

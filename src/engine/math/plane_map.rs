@@ -234,7 +234,7 @@ impl PixelMove {
 
     /// The pixel of the frame that a pixel of the canvas shows.
     pub fn source(&self, x: i32, y: i32) -> (i32, i32) {
-        // Centres are half a pixel in. The matrix is orthogonal, so its inverse is its transpose.
+        // Centers are half a pixel in. The matrix is orthogonal, so its inverse is its transpose.
         let (dx, dy) = (2 * (x - self.origin.0) + 1, 2 * (y - self.origin.1) + 1);
         let along = |axis: (i32, i32)| (axis.0 * dx + axis.1 * dy - 1).div_euclid(2);
         (along(self.right), along(self.down))

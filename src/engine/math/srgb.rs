@@ -1,4 +1,4 @@
-//! The sRGB transfer curve (IEC 61966-2-1), colours as text, and the one quantisation to bytes.
+//! The sRGB transfer curve (IEC 61966-2-1), colors as text, and the one quantization to bytes.
 //! Floor 0.
 
 #![warn(missing_docs)]
@@ -29,7 +29,7 @@ pub fn decode_fast(v: f32) -> f32 {
     if v <= 0.04045 { v * (1.0 / 12.92) } else { power }
 }
 
-/// Luminance in linear light of an encoded colour in `[0, 1]`: error below 3e-4 + 0.4 % of it, for
+/// Luminance in linear light of an encoded color in `[0, 1]`: error below 3e-4 + 0.4 % of it, for
 /// weighing light rather than for showing it.
 #[inline(always)]
 pub fn luminance_fast(r: f32, g: f32, b: f32) -> f32 {
@@ -103,13 +103,13 @@ pub fn decode_u8(encoded: u8) -> f32 {
     DECODE[encoded as usize]
 }
 
-/// Nearest byte of a value in `[0, 1]`; out of range clamps, NaN becomes 0. The only quantisation
+/// Nearest byte of a value in `[0, 1]`; out of range clamps, NaN becomes 0. The only quantization
 /// to bytes.
 #[inline(always)]
 pub fn quantise(value: f32) -> u8 {
     // `max` first: for NaN and 0 it is 0.
     let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 255.0 + 0.5;
-    // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorised: 4 ns a pixel
+    // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorized: 4 ns a pixel
     // instead of 0.5.
     unsafe { scaled.to_int_unchecked::<i32>() as u8 }
 }
@@ -122,13 +122,13 @@ pub fn quantise_deep(value: f32) -> u16 {
     unsafe { scaled.to_int_unchecked::<i32>() as u16 }
 }
 
-/// Rec. 709 luminance of a linear colour.
+/// Rec. 709 luminance of a linear color.
 #[inline(always)]
 pub fn luminance(r: f32, g: f32, b: f32) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// A colour as artists write it: straight alpha, sRGB-encoded bytes.
+/// A color as artists write it: straight alpha, sRGB-encoded bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
     /// Red.
@@ -149,7 +149,7 @@ impl Color {
     /// Fully transparent.
     pub const TRANSPARENT: Color = Color { r: 0, g: 0, b: 0, a: 0 };
 
-    /// An opaque colour of sRGB-encoded bytes.
+    /// An opaque color of sRGB-encoded bytes.
     pub const fn rgb(r: u8, g: u8, b: u8) -> Self {
         Self { r, g, b, a: 255 }
     }

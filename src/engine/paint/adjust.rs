@@ -1,4 +1,4 @@
-//! Adjustments of a placed picture, which convey material: blur for gloss, colour for the base.
+//! Adjustments of a placed picture, which convey material: blur for gloss, color for the base.
 //! Floor 3.
 
 use crate::math::{Mat3, Size, Vec3, srgb, vec3};
@@ -19,11 +19,11 @@ pub struct Adjust {
     pub exposure: f32,
     /// Rotation of the hue, degrees.
     pub hue: f32,
-    /// Factor of the distance from grey, `≥ 0`; 1 leaves it.
+    /// Factor of the distance from gray, `≥ 0`; 1 leaves it.
     pub saturation: f32,
     /// Factor of the encoded value, `≥ 0`; 1 leaves it.
     pub brightness: f32,
-    /// Factor of the distance from mid grey (0.5), `≥ 0`; 1 leaves it.
+    /// Factor of the distance from mid gray (0.5), `≥ 0`; 1 leaves it.
     pub contrast: f32,
 }
 
@@ -109,7 +109,7 @@ struct TexelAdjust {
     is_linear: bool,
     /// Factor of linear light.
     exposure: f32,
-    /// For encoded colour: hue, then saturation, then brightness and contrast; `None` is the
+    /// For encoded color: hue, then saturation, then brightness and contrast; `None` is the
     /// identity.
     encoded: Option<(Mat3, Vec3)>,
 }
@@ -159,20 +159,20 @@ fn map(v: Vec3, f: impl Fn(f32) -> f32) -> Vec3 {
     vec3(f(v.x), f(v.y), f(v.z))
 }
 
-/// Each column weighs one channel of the luminance, so `M c` is the grey of `c` (Rec. 709, on
+/// Each column weighs one channel of the luminance, so `M c` is the gray of `c` (Rec. 709, on
 /// encoded values).
 fn grey_matrix() -> Mat3 {
     Mat3::from_cols(Vec3::splat(0.2126), Vec3::splat(0.7152), Vec3::splat(0.0722))
 }
 
-/// Grey plus `factor` times the distance from it.
+/// Gray plus `factor` times the distance from it.
 fn saturation_matrix(factor: f32) -> Mat3 {
     grey_matrix() * (1.0 - factor) + Mat3::IDENTITY * factor
 }
 
-/// Turns the colours about the grey axis, keeping the grey of each (Filter Effects, `hue-rotate`).
+/// Turns the colors about the gray axis, keeping the gray of each (Filter Effects, `hue-rotate`).
 ///
-/// grey + cos · (identity − grey) + sin · S, where S turns by a quarter.
+/// gray + cos · (identity − gray) + sin · S, where S turns by a quarter.
 fn hue_matrix(angle: f32) -> Mat3 {
     let grey = grey_matrix();
     let quarter = Mat3::from_cols(
@@ -183,7 +183,7 @@ fn hue_matrix(angle: f32) -> Mat3 {
     grey + (Mat3::IDENTITY - grey) * angle.cos() + quarter * angle.sin()
 }
 
-/// A Gaussian blur of premultiplied values, so that colour under transparent texels does not
+/// A Gaussian blur of premultiplied values, so that color under transparent texels does not
 /// spread.
 fn blurred(size: Size, mut texels: Vec<[f32; 4]>, sigma: f32) -> Vec<[f32; 4]> {
     for t in &mut texels {

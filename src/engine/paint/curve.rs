@@ -18,7 +18,7 @@ pub struct CurveSegment {
 }
 
 impl CurveSegment {
-    /// From `from` to `to`, with the neighbours `before` and `after`; without a neighbour that end
+    /// From `from` to `to`, with the neighbors `before` and `after`; without a neighbor that end
     /// is straight.
     pub fn new(before: Option<Vec2>, from: Vec2, to: Vec2, after: Option<Vec2>) -> Self {
         let (before, after) = (before.unwrap_or(2.0 * from - to), after.unwrap_or(2.0 * to - from));

@@ -142,7 +142,7 @@ impl<'s> PlacedDab<'s> {
         self.deformation.fill_spans(area.grown(1), columns, deformed);
     }
 
-    /// Its colour, from the stroke's; `None`: the stamp's own colours.
+    /// Its color, from the stroke's; `None`: the stamp's own colors.
     fn paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
     }
@@ -380,6 +380,6 @@ struct SpanNeighbours<'f> {
     above: (&'f [f32], &'f [f32]),
     row: (&'f [f32], &'f [f32]),
     below: (&'f [f32], &'f [f32]),
-    /// Which neighbours continue the surface, one a pixel of the span.
+    /// Which neighbors continue the surface, one a pixel of the span.
     linked: &'f [u8],
 }

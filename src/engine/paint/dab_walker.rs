@@ -24,7 +24,7 @@ const FAR_PX: f32 = 1e6;
 /// One placement of the footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dab {
-    /// q_0: its centre and its one anchor, canvas px.
+    /// q_0: its center and its one anchor, canvas px.
     pub at: Vec2,
     /// Of the undeformed footprint, px; positive.
     pub radius: f32,
@@ -46,10 +46,10 @@ pub struct Dab {
     pub rim: Rim,
     /// The coverage that it may bring a pixel to, `(0, 1]`.
     pub ceiling: f32,
-    /// For one-colour tips, if the brush's colours vary; else the stroke's.
+    /// For one-color tips, if the brush's colors vary; else the stroke's.
     pub color: Color,
     pub operator: Operator,
-    /// How far from its centre it may land, px; 0 is no limit.
+    /// How far from its center it may land, px; 0 is no limit.
     pub reach_px: f32,
     /// Its number in the stroke, from 0; invisible dabs count too.
     pub number: u32,

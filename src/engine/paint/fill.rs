@@ -1,4 +1,4 @@
-//! The fill: the pixels joined to one by colours like its own, with small gaps in their border
+//! The fill: the pixels joined to one by colors like its own, with small gaps in their border
 //! closed and its edge smoothed. Floor 3. `flood` finds the joined pixels; `raster::gaps`
 //! excludes those that are only reached through a gap. Here: the settings and the edge. Not here: the picture that
 //! is read, and what is done with the pixels (`tools::fill`).
@@ -19,8 +19,8 @@ use std::sync::Arc;
 /// The settings of a fill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
-    /// The largest difference to the first pixel's colour, of any channel of the premultiplied
-    /// encoded colour, `[0, 1]`.
+    /// The largest difference to the first pixel's color, of any channel of the premultiplied
+    /// encoded color, `[0, 1]`.
     pub tolerance: f32,
     /// Gaps up to this wide are closed, px, `[0, 64]`; 0 closes none.
     pub gap_px: f32,
@@ -29,7 +29,7 @@ pub struct Fill {
     pub grow_px: f32,
     /// Whether pixels at the edge are partly covered.
     pub antialias: bool,
-    /// Compare colours of the layer only, not of the picture.
+    /// Compare colors of the layer only, not of the picture.
     pub layer_alone: bool,
     pub bounded: PaintLimit,
 }
@@ -95,7 +95,7 @@ impl Fill {
         Some(self.edged(inside, canvas, part))
     }
 
-    /// The same area as coverage on the canvas; `everywhere`: all pixels of a colour like the first
+    /// The same area as coverage on the canvas; `everywhere`: all pixels of a color like the first
     /// one's, joined or not, so that gaps do not matter.
     ///
     /// `None` as for [`Fill::from`], which has the same arguments.

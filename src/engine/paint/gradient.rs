@@ -1,4 +1,4 @@
-//! The gradient tool: a colour ramp between two anchors, bent before it is applied (SF sec. 5.2,
+//! The gradient tool: a color ramp between two anchors, bent before it is applied (SF sec. 5.2,
 //! fig. 8). Floor 3. Not here: the ramp itself (`ramp`), D (`surface::deformation`).
 
 use super::image::{BentFrame, transform};
@@ -37,7 +37,7 @@ impl Gradient {
     /// The stops of one ramp.
     pub const MOST_STOPS: usize = 1_000;
 
-    /// A ramp of these colours, evenly spaced from one point to the other, canvas px. It is not
+    /// A ramp of these colors, evenly spaced from one point to the other, canvas px. It is not
     /// bent.
     pub fn new(from: Vec2, to: Vec2, colors: &[Color]) -> Self {
         let steps = colors.len().saturating_sub(1).max(1) as f32;
@@ -102,7 +102,7 @@ impl Gradient {
     }
 }
 
-/// t(D(q)), before it is clamped, at every pixel centre of a rectangle.
+/// t(D(q)), before it is clamped, at every pixel center of a rectangle.
 struct RampPositions {
     rect: Rect,
     t: Vec<f32>,
@@ -144,7 +144,7 @@ impl RampPositions {
     /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the pixel's square in every
     /// direction.
     ///
-    /// Differences are taken only between neighbours of one surface; a pixel without neighbours
+    /// Differences are taken only between neighbors of one surface; a pixel without neighbors
     /// counts as unbent.
     fn footprint(&self, x: i32, y: i32, scene: &Scene) -> f32 {
         let linked = scene
@@ -192,7 +192,7 @@ mod tests {
         assert_eq!(pixel(&gradient, 5, 3), [0, 0, 0, 255]);
         assert_eq!(pixel(&gradient, 95, 97), [255; 4]);
         for y in [0, 40, 99] {
-            // t = (49.5 + 0.5 − 10) / 80 at the centre of pixel 49 is 0.49375.
+            // t = (49.5 + 0.5 − 10) / 80 at the center of pixel 49 is 0.49375.
             assert_eq!(pixel(&gradient, 49, y), [126, 126, 126, 255]);
         }
     }

@@ -34,7 +34,7 @@ pub struct BrushGrain {
     pub rotation: f32,
     /// k, `[0, 1]`: 0 is no grain.
     pub strength: f32,
-    /// Greys up to the first take no paint, those from the second on take all; both in `[0, 1]`,
+    /// Grays up to the first take no paint, those from the second on take all; both in `[0, 1]`,
     /// the first below the second.
     pub levels: [f32; 2],
     /// What it is fixed to.
@@ -84,9 +84,9 @@ impl GrainSpace {
 impl BrushGrain {
     /// What the size of a feature may be, px.
     pub const SIZE_PX: Range = 0.5..=20_000.0;
-    /// What a level may be.
+    /// The range of a level.
     pub const LEVEL: Range = -4.0..=4.0;
-    /// What the rate of its own operator may be.
+    /// The range of the rate of its own operator.
     pub const GAMMA: Range = 0.0..=8.0;
 }
 
@@ -128,7 +128,7 @@ impl BrushGrain {
     }
 }
 
-/// Grey bytes below this count as black: a stroke's dabs do not fill them.
+/// Gray bytes below this count as black: a stroke's dabs do not fill them.
 const BLACK: u8 = 10;
 
 fn square(v: u8) -> u8 {
@@ -138,7 +138,7 @@ fn square(v: u8) -> u8 {
 fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
     let span = (high - low).max(1.0 / 256.0);
     let mut picture = grey(&plane.map(|v| (v - low) / span));
-    // The channels: red is the grey, green its square, alpha whether there is any.
+    // The channels: red is the gray, green its square, alpha whether there is any.
     if let crate::raster::picture::Texels::Srgb8(texels) = &picture.texels {
         let greys: Vec<[u8; 4]> = texels
             .iter()

@@ -19,7 +19,7 @@ use std::sync::{Arc, Mutex, OnceLock, Weak};
 /// P: where the picture lies on the canvas before it is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Where the picture's centre lies, canvas px.
+    /// Where the picture's center lies, canvas px.
     pub center: Vec2,
     /// 1 covers the canvas, aspect kept.
     pub scale: f32,
@@ -28,10 +28,10 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// What a scale may be.
+    /// The range of a scale.
     pub const SCALE: crate::math::Range = 1e-4..=1e4;
 
-    /// Covers the canvas, centred.
+    /// Covers the canvas, centered.
     pub fn covering(canvas: Size) -> Self {
         Self { center: canvas.center(), scale: 1.0, rotation: 0.0 }
     }
@@ -286,7 +286,7 @@ impl PlacedImage {
 
 /// How P⁻¹(D(q)) of an area is read.
 struct ImageLookup {
-    /// 1 where each pixel is averaged over its patch, 0 where the picture is read at its centre.
+    /// 1 where each pixel is averaged over its patch, 0 where the picture is read at its center.
     margin: i32,
     texels_from_canvas: Affine2,
 }

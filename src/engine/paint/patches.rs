@@ -5,7 +5,7 @@ use crate::math::{Affine2, Rect};
 use crate::raster::sampler::PatchRow;
 use crate::surface::{Scene, Surface, deformation::DeformedRect, links};
 
-/// The four neighbours a pixel is differenced with, in the order of [`PatchRow::edges`].
+/// The four neighbors a pixel is differenced with, in the order of [`PatchRow::edges`].
 const SIDES: [(u8, i32, i32); 4] =
     [(links::LEFT, -1, 0), (links::RIGHT, 1, 0), (links::UP, 0, -1), (links::DOWN, 0, 1)];
 
@@ -20,7 +20,7 @@ impl Patches {
     /// The patches of row `y` of `rect`.
     ///
     /// * `positions`: P⁻¹(D(q)) of `rect` grown by one pixel on every side, in texels.
-    /// * `texels_from_canvas`: P⁻¹. Toward a neighbour that does not continue the surface the maps
+    /// * `texels_from_canvas`: P⁻¹. Toward a neighbor that does not continue the surface the maps
     ///   count as constant: the edge lies where an unbent picture's would.
     pub fn row<'a>(
         &'a mut self,
@@ -55,7 +55,7 @@ impl Patches {
         PatchRow { x: &positions.x[here..here + n], y: &positions.y[here..here + n], edges }
     }
 
-    /// The edges of a row whose first pixel is at `here`, if some neighbours do not continue the
+    /// The edges of a row whose first pixel is at `here`, if some neighbors do not continue the
     /// surface.
     fn edges_where_linked(
         &mut self,
@@ -84,7 +84,7 @@ impl Patches {
     }
 }
 
-/// Every pixel is linked to all its neighbours. Eight pixels a word: rows are short.
+/// Every pixel is linked to all its neighbors. Eight pixels a word: rows are short.
 fn are_linked(bits: &[u8]) -> bool {
     let (words, rest) = bits.as_chunks::<8>();
     let all = words.iter().fold(u64::MAX, |all, word| all & u64::from_ne_bytes(*word));
@@ -95,7 +95,7 @@ fn are_linked(bits: &[u8]) -> bool {
 }
 
 /// The links of a row's pixels. Off the surface D is smooth too: pixels there are linked to
-/// neighbours that are also off it.
+/// neighbors that are also off it.
 fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
     let (x1, map) = (x0 + bits.len() as i32, surface.size().rect());
     if map.contains(x0, y) && map.contains(x1 - 1, y) {
@@ -122,7 +122,7 @@ fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
 }
 
 crate::widest! {
-    /// Halfway to the left, right, upper and lower neighbours of a row that is linked to all of
+    /// Halfway to the left, right, upper and lower neighbors of a row that is linked to all of
     /// them; `row` has one pixel more at each end.
     fn linked_edges(
         row: &[f32],
@@ -145,7 +145,7 @@ crate::widest! {
         }
     }
 
-    /// Halfway to the neighbour if it is linked, else `still`.
+    /// Halfway to the neighbor if it is linked, else `still`.
     fn half_edges(here: &[f32], there: &[f32], bits: &[u8], bit: u8, still: f32, out: &mut [f32]) {
         let n = out.len();
         let (here, there, bits) = (&here[..n], &there[..n], &bits[..n]);

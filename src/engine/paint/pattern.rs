@@ -1,4 +1,4 @@
-//! Patterns: greys from formulas, for tips and for grain. Floor 3. They are the same bytes every
+//! Patterns: grays from formulas, for tips and for grain. Floor 3. They are the same bytes every
 //! time; none is drawn by hand or shipped as a file.
 
 use crate::math::{Size, Vec2, hash, noise, vec2};
@@ -41,7 +41,7 @@ impl Pattern {
             .unwrap_or(if feature_px > 0.0 { most } else { least })
     }
 
-    /// Greys in `[0, 1]`; opposite sides meet. In paper every grey covers the same area, so that a
+    /// Grays in `[0, 1]`; opposite sides meet. In paper every gray covers the same area, so that a
     /// level is a share of the area.
     ///
     /// `side`: texels, see [`Pattern::side_of`].
@@ -88,7 +88,7 @@ fn scales(p: Vec2) -> f32 {
         let center = vec2((p.x - shift).floor() + shift + 0.5, row * 0.5);
         let r = (p - center).length() / 0.56;
         if r < 1.0 && p.y >= center.y {
-            // Dark where it emerges from under its neighbour, bright toward the rim, with a thin
+            // Dark where it emerges from under its neighbor, bright toward the rim, with a thin
             // dark edge.
             let rim = smoothstep(1.0, 0.9, r);
             return rim * (0.25 + 0.75 * smoothstep(0.2, 0.85, r));
@@ -109,7 +109,7 @@ fn smoothstep(from: f32, to: f32, v: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Each value by its rank: all greys take the same area.
+/// Each value by its rank: all grays take the same area.
 fn equalised(plane: &Plane<f32>) -> Plane<f32> {
     let mut order: Vec<u32> = (0..plane.values().len() as u32).collect();
     order.sort_by(|&a, &b| plane.values()[a as usize].total_cmp(&plane.values()[b as usize]));
@@ -121,7 +121,7 @@ fn equalised(plane: &Plane<f32>) -> Plane<f32> {
     out
 }
 
-/// The ends of a brush's hairs, spread over the disc that touches the square's sides: greys in `[0,
+/// The ends of a brush's hairs, spread over the disc that touches the square's sides: grays in `[0,
 /// 1]`.
 ///
 /// * `count`: number of hairs, `≥ 1`.
@@ -161,7 +161,7 @@ fn hair(plane: &mut Plane<f32>, center: Vec2, radius: f32, density: f32) {
     }
 }
 
-/// Specks that cover a share of a square: greys in `[0, 1]`, mostly 0 and 1.
+/// Specks that cover a share of a square: grays in `[0, 1]`, mostly 0 and 1.
 ///
 /// * `cells`: specks along a side, `≥ 1`.
 /// * `density`: the share covered, `[0, 1]`.
@@ -189,7 +189,7 @@ mod tests {
                 (0.0..0.3).contains(&low) && (0.7..=1.0).contains(&high),
                 "{name}: {low} to {high}"
             );
-            // Neighbours differ as much across the seam as elsewhere.
+            // Neighbors differ as much across the seam as elsewhere.
             let last = Pattern::SIDES[0] as usize - 1;
             let jump = |a: usize, b: usize| {
                 (0..=last)

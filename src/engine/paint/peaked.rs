@@ -18,7 +18,7 @@ pub struct PeakedProfile {
     /// Width of the box that blurs it, squared.
     blur_squared: f32,
     /// The length of the tip's mean chord: its area over its extent along a line through the
-    /// centre; with the box.
+    /// center; with the box.
     chord: f32,
 }
 
@@ -66,7 +66,7 @@ impl Profile for PeakedProfile {
         let width = (self.blur_squared + width_squared).sqrt();
         let width = if width > Self::NARROW { width } else { Self::NARROW };
         let (inner, outer) = (r - 0.5 * width, r + 0.5 * width);
-        // The integral is odd, since the profile continues evenly beyond the centre.
+        // The integral is odd, since the profile continues evenly beyond the center.
         (self.integral(outer) - self.integral(inner.abs()).copysign(inner)) / width
     }
 

@@ -1,4 +1,4 @@
-//! The round tip: coverage as a function of the distance from the dab's centre, blurred in closed
+//! The round tip: coverage as a function of the distance from the dab's center, blurred in closed
 //! form. Floor 3. Pure functions.
 
 /// How coverage falls off from the middle of a dab, the radius of the undeformed footprint being 1.
@@ -46,10 +46,10 @@ pub struct RoundProfile {
     per_length: f32,
     /// Width of the box, squared.
     blur_squared: f32,
-    /// The integral up to the centre, where [`RoundProfile::integral`] starts.
+    /// The integral up to the center, where [`RoundProfile::integral`] starts.
     start: f32,
     /// The length of the tip's mean chord: its area over its extent along a line through the
-    /// centre.
+    /// center.
     chord: f32,
 }
 
@@ -64,7 +64,7 @@ impl RoundProfile {
         let half = half.max(0.5 * Self::NARROW);
         let (end, length) = (middle + half, 2.0 * half);
         let (per_length, blur_squared) = (1.0 / length, softness * softness);
-        // ½ π for a disc, 0.942 for a smoothstep from the centre.
+        // ½ π for a disc, 0.942 for a smoothstep from the center.
         let chord = std::f32::consts::FRAC_PI_2 * (0.6 + 0.4 * hardness);
         Self {
             end,
@@ -90,7 +90,7 @@ impl RoundProfile {
         let width = (self.blur_squared + width_squared).sqrt();
         let width = if width > Self::NARROW { width } else { Self::NARROW };
         let (inner, outer) = (r - 0.5 * width, r + 0.5 * width);
-        // The integral is odd, since the profile continues evenly beyond the centre.
+        // The integral is odd, since the profile continues evenly beyond the center.
         (self.integral(outer) - self.integral(inner.abs()).copysign(inner)) / width
     }
 
@@ -162,7 +162,7 @@ impl RoundProfile {
 }
 
 /// How far out the points of a pixel at r lie in the mean, its width across the radius having this
-/// square: by v²/24r farther than its middle, if that is not near the centre.
+/// square: by v²/24r farther than its middle, if that is not near the center.
 #[inline(always)]
 pub fn farther(r: f32, across_squared: f32) -> f32 {
     r + across_squared * (1.0 / 24.0) * r / (r * r + 0.25 * across_squared + 1e-12)

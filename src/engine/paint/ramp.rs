@@ -1,35 +1,35 @@
-//! A colour ramp, read at a point or averaged over an interval in closed form.
+//! A color ramp, read at a point or averaged over an interval in closed form.
 //! Floor 3. Not here: which t a pixel has (`gradient`).
 
 use crate::math::srgb::Color;
 
-/// A colour at a position of the ramp.
+/// A color at a position of the ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GradientStop {
     /// In `[0, 1]`, never decreasing from stop to stop.
     pub t: f32,
-    /// The colour there; its alpha counts.
+    /// The color there; its alpha counts.
     pub color: Color,
 }
 
-/// The stops, sorted, with the integral of the premultiplied colour up to each.
+/// The stops, sorted, with the integral of the premultiplied color up to each.
 pub struct Ramp {
-    /// One for each interval of nonzero length between neighbouring stops.
+    /// One for each interval of nonzero length between neighboring stops.
     pieces: Vec<RampPiece>,
     /// Premultiplied, before the first piece and after the last.
     first: [f32; 4],
     last: [f32; 4],
 }
 
-/// Between two stops, with s = (t − start) / length: straight colour and alpha are linear in s, so
-/// the premultiplied colour is a parabola a + b s + c s².
+/// Between two stops, with s = (t − start) / length: straight color and alpha are linear in s, so
+/// the premultiplied color is a parabola a + b s + c s².
 struct RampPiece {
     start: f32,
     length: f32,
     a: [f32; 4],
     b: [f32; 4],
     c: [f32; 4],
-    /// ∫ of the premultiplied colour from the first stop to `start`. Differences of it are divided
+    /// ∫ of the premultiplied color from the first stop to `start`. Differences of it are divided
     /// by small widths: f64.
     before: [f64; 4],
 }
@@ -56,7 +56,7 @@ impl RampPiece {
         std::array::from_fn(|i| self.a[i] + s * (self.b[i] + s * self.c[i]))
     }
 
-    /// ∫ of the premultiplied colour from the first stop to `t`, which lies in this piece.
+    /// ∫ of the premultiplied color from the first stop to `t`, which lies in this piece.
     fn integral(&self, t: f32) -> [f64; 4] {
         let length = f64::from(self.length);
         let s = ((f64::from(t) - f64::from(self.start)) / length).max(0.0).min(1.0);
@@ -84,7 +84,7 @@ impl Ramp {
         Some(Self { pieces, first, last })
     }
 
-    /// The piece that holds `t`, or the colour before the first or after the last piece.
+    /// The piece that holds `t`, or the color before the first or after the last piece.
     fn piece(&self, t: f32) -> Result<&RampPiece, [f32; 4]> {
         let i = self.pieces.partition_point(|p| p.start <= t);
         match i.checked_sub(1).and_then(|i| self.pieces.get(i)) {
@@ -94,13 +94,13 @@ impl Ramp {
         }
     }
 
-    /// The premultiplied encoded colour at `t`, clamped to `[0, 1]`.
+    /// The premultiplied encoded color at `t`, clamped to `[0, 1]`.
     pub fn at(&self, t: f32) -> [f32; 4] {
         let t = t.max(0.0).min(1.0);
         self.piece(t).map_or_else(|color| color, |p| p.at(t))
     }
 
-    /// The mean of the premultiplied colour over `[t − width/2, t + width/2]`, positions beyond
+    /// The mean of the premultiplied color over `[t − width/2, t + width/2]`, positions beyond
     /// `[0, 1]` clamped.
     ///
     /// In closed form, so it equals the mean of any number of samples. Widths too small to matter
@@ -119,13 +119,13 @@ impl Ramp {
         std::array::from_fn(|i| ((high[i] - low[i]) / width) as f32)
     }
 
-    /// ∫ of the premultiplied colour from some fixed position to `t`; linear beyond `[0, 1]`.
+    /// ∫ of the premultiplied color from some fixed position to `t`; linear beyond `[0, 1]`.
     fn integral(&self, t: f32) -> [f64; 4] {
         let inside = t.max(0.0).min(1.0);
         let from_first = |t: f32| match self.piece(t) {
             Ok(p) => p.integral(t),
             Err(color) => {
-                // Before the first piece the colour is constant and the integral negative; after
+                // Before the first piece the color is constant and the integral negative; after
                 // the last it continues.
                 let (from, before) = match self.pieces.as_slice() {
                     [first, ..] if t < first.start => (first.start, [0.0; 4]),

@@ -21,7 +21,7 @@ impl Sample {
     pub fn at(at: Vec2) -> Self {
         Self { at, pressure: 1.0, tilt: Vec2::ZERO, time_secs: 0.0 }
     }
-    /// What a pressure may be.
+    /// The range of a pressure.
     pub const PRESSURE: Range = UNIT;
     /// Degrees, each way.
     pub const TILT: Range = -90.0..=90.0;

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// larger.
 pub struct TipStamp {
     texture: Texture,
-    /// Whether it has its own colours; otherwise only its alpha counts.
+    /// Whether it has its own colors; otherwise only its alpha counts.
     pub is_colored: bool,
     /// Texels of `texture` along the radius of a dab.
     pub(in crate::paint) texels_per_radius: f32,
@@ -89,7 +89,7 @@ impl TipStamp {
     }
 }
 
-/// Opaque and grey everywhere: a picture of coverage.
+/// Opaque and gray everywhere: a picture of coverage.
 fn is_grey(level: &MipLevel) -> bool {
     level.texels.iter().all(|&[r, g, b, a]| r == g && g == b && a == 255)
 }
@@ -102,7 +102,7 @@ fn softened(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
     for (y, row) in level.texels.chunks_exact(level.size.width as usize).enumerate() {
         let start = (y + margin as usize) * size.width as usize + margin as usize;
         for (to, &[r, g, b, a]) in texels[start..].iter_mut().zip(row) {
-            // The texels of a texture are premultiplied; a grey one's alpha is its grey.
+            // The texels of a texture are premultiplied; a gray one's alpha is its gray.
             *to = if is_colored { [r, g, b, a] } else { [r; 4] }.map(f32::from);
         }
     }

@@ -39,9 +39,9 @@ struct PaintPlanes {
 
 #[derive(Clone)]
 enum Paint {
-    /// Coverage by the stroke's one colour, `[0, 1]`, row by row.
+    /// Coverage by the stroke's one color, `[0, 1]`, row by row.
     OneColor(Box<[f32; TILE_AREA]>),
-    /// Premultiplied colours of stamps.
+    /// Premultiplied colors of stamps.
     Colors(PlanarTile),
 }
 
@@ -59,7 +59,7 @@ pub struct CoveredRow<'r> {
 pub struct DabPaint {
     /// The coverage that it adds where its footprint is 1, `[0, 1]`.
     pub flow: f32,
-    /// The greatest coverage that it gives a pixel, `[0, 1]`; above it only colours mix.
+    /// The greatest coverage that it gives a pixel, `[0, 1]`; above it only colors mix.
     pub ceiling: f32,
     /// Opaque; `None` if a stamp has its own.
     pub color: Option<Color>,
@@ -68,7 +68,7 @@ pub struct DabPaint {
 /// How a stroke tile is blended with the pixels of its layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeBlend {
-    /// The colour of one-colour tiles; for others only its alpha counts.
+    /// The color of one-color tiles; for others only its alpha counts.
     pub color: Color,
     /// For the whole stroke, `[0, 1]`.
     pub opacity: f32,
@@ -163,7 +163,7 @@ impl StrokeTile {
         Self { grain: Some(grain), dark: Some(self.light.clone()), ..self }
     }
 
-    /// Coverage and reach of every pixel, row by row, for a tile of one colour without grain.
+    /// Coverage and reach of every pixel, row by row, for a tile of one color without grain.
     pub fn plain(&mut self) -> Option<(&mut [f32; TILE_AREA], &mut [f32; TILE_AREA])> {
         match &mut self.light.paint {
             Paint::OneColor(coverage) if self.grain.is_none() => {
@@ -173,7 +173,7 @@ impl StrokeTile {
         }
     }
 
-    /// Coverage of every pixel, row by row, if it has one colour.
+    /// Coverage of every pixel, row by row, if it has one color.
     pub fn coverage(&mut self) -> Option<&mut [f32; TILE_AREA]> {
         self.join();
         match &mut self.light.paint {
@@ -187,7 +187,7 @@ impl StrokeTile {
         let Some((grain, mut dark)) = self.grain.take().zip(self.dark.take()) else { return };
         let is_one_color = matches!(self.light.paint, Paint::OneColor(_));
         for (i, (light, dark)) in self.light.planes().into_iter().zip(dark.planes()).enumerate() {
-            // Four planes a row for a tile of colours, one plane for a tile of one colour.
+            // Four planes a row for a tile of colors, one plane for a tile of one color.
             let shares =
                 if is_one_color { &grain.share[..] } else { &grain.share[i / 4 * TILE..][..TILE] };
             light
@@ -198,7 +198,7 @@ impl StrokeTile {
         }
     }
 
-    /// Adds one colour to a row from the `start`th pixel on, as far as each is covered, up to the
+    /// Adds one color to a row from the `start`th pixel on, as far as each is covered, up to the
     /// ceiling: see [`raise`].
     pub fn cover(&mut self, start: usize, row: CoveredRow, paint: DabPaint) {
         let Some((grain, dark)) = self.grain.as_deref().zip(self.dark.as_mut()) else {
@@ -319,7 +319,7 @@ impl StrokeTile {
         }
     }
 
-    /// Source over. For stamps only the colour's alpha counts.
+    /// Source over. For stamps only the color's alpha counts.
     fn blend_over_normal(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
         match &self.light.paint {
             Paint::OneColor(coverage) => {

@@ -1,4 +1,4 @@
-//! Blend modes: how a layer's colour meets the colour below it (W3C Compositing and Blending Level
+//! Blend modes: how a layer's color meets the color below it (W3C Compositing and Blending Level
 //! 1, and what painting programs have in addition). Floor 1. `modes` is the table: a mode is one
 //! row of it, one formula of `spec` and one picture of `tests/goldens`. `spec` reads like the
 //! specification; `rows` is fast.
@@ -36,7 +36,7 @@ impl Mix {
 /// What is painted on a tile.
 #[derive(Clone, Copy)]
 pub enum TilePaint<'a> {
-    /// One premultiplied colour everywhere.
+    /// One premultiplied color everywhere.
     Solid([f32; 4]),
     /// Premultiplied bytes, row by row; one row for each that is painted on.
     Bytes(&'a [u8]),

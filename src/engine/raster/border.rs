@@ -13,7 +13,7 @@ pub fn outermost(size: Size) -> Vec<usize> {
     rows.chain((1..h - 1).flat_map(|y| [y * w, y * w + w - 1])).collect()
 }
 
-/// The pixels that are joined to the border over four neighbours, through pixels that `is` accepts by
+/// The pixels that are joined to the border over four neighbors, through pixels that `is` accepts by
 /// their index.
 pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     let (w, h) = (size.width as usize, size.height as usize);

@@ -1,5 +1,5 @@
 //! The distance of each pixel from the nearest marked one, up to a limit. Floor 1. Exact, between
-//! pixel centres (Meijster, Roerdink and Hesselink 2000: columns first, then along rows).
+//! pixel centers (Meijster, Roerdink and Hesselink 2000: columns first, then along rows).
 
 use super::Plane;
 use rayon::prelude::*;

@@ -1,5 +1,5 @@
-//! Floods: all pixels that are joined to one over their four neighbours, tile by tile, a row of a
-//! tile at a time. Floor 1. The caller says which pixels may be reached and which neighbours are
+//! Floods: all pixels that are joined to one over their four neighbors, tile by tile, a row of a
+//! tile at a time. Floor 1. The caller says which pixels may be reached and which neighbors are
 //! joined; only tiles that are reached are requested. The result does not depend on the order in
 //! which pixels are found.
 
@@ -17,7 +17,7 @@ pub struct OpenTile {
     pub links: Option<Box<TileLinks>>,
 }
 
-/// The pixels of a tile that may be reached from their neighbour on a side.
+/// The pixels of a tile that may be reached from their neighbor on a side.
 #[derive(Clone, Copy)]
 pub struct TileLinks {
     pub from_left: TileBits,
@@ -130,7 +130,7 @@ impl Flooded {
     }
 }
 
-/// Pixels that leave the tiles of a wave enter their neighbours: one entry per tile, in the order
+/// Pixels that leave the tiles of a wave enter their neighbors: one entry per tile, in the order
 /// of the tiles.
 fn next_wave(spread: &[(TileAt, Box<FloodTile>, FloodEntry)]) -> Vec<(TileAt, FloodEntry)> {
     let mut entries = std::collections::BTreeMap::<TileAt, FloodEntry>::new();

@@ -44,7 +44,7 @@ impl PixelSet {
 
 /// The room that contains `start`, of what was joined to it.
 pub fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
-    // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w +
+    // From the middle of a gap w px wide to the center of the border's nearest pixel: at most (w +
     // 1)/2. Tops are capped at the height that makes a saddle of that distance a gap.
     let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
     let limit = top_px.ceil() as u16;

@@ -21,7 +21,7 @@ impl LineStyle {
     }
 }
 
-/// Share of the grey range that one standard deviation takes: strong, and few values clipped.
+/// Share of the gray range that one standard deviation takes: strong, and few values clipped.
 const CONTRAST: f32 = 0.22;
 
 /// Smears noise along `direction`; values in `[0, 1]` around a mean of ½.

@@ -6,7 +6,7 @@ use super::tile::deep::{self, DeepRow};
 use super::tile::{TILE, TILE_AREA, Tile, TileF32};
 use crate::math::srgb::quantise;
 
-/// A premultiplied pixel brought into range: alpha in `[0, 1]`, colours in `[0, alpha]`, NaN 0.
+/// A premultiplied pixel brought into range: alpha in `[0, 1]`, colors in `[0, alpha]`, NaN 0.
 #[inline(always)]
 pub fn sane(p: [f32; 4]) -> [f32; 4] {
     let a = p[3].max(0.0).min(1.0);
@@ -28,7 +28,7 @@ impl PixelRow {
     pub const TRANSPARENT: PixelRow = PixelRow { rgb: [[0.0; TILE]; 3], a: [0.0; TILE] };
 }
 
-/// The brightest encoded colour: light that a half float still holds is below it.
+/// The brightest encoded color: light that a half float still holds is below it.
 pub const BRIGHTEST: f32 = 128.0;
 
 /// A tile of accumulated pixels.
@@ -59,7 +59,7 @@ impl PlanarTile {
         tile
     }
 
-    /// The same, but colours may be brighter than white: above alpha.
+    /// The same, but colors may be brighter than white: above alpha.
     pub fn from_bright(pixels: &TileF32) -> Self {
         let mut tile = Self::transparent();
         for (row, pixels) in tile.rows.iter_mut().zip(pixels.chunks_exact(TILE)) {
@@ -73,7 +73,7 @@ impl PlanarTile {
         tile
     }
 
-    /// Lowers colours that are brighter than white to white.
+    /// Lowers colors that are brighter than white to white.
     pub fn clip_to_white(&mut self) {
         for PixelRow { rgb, a } in &mut self.rows {
             for channel in rgb {
@@ -82,7 +82,7 @@ impl PlanarTile {
         }
     }
 
-    /// Gives every pixel that is there its straight colour, wholly opaque.
+    /// Gives every pixel that is there its straight color, wholly opaque.
     pub fn make_opaque(&mut self) {
         for PixelRow { rgb, a } in &mut self.rows {
             for channel in rgb {

@@ -17,8 +17,8 @@ use crate::math::Vec2;
 /// Positions beyond this, in texels, are clamped: an index must fit an i32.
 const FARTHEST: f32 = 1e9;
 
-/// One bilinear tap: the premultiplied colour, in `[0, 1]`, at `p` in texels (texel (i, j) has its
-/// centre at (i+½, j+½)).
+/// One bilinear tap: the premultiplied color, in `[0, 1]`, at `p` in texels (texel (i, j) has its
+/// center at (i+½, j+½)).
 pub fn bilinear(texture: &Texture, p: Vec2, outside: Outside) -> [f32; 4] {
     bilinear_in(&texture.levels()[0], p, outside).map(|v| v / 255.0)
 }

@@ -71,7 +71,7 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// A tile of `TILE_AREA · 4` premultiplied bytes; colours above alpha are lowered to it.
+    /// A tile of `TILE_AREA · 4` premultiplied bytes; colors above alpha are lowered to it.
     pub fn from_bytes(mut rgba: Vec<u8>) -> Option<Tile> {
         if rgba.len() != TILE_AREA * 4 {
             return None;
@@ -81,7 +81,7 @@ impl Tile {
         Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque, deep: None })
     }
 
-    /// A tile of [`TILE`] rows of 16 bits, colours no greater than alpha; one of bytes if these
+    /// A tile of [`TILE`] rows of 16 bits, colors no greater than alpha; one of bytes if these
     /// hold it exactly. `None` if it is wholly transparent.
     pub fn from_deep(rows: Box<[DeepRow]>) -> Option<Tile> {
         if rows.len() != TILE || rows.iter().all(|row| row[3] == [0; TILE]) {
@@ -94,7 +94,7 @@ impl Tile {
         Some(if is_of_bytes { tile } else { Tile { opaque, deep: Some(rows), ..tile } })
     }
 
-    /// Quantises a tile; `None` if it is wholly transparent.
+    /// Quantizes a tile; `None` if it is wholly transparent.
     pub fn quantised(pixels: &TileF32) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
         quantise_pixels(pixels, &mut bytes);
@@ -180,7 +180,7 @@ impl Tile {
 }
 
 crate::widest! {
-    /// Lowers colours to their alpha; whether every alpha is 255.
+    /// Lowers colors to their alpha; whether every alpha is 255.
     fn lower_to_alpha(rgba: &mut [u8]) -> bool {
         let mut least = [u8::MAX; 32];
         // Eight pixels at a time, which become one shuffle and one minimum.

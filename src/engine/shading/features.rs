@@ -33,7 +33,7 @@ impl FeatureScale {
     pub const CURVATURE_PX: Range = 0.0..=1000.0;
     /// What a blur may be, px.
     pub const BLUR_PX: Range = 0.0..=256.0;
-    /// What the weight of a scale may be.
+    /// The range of the weight of a scale.
     pub const WEIGHT: Range = 0.0..=1000.0;
 }
 
@@ -52,7 +52,7 @@ impl Default for Features {
 impl Features {
     /// The scales of one layer.
     pub const MOST_SCALES: usize = 16;
-    /// What λ may be.
+    /// The range of λ.
     pub const LAMBDA: Range = -1.0..=1.0;
 
     /// The features of a surface. Its curvature is computed here unless it is cached: call this

@@ -11,7 +11,7 @@ pub struct LightSetting<T> {
     pub label: &'static str,
     /// What it does.
     pub hint: &'static str,
-    /// What it may be.
+    /// Its range.
     pub range: Range,
     /// Reads it.
     pub get: fn(&T) -> f32,

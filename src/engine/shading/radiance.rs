@@ -15,7 +15,7 @@ use row::RowScaler;
 
 /// The parameters of a radiance-scaling layer, an adjustment of what lies beneath it in its group.
 ///
-/// δ = Y / Y*, Y the luminance of the composite in linear light; the linear colour is multiplied by
+/// δ = Y / Y*, Y the luminance of the composite in linear light; the linear color is multiplied by
 /// σ(κ, δ).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RadianceScaling {

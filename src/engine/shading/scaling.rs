@@ -45,7 +45,7 @@ impl Scaling {
     pub const ALPHA: f32 = 0.2;
     /// Excludes 0 and 1.
     pub const INVARIANT: Range = 0.001..=0.999;
-    /// What γ may be.
+    /// The range of γ.
     pub const GAMMA: Range = 0.0..=20.0;
     /// Changes no term.
     pub const NONE: Scaling = Scaling::new(Self::ALPHA, 0.0);
@@ -99,7 +99,7 @@ pub enum Reference {
 }
 
 impl Reference {
-    /// What a given reference may be.
+    /// The range of a given reference.
     pub const VALUE: Range = 1e-4..=65_504.0;
 
     /// Y*, given the largest luminance; never 0.

@@ -178,7 +178,7 @@ impl<'a> SurfaceRow<'a> {
         }
     }
 
-    /// Which neighbours continue the surface, along the row: bits of [`crate::surface::links`].
+    /// Which neighbors continue the surface, along the row: bits of [`crate::surface::links`].
     pub fn links(&self) -> &[u8] {
         &self.surface.smooth_links_plane().row(self.y)[self.x0..self.x0 + self.width]
     }

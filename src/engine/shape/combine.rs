@@ -169,7 +169,7 @@ impl Relief {
             (rect.x0..rect.x1).filter_map(move |x| {
                 let (fx, fy) = ((x - form.corner.0) as usize, (y - form.corner.1) as usize);
                 let (x, y) = (x as usize, y as usize);
-                // A barely covered pixel shows its neighbour.
+                // A barely covered pixel shows its neighbor.
                 let both = form.coverage.at(fx, fy) >= 128 && self.coverage.at(x, y) >= 128;
                 both.then(|| (self.height.at(x, y), form.height.at(fx, fy), (fx, fy)))
             })

@@ -63,7 +63,7 @@ impl Form {
                     };
                     *normal = vec3(-slope.x, slope.y, 2.0 * root + flat).normalize_or(Vec3::Z);
                 } else if let Some(line) = outline.rim_line(x, y) {
-                    // The covered part of a pixel whose centre is outside lies at the rim.
+                    // The covered part of a pixel whose center is outside lies at the rim.
                     *normal = vec3(line.outward.x * sin, -line.outward.y * sin, cos);
                 }
             }
@@ -136,7 +136,7 @@ impl Form {
         })
     }
 
-    /// Height, normal and coverage at a place relative to the centre of the first pixel.
+    /// Height, normal and coverage at a place relative to the center of the first pixel.
     fn between(&self, p: Vec2) -> (f32, Vec3, f32) {
         let whole = p.floor();
         let part = p - whole;

@@ -112,7 +112,7 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> F
     with_normals(form, outline, normals)
 }
 
-/// A field that is unknown at some pixels inside, filled there from their neighbours, ring by ring.
+/// A field that is unknown at some pixels inside, filled there from their neighbors, ring by ring.
 pub fn filled(mut field: Plane<Vec2>, inked: &Plane<bool>, inside: &Plane<bool>) -> Plane<Vec2> {
     let mut told = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !inked.at(x, y));
     let mut left: Vec<(usize, usize)> = Vec::new();

@@ -3,7 +3,7 @@
 //!
 //! [`Outline`] is what is known about a drawing, [`Form`] what is made of it: pillows (`inflate`),
 //! tubes, bevels, primitives, lathes, sweeps. `touches`, `sculpt`, `relief` and `lines` change an
-//! existing form. `flats` reads drawings in flat colours, whose areas are outlines. Not here: where
+//! existing form. `flats` reads drawings in flat colors, whose areas are outlines. Not here: where
 //! outlines come from and how parts are kept (`document::parts`), files (`io`).
 
 pub mod bevel;

@@ -81,7 +81,7 @@ fn toward(outline: &Outline, here: Vec2, crossing: Vec2) -> (f32, Vec2) {
 }
 
 /// For each pixel the nearest crossing of the rim with a link up or down (`swapped`: left or right;
-/// then the plane is the outline's mirrored at its diagonal). Points in px from the centre of the
+/// then the plane is the outline's mirrored at its diagonal). Points in px from the center of the
 /// first pixel; far away where there is none.
 fn nearest_crossings(
     outline: &Outline,

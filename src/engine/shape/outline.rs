@@ -6,12 +6,12 @@ use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
 
-/// The least distance of the rim from the centre of a pixel, px: a smaller one would make couplings
+/// The least distance of the rim from the center of a pixel, px: a smaller one would make couplings
 /// too stiff to solve.
 const LEAST_CROSSING: f32 = 0.02;
 
 /// Coverage of a part, with a margin of one empty pixel around it, so that every pixel inside has
-/// four neighbours.
+/// four neighbors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// Canvas px of the plane's first pixel.
@@ -23,7 +23,7 @@ pub struct Outline {
 /// The rim in one pixel, as a straight line.
 #[derive(Clone, Copy, Debug)]
 pub struct RimLine {
-    /// From the pixel's centre to the rim, px, positive where the centre is inside.
+    /// From the pixel's center to the rim, px, positive where the center is inside.
     pub distance: f32,
     /// Unit, out of the part.
     pub outward: Vec2,
@@ -82,7 +82,7 @@ impl Outline {
         &self.coverage
     }
 
-    /// Whether the centre of a pixel is inside: these pixels are the unknowns of every equation
+    /// Whether the center of a pixel is inside: these pixels are the unknowns of every equation
     /// here.
     pub fn inside(&self) -> &Plane<bool> {
         &self.inside
@@ -126,7 +126,7 @@ impl Outline {
         Some(RimLine { distance: distance_of_share(share, outward), outward })
     }
 
-    /// Distance of the rim from the centre of an inside pixel toward a neighbour outside, in
+    /// Distance of the rim from the center of an inside pixel toward a neighbor outside, in
     /// `[0.02, 1]` px.
     ///
     /// Gibou et al. 2002 need this θ to place a rim between pixels. It is known from the partly
@@ -188,7 +188,7 @@ impl Outline {
         Self::new((low.x as i32, low.y as i32), &coverage)
     }
 
-    /// Coverage between the centres of pixels, `[0, 1]`; `p` in px of the plane.
+    /// Coverage between the centers of pixels, `[0, 1]`; `p` in px of the plane.
     pub(super) fn between(&self, p: Vec2) -> f32 {
         let q = p - 0.5;
         let (x, y) = (q.x.floor(), q.y.floor());
@@ -201,7 +201,7 @@ impl Outline {
     }
 }
 
-/// How far inside a straight rim the centre of a unit square is, if the rim leaves the share
+/// How far inside a straight rim the center of a unit square is, if the rim leaves the share
 /// `share` of it; px.
 ///
 /// The area of a square within a half plane grows quadratically while the rim passes a corner,

@@ -131,7 +131,7 @@ impl Primitive {
         })
     }
 
-    /// What one pixel shows: its centre, or the mean of its covered part.
+    /// What one pixel shows: its center, or the mean of its covered part.
     fn texel(&self, turn: Mat3, corner: Vec2) -> PrimitiveTexel {
         const SIDE: usize = 8;
         let middle = self.seen(turn, corner + 0.5);

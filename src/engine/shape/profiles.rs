@@ -83,7 +83,7 @@ fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
 }
 
 /// The form that shadings give within an outline: their normals, and heights with these slopes.
-/// Where they give nothing (all but two are clipped) the form continues from its neighbourhood.
+/// Where they give nothing (all but two are clipped) the form continues from its neighborhood.
 /// `None` as for [`normals_from_profiles`].
 ///
 /// The planes of the shadings are those of the outline.

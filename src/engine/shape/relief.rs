@@ -24,7 +24,7 @@ impl Detail {
     pub const HEIGHT: Range = -512.0..=512.0;
     /// What a radius may be, px.
     pub const RADIUS: Range = 1.0..=512.0;
-    /// What an edge may be.
+    /// The range of an edge.
     pub const EDGE: Range = 0.005..=1.0;
 }
 

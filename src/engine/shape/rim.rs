@@ -6,7 +6,7 @@ use super::solver::Solver;
 use crate::math::{Rect, Vec2, vec2};
 use crate::raster::Plane;
 
-/// The four neighbours of a pixel.
+/// The four neighbors of a pixel.
 const STEPS: [(i32, i32); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
 
 /// An outline, and which pieces of its rim hold a field at 0.
@@ -28,7 +28,7 @@ impl<'a> OutlineRim<'a> {
     }
 
     /// A silhouette except toward the pixels of `joined`, a plane as large as the outline's: there
-    /// the link is left out (Neumann), so that the field joins its neighbour level. A plane of
+    /// the link is left out (Neumann), so that the field joins its neighbor level. A plane of
     /// another size joins nothing.
     pub fn joined(outline: &'a Outline, joined: &'a Plane<bool>) -> Self {
         Self { outline, joined: (joined.size() == outline.size()).then_some(joined) }
@@ -43,7 +43,7 @@ impl<'a> OutlineRim<'a> {
         self.joined.is_some_and(|joined| joined.get(x, y).unwrap_or(false))
     }
 
-    /// The rim from an inside pixel toward a neighbour: none if that is inside too or joined, else
+    /// The rim from an inside pixel toward a neighbor: none if that is inside too or joined, else
     /// θ.
     fn toward(&self, (x, y): (usize, usize), step: (i32, i32)) -> Side {
         let other = (x as i32 + step.0, y as i32 + step.1);

@@ -19,7 +19,7 @@ fn pillow(outline: &Outline) -> Form {
     )
 }
 
-/// Canvas px of the centre of a pixel of a form.
+/// Canvas px of the center of a pixel of a form.
 fn place(form: &Form, x: usize, y: usize) -> Vec2 {
     vec2(form.corner.0 as f32 + x as f32 + 0.5, form.corner.1 as f32 + y as f32 + 0.5)
 }

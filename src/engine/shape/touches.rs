@@ -226,7 +226,7 @@ fn constraints(
     (held, wanted)
 }
 
-/// The inside pixels whose centres lie within a radius; at least the one that holds the centre.
+/// The inside pixels whose centers lie within a radius; at least the one that holds the center.
 fn disc(
     inside: &Plane<bool>,
     center: Vec2,

@@ -13,7 +13,7 @@ const GOAL: f64 = 1e-5;
 const ROUGH_GOAL: f64 = 1e-3;
 /// How far ridges are smoothed, as a share of the height there: facets vanish, cross-sections stay.
 const SMOOTHING: f32 = 0.26;
-/// The least smoothing, px: a ball centred between pixels has its top half a pixel away.
+/// The least smoothing, px: a ball centered between pixels has its top half a pixel away.
 const LEAST_SMOOTHING_PX: f32 = 0.5;
 /// −∇²h of a straight limb, h = w² − x²; and of a ball, h = r² − x² − y².
 const BENDS: [f32; 2] = [2.0, 4.0];
@@ -24,7 +24,7 @@ const BENDS: [f32; 2] = [2.0, 4.0];
 /// Unsmoothed it is h₀ = max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h =
 /// h₀ + t b, √t about a quarter of the height. Smoothing lowers what is bent by t times its −∇²h; b
 /// makes up for that: it is −∇² of the field that was smoothed with b = 2, in `[2, 4]`, so that
-/// limbs and balls stay as high as they are and only ridges between balls are levelled. `joined`
+/// limbs and balls stay as high as they are and only ridges between balls are leveled. `joined`
 /// and `start` as for `inflate`.
 pub fn tube(
     outline: &Outline,

@@ -71,7 +71,7 @@ pub struct Bend {
 }
 
 impl Weights {
-    /// What a power may be.
+    /// The range of a power.
     pub const POWER: crate::math::Range = 0.1..=16.0;
 
     /// w_i(q) of every anchor: `≥ 0`, adding up to 1; empty where there are no anchors.

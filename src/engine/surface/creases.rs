@@ -61,7 +61,7 @@ pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u
     }))
 }
 
-/// Flags of the step from a pixel to its right neighbour; those of the step to the pixel below
+/// Flags of the step from a pixel to its right neighbor; those of the step to the pixel below
 /// follow.
 const CREASE: u8 = 1;
 const LIKELY_CREASE: u8 = 2;
@@ -80,7 +80,7 @@ impl Axis {
     }
 }
 
-/// Turns likely creases into creases where they touch one, over the eight neighbours of a pixel,
+/// Turns likely creases into creases where they touch one, over the eight neighbors of a pixel,
 /// and drops what is too short, unless it closes a gap in the line of a jump: that fades where two
 /// bodies run into each other.
 fn keep_chains(steps: &mut Plane<u8>, links: &Plane<u8>) {

@@ -3,7 +3,7 @@
 
 use crate::math::Rect;
 
-/// D at every pixel centre of a rectangle, row by row.
+/// D at every pixel center of a rectangle, row by row.
 #[derive(Default)]
 pub struct DeformedRect {
     pub rect: Option<Rect>,

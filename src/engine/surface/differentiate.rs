@@ -71,7 +71,7 @@ fn edge_aware(before: SideSteps, after: SideSteps) -> f32 {
     }
 }
 
-/// The pixels that a derivative at a pixel differences: both neighbours where they continue the
+/// The pixels that a derivative at a pixel differences: both neighbors where they continue the
 /// surface, the pixel itself in place of one that does not.
 pub(super) struct DifferencePairs {
     /// Left and right, up and down.

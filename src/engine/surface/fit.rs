@@ -10,7 +10,7 @@ use crate::raster::Plane;
 use rayon::prelude::*;
 
 impl Surface {
-    /// The whole surface as large as `canvas` allows, its aspect kept, centred; what is left of the
+    /// The whole surface as large as `canvas` allows, its aspect kept, centered; what is left of the
     /// canvas has no surface.
     ///
     /// Fails where nothing is left of a surface thinner than the new pixels.
@@ -30,7 +30,7 @@ impl Surface {
         self.resampled(canvas, scale)
     }
 
-    /// Centred on each other, `scale` canvas px per map px.
+    /// Centered on each other, `scale` canvas px per map px.
     fn resampled(&self, canvas: Size, scale: Vec2) -> Result<Surface, SurfaceError> {
         let map_from_canvas = |q: Vec2| (q - canvas.center()) / scale + self.size().center();
         let read = self.texels(canvas, scale.recip() * 0.5, map_from_canvas);
@@ -126,7 +126,7 @@ impl Surface {
             let coverage = self.coverage(x as usize, y as usize);
             (area > 0.0 && coverage > 0).then_some((x, y, area * f32::from(coverage)))
         });
-        // The covered pixel nearest to the centre decides which piece of surface this is.
+        // The covered pixel nearest to the center decides which piece of surface this is.
         let distance = |&(x, y, _): &(i32, i32, f32)| {
             (vec2(x as f32 + 0.5, y as f32 + 0.5) - center).length_squared()
         };

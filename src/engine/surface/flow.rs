@@ -1,5 +1,5 @@
 //! Surface flows: the direction and the amount by which a picture on the surface is compressed (SF
-//! sec. 4.3; MATH 3). Floor 2. For viewing: no operator reads them. Not here: their colours on
+//! sec. 4.3; MATH 3). Floor 2. For viewing: no operator reads them. Not here: their colors on
 //! screen (`document::view`).
 
 use super::differentiate::DifferencePairs;

@@ -30,9 +30,9 @@ impl NoiseRelief {
     pub const SIZE_PX: crate::math::Range = 0.1..=100_000.0;
     /// How many layers of noise there may be.
     pub const OCTAVES: std::ops::RangeInclusive<u32> = 1..=12;
-    /// What a roughness may be.
+    /// The range of a roughness.
     pub const ROUGHNESS: crate::math::Range = 0.0..=2.0;
-    /// What a stretch may be.
+    /// The range of a stretch.
     pub const STRETCH: crate::math::Range = 0.01..=1000.0;
 
     /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y

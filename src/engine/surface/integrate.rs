@@ -22,9 +22,9 @@ pub struct IntegratedDepth {
 /// Integrates unit normals (camera space, y up) over the pixels where `inside` holds; `None` where
 /// there are none.
 ///
-/// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is
+/// Minimizes Σ w (z_j − z_i − s_ij)² over neighbors i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is
 /// exact on circles, and w = ((n_z,i + n_z,j)/2)² gives more weight to what faces the viewer.
-/// Separate pieces are each centred on the same depth.
+/// Separate pieces are each centered on the same depth.
 pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
     depth_from_normals_while(normals, inside, &|| true)
 }

@@ -1,17 +1,17 @@
-//! Links: which neighbouring pixels belong to the same piece of surface, so that nothing is
+//! Links: which neighboring pixels belong to the same piece of surface, so that nothing is
 //! differenced across a depth jump or the mask's edge. Floor 2.
 
 use crate::math::fast::{max, min};
 use crate::raster::Plane;
 use rayon::prelude::*;
 
-/// The neighbour at the left (x − 1) continues this pixel's surface.
+/// The neighbor at the left (x − 1) continues this pixel's surface.
 pub const LEFT: u8 = 1;
-/// The neighbour at the right (x + 1).
+/// The neighbor at the right (x + 1).
 pub const RIGHT: u8 = 2;
-/// The neighbour above (y − 1).
+/// The neighbor above (y − 1).
 pub const UP: u8 = 4;
-/// The neighbour below (y + 1).
+/// The neighbor below (y + 1).
 pub const DOWN: u8 = 8;
 
 /// Slope of the surface in pixels of depth per pixel, image axes, away from the viewer.
@@ -122,14 +122,14 @@ pub fn cut(links: &mut Plane<u8>, piece: impl Fn(usize, usize) -> u32 + Sync) {
     });
 }
 
-/// Flags of the step from a pixel to its right neighbour: it is a jump; it is one if it touches
+/// Flags of the step from a pixel to its right neighbor: it is a jump; it is one if it touches
 /// another.
 const JUMP: u8 = 1;
 const LIKELY_JUMP: u8 = 2;
 /// The same flags for the step to the pixel below, shifted by this many bits.
 const DOWNWARD: u8 = 2;
 
-/// Turns likely jumps into jumps where they touch one, over the eight neighbours of a pixel.
+/// Turns likely jumps into jumps where they touch one, over the eight neighbors of a pixel.
 fn spread(jumps: &mut Plane<u8>) {
     const ANY_JUMP: u8 = JUMP | JUMP << DOWNWARD;
     const ANY_LIKELY: u8 = LIKELY_JUMP | LIKELY_JUMP << DOWNWARD;
@@ -231,7 +231,7 @@ impl StepMaps<'_> {
     /// How far the step after a pixel is from that of a smooth surface, as a ratio of the
     /// tolerance; 0 where it is one.
     ///
-    /// Between two neighbours of a smooth surface the step lies between the slopes of their normals
+    /// Between two neighbors of a smooth surface the step lies between the slopes of their normals
     /// (the mean value theorem). Normals may have detail that the depth lacks, so the depth must
     /// also jump relative to the steps before and after. The tolerance is half a slope plus 1.5 px,
     /// for curvature and coarse depth.

@@ -14,7 +14,7 @@ impl Maps {
     ///   infinite where there is no surface.
     ///
     /// Solves an equation over the whole map: about a second for 4 million pixels. How far apart
-    /// two pieces of surface are at a silhouette is not in their normals; each piece is centred on
+    /// two pieces of surface are at a silhouette is not in their normals; each piece is centered on
     /// the same depth.
     pub fn from_normals(normals: Plane<Vec3>) -> Self {
         let unit = normals

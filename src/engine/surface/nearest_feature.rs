@@ -37,7 +37,7 @@ impl Nearest {
 /// For each pixel the index of a nearest valid pixel (itself where valid); `None` where nothing is
 /// valid.
 ///
-/// Two sweeps that pass the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for
+/// Two sweeps that pass the nearest candidate on (Danielsson's 8-neighbor scheme: exact but for
 /// rare ties within a pixel). Sides are at most 65,534 px; for longer ones the result is `None`.
 pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     let (w, h) = (valid.width(), valid.height());

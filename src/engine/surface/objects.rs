@@ -1,5 +1,5 @@
 //! Objects: the pieces into which silhouette and depth jumps split a surface, and the limits they
-//! set to marks. Floor 2. Which neighbouring pixels belong together is found by `links`.
+//! set to marks. Floor 2. Which neighboring pixels belong together is found by `links`.
 
 use super::cache::HeapSize;
 use super::pyramid::BLOCK;
@@ -10,7 +10,7 @@ use crate::raster::Plane;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-/// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbour
+/// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbor
 /// nearest in depth. The area is relative to the longer side squared, so that a picture splits the
 /// same way at any size.
 const CRUMB_SIDE: (f32, f32) = (0.006, 4.0);
@@ -30,7 +30,7 @@ pub struct ObjectId(u32);
 
 impl Objects {
     /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts
-    /// are known, if a path of linked neighbours joins them.
+    /// are known, if a path of linked neighbors joins them.
     fn new(surface: &Surface) -> Self {
         surface.on_either_side(
             || Self::in_front(surface),
@@ -158,7 +158,7 @@ impl PieceForest {
         }
     }
 
-    /// Merges pieces that are too small into their neighbours, across the smallest depth steps
+    /// Merges pieces that are too small into their neighbors, across the smallest depth steps
     /// first.
     fn join_crumbs(&mut self, surface: &Surface) {
         let side = (CRUMB_SIDE.0 * surface.size().longer_side()).max(CRUMB_SIDE.1);

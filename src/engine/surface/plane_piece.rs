@@ -20,7 +20,7 @@ pub struct PlanePiece {
 impl PlanePiece {
     /// What a move may be, px.
     pub const MOVED: Range = COORDINATE;
-    /// What a scale may be.
+    /// The range of a scale.
     pub const SCALE: Range = 0.01..=100.0;
     /// What a rotation may be, degrees.
     pub const ROTATION: Range = TURNS;

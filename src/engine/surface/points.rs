@@ -1,4 +1,4 @@
-//! Points between pixels: what anchors, the centres of dabs, brushes and the seeds of regions read
+//! Points between pixels: what anchors, the centers of dabs, brushes and the seeds of regions read
 //! of a surface. Floor 2. Not here: the operators that use it (`deformation`).
 //!
 //! A point reads the piece of surface that it lies on: bilinearly from the pixels around it that
@@ -103,7 +103,7 @@ impl Surface {
         })
     }
 
-    /// The pixels whose centres lie around a point of the map and which links join, without
+    /// The pixels whose centers lie around a point of the map and which links join, without
     /// crossing a contour, to the one that holds it, or to the covered one nearest to it; and their
     /// bilinear shares, which add up to 1. None where none is covered.
     pub fn around(&self, q: Vec2) -> impl Iterator<Item = (usize, usize, f32)> + use<> {

@@ -270,7 +270,7 @@ impl BlockRing {
         (low, high)
     }
 
-    /// The longest derivative over the block's surface: differences between linked neighbours, per
+    /// The longest derivative over the block's surface: differences between linked neighbors, per
     /// px.
     fn longest_slope(&self, surface: &Surface) -> f32 {
         let Rect { x0, y0, x1, y1 } = self.block;

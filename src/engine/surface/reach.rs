@@ -49,7 +49,7 @@ impl DabReach {
         if t <= 0.0 {
             return d;
         }
-        // At the very centre every way leads out.
+        // At the very center every way leads out.
         let away = (d - self.at).try_normalize().unwrap_or(Vec2::X);
         d + away * (self.push_px * t.min(1.0))
     }

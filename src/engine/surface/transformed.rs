@@ -27,7 +27,7 @@ impl Surface {
         self.origin.clone().unwrap_or_else(own)
     }
 
-    /// The map by which [`Surface::fitted`] puts maps on a canvas: as large as it allows, centred.
+    /// The map by which [`Surface::fitted`] puts maps on a canvas: as large as it allows, centered.
     pub fn fit_map(maps: Size, canvas: Size) -> PlaneMap {
         let side = |of: u32, to: u32| f64::from(to) / f64::from(of);
         let scale = side(maps.width, canvas.width).min(side(maps.height, canvas.height));
@@ -171,7 +171,7 @@ fn as_vec((x, y): (i32, i32)) -> Vec2 {
     vec2(x as f32, y as f32)
 }
 
-/// Links of a pixel after a move; those to neighbours that are not there are gone.
+/// Links of a pixel after a move; those to neighbors that are not there are gone.
 fn turned_links(linked: u8, by: PixelMove, is_there: impl Fn(i32, i32) -> bool) -> u8 {
     const STEPS: [(u8, (i32, i32)); 4] = [
         (links::LEFT, (-1, 0)),

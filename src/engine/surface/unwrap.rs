@@ -111,7 +111,7 @@ impl Unwrapping {
         self.x.size()
     }
 
-    /// Where a pixel's centre lies.
+    /// Where a pixel's center lies.
     #[inline(always)]
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         vec2(self.x.at(x, y), self.y.at(x, y))

@@ -138,7 +138,7 @@ fn blocks(bytes: &[u8], mut at: usize, out: &mut Vec<u8>) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// A canvas of 4 × 3 with a frame of 2 × 2 at (1, 1), of which colour 2 is transparent.
+    /// A canvas of 4 × 3 with a frame of 2 × 2 at (1, 1), of which color 2 is transparent.
     fn gif(frames: usize) -> Vec<u8> {
         let palette = [9, 8, 7, 200, 100, 50, 1, 1, 1, 0, 0, 0];
         let data = weezl::encode::Encoder::new(BitOrder::Lsb, 2).encode(&[0, 1, 2, 1]).unwrap();

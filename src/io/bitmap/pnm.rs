@@ -1,4 +1,4 @@
-//! Netpbm's pictures: bits, grey and RGB as text or bytes (P1 to P6), PAM with alpha (P7), and the
+//! Netpbm's pictures: bits, gray and RGB as text or bytes (P1 to P6), PAM with alpha (P7), and the
 //! floats of PFM. Floor 5.
 
 use super::{Bitmap, room, weight};

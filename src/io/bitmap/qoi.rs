@@ -1,4 +1,4 @@
-//! QOI, the “Quite OK Image” format: runs, differences and a table of 64 recent colours, by its
+//! QOI, the “Quite OK Image” format: runs, differences and a table of 64 recent colors, by its
 //! specification of 2022 (qoiformat.org). Floor 5.
 
 use super::{Bitmap, room, weight};
@@ -84,8 +84,8 @@ mod tests {
 
     #[test]
     fn every_kind_of_chunk_is_read() {
-        // A colour; one up in red and one down in blue; green + 5 with red + 8 and blue + 2;
-        // a run of two; the first colour from the table; one with alpha.
+        // A color; one up in red and one down in blue; green + 5 with red + 8 and blue + 2;
+        // a run of two; the first color from the table; one with alpha.
         let index = (10 * 3 + 20 * 5 + 30 * 7 + 255 * 11) % 64;
         let data = [
             &[0xfe, 10, 20, 30][..],

@@ -10,7 +10,7 @@ const ATTRIBUTES_AT: usize = 494;
 const FOOTER: &[u8] = b"TRUEVISION-XFILE.\0";
 
 /// Straight alpha, as the file means it: opaque where the channel is said to be none or is empty
-/// throughout, divided out where colours were multiplied by it.
+/// throughout, divided out where colors were multiplied by it.
 pub fn with_alpha(bytes: &[u8], image: DynamicImage) -> DynamicImage {
     let DynamicImage::ImageRgba8(mut pixels) = image else { return image };
     let declared = bytes.get(17).is_some_and(|byte| byte & ALPHA_BITS != 0);
@@ -34,7 +34,7 @@ pub fn with_alpha(bytes: &[u8], image: DynamicImage) -> DynamicImage {
 }
 
 /// The kind of the fourth channel, from the extension area if there is one: 0 to 2 mean none, 3
-/// alpha, 4 alpha that colours were multiplied by.
+/// alpha, 4 alpha that colors were multiplied by.
 fn attributes(bytes: &[u8]) -> Option<u8> {
     let footer = bytes.get(bytes.len().checked_sub(26)?..)?;
     let start = u32::from_le_bytes(*footer.first_chunk()?) as usize;

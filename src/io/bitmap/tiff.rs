@@ -1,4 +1,4 @@
-//! TIFF as scanners, renderers and painting programs store it: grey, palettes, RGB, YCbCr and CMYK,
+//! TIFF as scanners, renderers and painting programs store it: gray, palettes, RGB, YCbCr and CMYK,
 //! with and without alpha, 1 to 64 bits, integers and floats, in planes or pixel by pixel. Floor 5.
 //! Strips, tiles and compressions are the `tiff` crate's; `image` reads only part of what that
 //! decodes.
@@ -25,7 +25,7 @@ use tiff::{ColorType, TiffError};
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ColorModel {
     Grey,
-    /// Grey, 0 being white.
+    /// Gray, 0 being white.
     Ink,
     Palette,
     Rgb,
@@ -34,7 +34,7 @@ enum ColorModel {
 }
 
 impl ColorModel {
-    /// From the value of the tag; `None` for colour models that are not supported.
+    /// From the value of the tag; `None` for color models that are not supported.
     fn of(photometric: u16) -> Option<Self> {
         Some(match photometric {
             0 => ColorModel::Ink,
@@ -56,12 +56,12 @@ impl ColorModel {
     }
 }
 
-/// The meaning of the sample after the colours.
+/// The meaning of the sample after the colors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum AlphaKind {
     None,
     Straight,
-    /// The colours are multiplied by it.
+    /// The colors are multiplied by it.
     Associated,
 }
 
@@ -74,7 +74,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let meaning = ColorModel::of(entry.value);
     let others = "its colors are neither gray, indexed, RGB, YCbCr nor CMYK";
     let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
-    // The crate reads palettes and white-is-zero with alpha as plain grey. Their meaning is
+    // The crate reads palettes and white-is-zero with alpha as plain gray. Their meaning is
     // restored here.
     let as_grey = match meaning {
         ColorModel::Palette | ColorModel::Ink => Some(entry.with_value(bytes, 1)),
@@ -290,7 +290,7 @@ impl TiffLayout {
         self.meaning.colours() + usize::from(self.alpha != AlphaKind::None)
     }
 
-    /// The colours and the alpha of each pixel in turn, further samples left out; `None` where
+    /// The colors and the alpha of each pixel in turn, further samples left out; `None` where
     /// there are too few.
     fn gathered<T: TiffSample>(&self, values: &[T]) -> Option<Vec<T>> {
         let (area, channels) = (self.size.area(), self.channels());
@@ -306,7 +306,7 @@ impl TiffLayout {
         })
     }
 
-    /// Converts to additive colours that are not multiplied by alpha.
+    /// Converts to additive colors that are not multiplied by alpha.
     fn straight<T: TiffSample>(&self, mut pixels: Vec<T>) -> Vec<T> {
         for pixel in pixels.chunks_exact_mut(self.channels()) {
             let (colours, alpha) = pixel.split_at_mut(self.meaning.colours());
@@ -332,7 +332,7 @@ impl TiffLayout {
         self.straight(pixels).chunks_exact(self.channels()).flat_map(rgb).flatten().collect()
     }
 
-    /// The colours of palette indices.
+    /// The colors of palette indices.
     fn looked_up<T: TiffSample>(&self, pixels: &[T]) -> Option<DynamicImage> {
         let count = self.map.len() / 3;
         // Some programs wrote bytes where 16 bits are meant.

@@ -32,7 +32,7 @@ pub fn png_pixel_bits(bytes: &[u8]) -> Option<u64> {
     Some(samples * u64::from(*bytes.get(24)?))
 }
 
-/// A PNG says that it has a colour profile.
+/// A PNG says that it has a color profile.
 pub fn has_png_profile(bytes: &[u8]) -> bool {
     let mut at = 8;
     while let Some(head) = bytes.get(at..).and_then(<[u8]>::first_chunk::<8>) {

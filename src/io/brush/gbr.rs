@@ -1,4 +1,4 @@
-//! GIMP's brushes, versions 1 to 3: a picture of coverage or of colours, a name, a spacing.
+//! GIMP's brushes, versions 1 to 3: a picture of coverage or of colors, a name, a spacing.
 //! Floor 5.
 
 use super::{ImportedBrush, TipNames, text_of};
@@ -18,7 +18,7 @@ pub struct GbrBrush {
 }
 
 const MAGIC: [u8; 4] = *b"GIMP";
-/// A pattern that may follow a grey brush and gives it colours, from before brushes had their own.
+/// A pattern that may follow a gray brush and gives it colors, from before brushes had their own.
 const PATTERN: [u8; 4] = *b"GPAT";
 const SPACING: f32 = 0.25;
 
@@ -73,7 +73,7 @@ pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<Gbr
 enum GbrDepth {
     /// A byte of coverage.
     Grey,
-    /// Straight colours.
+    /// Straight colors.
     Rgba,
     /// CinePaint's: the upper half of a 32-bit float.
     Half,
@@ -98,7 +98,7 @@ impl GbrDepth {
     }
 }
 
-/// Coverage becomes an opaque grey, which is how tips distinguish it from colours.
+/// Coverage becomes an opaque gray, which is how tips distinguish it from colors.
 fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
     let grey = |v: u8| [v, v, v, 255];
     match depth {
@@ -112,7 +112,7 @@ fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
     }
 }
 
-/// A grey brush in the colours of the pattern at the cursor, if a pattern of its size is there.
+/// A gray brush in the colors of the pattern at the cursor, if a pattern of its size is there.
 fn colored(cursor: &mut ByteCursor, size: Size, coverage: &[[u8; 4]]) -> Option<Vec<[u8; 4]>> {
     let mut ahead = *cursor;
     let start = ahead.rest().len();

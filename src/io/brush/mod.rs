@@ -70,7 +70,7 @@ pub const EXTENSIONS: [(&str, BrushFormat); 6] = [
 ];
 
 impl BrushFormat {
-    /// Recognises the format by the content if possible, else by the extension: most of these
+    /// Recognizes the format by the content if possible, else by the extension: most of these
     /// formats have no signature.
     pub fn of(file: &Path, bytes: &[u8]) -> Option<Self> {
         if gbr::is_gbr(bytes) {

@@ -51,7 +51,7 @@ impl Encoded {
     /// Writes them; none where `terms` do not allow all of them.
     pub fn write(&self, terms: &Terms) -> Result<()> {
         self.check(terms)?;
-        // Never cancelled.
+        // Never canceled.
         let put = |(file, bytes): &(PathBuf, Asset)| {
             replace(&Disk, file, bytes.bytes(), terms, &Progress::default())
         };

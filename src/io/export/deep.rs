@@ -13,7 +13,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 /// The bytes of a picture file of a document, with 8 bits or more as requested; `None` if
-/// cancelled. `file` is for messages.
+/// canceled. `file` is for messages.
 pub fn encode_document(
     file: &Path,
     document: &Document,
@@ -43,7 +43,7 @@ pub fn encode_document(
 }
 
 /// A document flattened without rounding, if there is memory for it and for its file; `None` if
-/// cancelled.
+/// canceled.
 pub(super) fn flattened(
     file: &Path,
     document: &Document,
@@ -106,7 +106,7 @@ pub fn encode(
     }
 }
 
-/// A premultiplied pixel over a colour.
+/// A premultiplied pixel over a color.
 fn over(p: [f32; 4], under: [f32; 4]) -> [f32; 4] {
     std::array::from_fn(|c| p[c] + under[c] * (1.0 - p[3]))
 }

@@ -7,7 +7,7 @@ use exr::prelude::*;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Straight linear light as R, G, B and A; colours are stored multiplied by alpha, as EXR has them.
+/// Straight linear light as R, G, B and A; colors are stored multiplied by alpha, as EXR has them.
 pub fn encode_light(file: &Path, size: Size, texels: &[[f32; 4]]) -> Result<Vec<u8>> {
     let channel =
         |c: usize| texels.iter().map(move |t| if c < 3 { t[c] * t[3] } else { t[3] }).collect();

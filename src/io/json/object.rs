@@ -35,7 +35,7 @@ impl JsonObject {
         }
     }
 
-    /// The same for a colour.
+    /// The same for a color.
     pub fn color(&mut self, name: &str, value: Color, default: Color) {
         if value != default {
             self.set(name, color(value));
@@ -106,7 +106,7 @@ pub fn vector(v: Vec3) -> Value {
     Value::Array(vec![number(v.x), number(v.y), number(v.z)])
 }
 
-/// A colour as a text.
+/// A color as a text.
 pub fn color(c: Color) -> Value {
     c.to_string().into()
 }

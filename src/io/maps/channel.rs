@@ -77,7 +77,7 @@ impl Channel {
     }
 }
 
-/// The channels of an image, grey as one, alpha last where there is one.
+/// The channels of an image, gray as one, alpha last where there is one.
 pub fn channels(image: DynamicImage) -> Vec<Channel> {
     let size = Size::new(image.width(), image.height());
     match image {

@@ -3,7 +3,7 @@
 
 use crate::document::source::{DepthConvention, NormalConvention};
 
-/// Normal maps are nearer to length 1 than this, in the mean; colours of drawings and photos are
+/// Normal maps are nearer to length 1 than this, in the mean; colors of drawings and photos are
 /// not.
 const MOST_LENGTH_ERROR: f32 = 0.1;
 

@@ -69,7 +69,7 @@ pub fn import(
     Ok(whole.expect("nobody cancels it"))
 }
 
-/// The same with somebody watching; `None` if cancelled.
+/// The same with somebody watching; `None` if canceled.
 pub fn import_watched(
     source: &SurfaceSource,
     files: &dyn Files,

@@ -107,7 +107,7 @@ pub fn object_of(file: &Path) -> String {
         .unwrap_or_else(|| if says_nothing { stem.clone() } else { name.to_owned() })
 }
 
-/// Groups files of the same folder and name; unrecognised files are left out, and so are sets of
+/// Groups files of the same folder and name; unrecognized files are left out, and so are sets of
 /// one file.
 pub fn sets(files: &[PathBuf]) -> Vec<MapSet> {
     let mut found: Vec<(PathBuf, MapSet)> = Vec::new();

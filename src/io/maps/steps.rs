@@ -8,7 +8,7 @@ use crate::raster::Plane;
 /// flat.
 const NEARLY_FLAT: f32 = 1.5 / 255.0;
 
-/// Makes flat parts exactly flat: pixels all of whose neighbours within two pixels are nearly flat
+/// Makes flat parts exactly flat: pixels all of whose neighbors within two pixels are nearly flat
 /// too. Returns how many.
 ///
 /// A dome's top is not flat: its normals leave the zero within two pixels.
@@ -38,8 +38,8 @@ pub fn snap_flat(normals: &mut Plane<Vec3>) -> usize {
     count
 }
 
-/// Smooths a plane of quantised numbers: the flattest one whose every number still rounds to the
-/// stored one, joining neighbours at most a step and a half apart, so that edges stay.
+/// Smooths a plane of quantized numbers: the flattest one whose every number still rounds to the
+/// stored one, joining neighbors at most a step and a half apart, so that edges stay.
 pub fn smooth(stored: &Plane<f32>, step: f32, inside: &Plane<bool>) -> Plane<f32> {
     // Steps as wide as this many pixels are smoothed; each pass reaches one pixel further.
     const PASSES: usize = 48;

@@ -1,5 +1,5 @@
 //! Maps as their files store them: numbers per channel. Only the layer of an EXR is chosen; nothing
-//! else is interpreted. Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
+//! else is interpreted. Floor 5. Color tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
 
 use super::channel::{Channel, channels};
 use super::layers::{self, MapRole};
@@ -17,7 +17,7 @@ pub struct StoredMap {
     pub channels: Vec<Channel>,
     /// Coverage stored in the file, `[0, 1]`; absent if it is 1 everywhere.
     pub alpha: Option<Channel>,
-    /// The step between two neighbouring numbers of an integer file: 1/255 or 1/65535.
+    /// The step between two neighboring numbers of an integer file: 1/255 or 1/65535.
     pub step: Option<f32>,
     /// JPEG, or EXR's B44: equal pixels may differ a little, and the background bleeds into the
     /// rim.
@@ -142,7 +142,7 @@ impl StoredMap {
         std::array::from_fn(|c| self.channels.get(c).map_or(0.0, |channel| channel.at(i)))
     }
 
-    /// The number of the file's colour channels, alpha not counted.
+    /// The number of the file's color channels, alpha not counted.
     pub fn colours(&self) -> usize {
         match self.channels.len() {
             2 if self.step.is_some() => 1,
@@ -151,7 +151,7 @@ impl StoredMap {
         }
     }
 
-    /// Whether all colour channels are equal at every pixel, as in a grey picture stored as RGB.
+    /// Whether all color channels are equal at every pixel, as in a gray picture stored as RGB.
     pub fn is_grey(&self, tolerance: f32) -> bool {
         let first = &self.channels[0];
         let others = self.channels.iter().take(self.colours()).skip(1);

@@ -53,7 +53,7 @@ fn picture(file: &Path, exr: &ExrFile, pass: &ExrPass, budget: &Budget) -> Resul
         .ok_or_else(|| Error::decode(file, "the picture has no pixels"))
 }
 
-/// EXR's alpha is associated: colours are stored multiplied by it.
+/// EXR's alpha is associated: colors are stored multiplied by it.
 pub fn straight([r, g, b, a]: [f32; 4]) -> [f32; 4] {
     if a > 0.0 && a < 1.0 { [r / a, g / a, b / a, a] } else { [r, g, b, a] }
 }
@@ -64,8 +64,8 @@ pub(super) fn rank(pass: &ExrPass) -> usize {
     WHOLE.iter().position(|known| *known == last).unwrap_or(WHOLE.len())
 }
 
-/// The colour layer of an EXR: the unnamed one, else one called colour or beauty, else the first
-/// with R, G and B, else a lone grey channel.
+/// The color layer of an EXR: the unnamed one, else one called color or beauty, else the first
+/// with R, G and B, else a lone gray channel.
 pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     let colour = |pass: &&ExrPass| pass.letters("rgb").is_some();
     let grey = |pass: &&ExrPass| {
@@ -82,7 +82,7 @@ pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     })
 }
 
-/// Passes on the colours of a layer as stored (grey repeated in all three, alpha 1 if absent):
+/// Passes on the colors of a layer as stored (gray repeated in all three, alpha 1 if absent):
 /// whole rows from the top, a multiple of the height of tiles at a time, so that only these are in
 /// memory.
 pub fn in_bands(

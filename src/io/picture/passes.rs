@@ -1,4 +1,4 @@
-//! The layers of colours of an EXR, as paint.
+//! The layers of colors of an EXR, as paint.
 //! Floor 5.
 
 use super::light::{WHOLE, rank};
@@ -9,7 +9,7 @@ use crate::pixels::Painted;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// A layer of colours.
+/// A layer of colors.
 pub struct LightLayer {
     /// Empty for the channels without a layer.
     pub name: String,
@@ -19,7 +19,7 @@ pub struct LightLayer {
     pub is_whole: bool,
 }
 
-/// Every layer of colours of an EXR, in the file's order; none where there are not several.
+/// Every layer of colors of an EXR, in the file's order; none where there are not several.
 ///
 /// Fails as [`decode`](super::decode) does, and where all of them together are beyond the budget.
 pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLayer>> {
@@ -27,7 +27,7 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLay
         return Ok(Vec::new());
     }
     let exr = ExrFile::open(file, bytes, budget)?;
-    // Cryptomatte stores object ids in colour channels.
+    // Cryptomatte stores object ids in color channels.
     let is_light =
         |pass: &&ExrPass| pass.letters("rgb").is_some() && !pass.key().starts_with("crypto");
     let passes: Vec<&ExrPass> = exr.passes().iter().filter(is_light).collect();

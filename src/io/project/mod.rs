@@ -59,7 +59,7 @@ pub const MANIFEST: &str = "rilievo/manifest.json";
 const STACK: &str = "stack.xml";
 const MERGED: &str = "mergedimage.png";
 
-/// The bytes of a project; `None` if cancelled. `file` is for messages.
+/// The bytes of a project; `None` if canceled. `file` is for messages.
 ///
 /// The same document gives the same bytes, and so does the document read back from them.
 pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {

@@ -1,4 +1,4 @@
-//! Selections that a Photoshop file keeps: channels beyond the colours of the merged picture, with
+//! Selections that a Photoshop file keeps: channels beyond the colors of the merged picture, with
 //! their names. Floor 5. Not here: the channels themselves (`merged`, `write`).
 
 use super::cursor::{ByteCursor, shown_text};
@@ -9,7 +9,7 @@ use crate::raster::CoverageGrid;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Names of the channels beyond the colours, with 8 and 16 bits per letter; the identifier of each;
+/// Names of the channels beyond the colors, with 8 and 16 bits per letter; the identifier of each;
 /// how each is shown.
 const NAMES: u16 = 1006;
 const UNICODE_NAMES: u16 = 1045;
@@ -18,7 +18,7 @@ const SHOWN: u16 = 1077;
 const SHOWN_BEFORE: u16 = 1007;
 /// The name of the transparency among them.
 const TRANSPARENCY: &str = "Transparency";
-/// Channels that a file may have besides its colours and their transparency.
+/// Channels that a file may have besides its colors and their transparency.
 const MOST: usize = 56 - 4;
 
 /// The selections of a document that a file keeps for other programs, in their order.
@@ -62,7 +62,7 @@ pub fn resources(kept: &[NamedSelection]) -> Vec<(u16, Vec<u8>)> {
     vec![(NAMES, short), (UNICODE_NAMES, long), (NUMBERS, numbers)]
 }
 
-/// The channels beyond colours and transparency as selections, and how many of them are inks
+/// The channels beyond colors and transparency as selections, and how many of them are inks
 /// instead.
 pub fn selections(
     channels: Vec<CoverageGrid>,

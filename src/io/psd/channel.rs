@@ -14,7 +14,7 @@ pub struct ChannelLayout {
     pub height: usize,
     /// 1, 8, 16 or 32.
     pub bits: u16,
-    /// Colours, not coverage: with 32 bits they are linear light.
+    /// Colors, not coverage: with 32 bits they are linear light.
     pub is_colour: bool,
     /// Row lengths take four bytes instead of two.
     pub large: bool,
@@ -71,7 +71,7 @@ impl ChannelValue for u16 {
     }
 }
 
-/// A float as stored; of colours, linear light, which is clipped to white and encoded.
+/// A float as stored; of colors, linear light, which is clipped to white and encoded.
 fn encoded(stored: [u8; 4], shape: ChannelLayout) -> f32 {
     let value = f32::from_be_bytes(stored);
     if shape.is_colour { srgb::encode(value.max(0.0).min(1.0)) } else { value }
@@ -214,7 +214,7 @@ fn inflate(zlib: &[u8], wanted: usize) -> Option<Vec<u8>> {
     (values.len() == wanted).then_some(values)
 }
 
-/// Each value was stored as what it differs by from its left neighbour. Of floats all first bytes
+/// Each value was stored as what it differs by from its left neighbor. Of floats all first bytes
 /// come first, then all second ones, and it is the bytes that differ.
 fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
     for row in values.chunks_exact_mut(shape.row_bytes().max(1)) {

@@ -1,5 +1,5 @@
-//! A file's channels of colour, in any colour mode, as straight sRGB. Floor 5. Not here: reading
-//! the channels (`channel`), profiles of RGB and grey (`picture`).
+//! A file's channels of color, in any color mode, as straight sRGB. Floor 5. Not here: reading
+//! the channels (`channel`), profiles of RGB and gray (`picture`).
 
 use super::channel::ChannelValue;
 use crate::math::{Size, srgb};
@@ -31,7 +31,7 @@ impl Mode {
         }
     }
 
-    /// Channels of colour, at least.
+    /// Channels of color, at least.
     pub fn channels(self) -> u16 {
         match self {
             Mode::Bitmap | Mode::Grey | Mode::Indexed | Mode::Duotone | Mode::Multichannel => 1,
@@ -41,17 +41,17 @@ impl Mode {
     }
 }
 
-/// The colours of one file.
+/// The colors of one file.
 #[derive(Clone, Copy, Debug)]
 pub struct Colours<'a> {
     pub mode: Mode,
-    /// Channels of colour that the file has, at most four.
+    /// Channels of color that the file has, at most four.
     pub channels: usize,
     /// 32 bits a channel hold light, which no profile changes.
     pub is_light: bool,
     /// All reds, all greens, all blues.
     pub table: &'a [u8],
-    /// The colour of the table that means transparent.
+    /// The color of the table that means transparent.
     pub nothing: Option<u8>,
     pub icc: Option<&'a [u8]>,
 }
@@ -65,7 +65,7 @@ pub struct StraightPixels {
     pub deep: Vec<[u16; 4]>,
 }
 
-/// A channel's value whose colours are known.
+/// A channel's value whose colors are known.
 pub trait ColourValue: ChannelValue {
     /// As [`Colours::to_srgb`].
     fn pixels(
@@ -106,7 +106,7 @@ impl Colours<'_> {
         Self { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
     }
 
-    /// As [`to_srgb`](Self::to_srgb), of RGB and grey, in 16 bits.
+    /// As [`to_srgb`](Self::to_srgb), of RGB and gray, in 16 bits.
     fn to_srgb_deep(
         self,
         size: Size,
@@ -136,7 +136,7 @@ impl Colours<'_> {
         }
     }
 
-    /// Straight sRGB of planes; without alpha opaque, without a colour channel black, without any
+    /// Straight sRGB of planes; without alpha opaque, without a color channel black, without any
     /// transparent.
     pub fn to_srgb(
         self,
@@ -199,7 +199,7 @@ impl Colours<'_> {
         }
     }
 
-    /// The profile that RGB and grey go through.
+    /// The profile that RGB and gray go through.
     fn profile(&self) -> Option<&[u8]> {
         self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc))
     }
@@ -211,7 +211,7 @@ impl Colours<'_> {
         }
     }
 
-    /// A colour of the table by its number; a number beyond the table is black.
+    /// A color of the table by its number; a number beyond the table is black.
     fn looked_up(&self, number: u8) -> [u8; 3] {
         let (count, number) = (self.table.len() / 3, usize::from(number));
         [0, 1, 2].map(|c| {
@@ -256,7 +256,7 @@ struct Press {
 }
 
 impl Press {
-    /// `None` where the profile is of other colours, or cannot be used.
+    /// `None` where the profile is of other colors, or cannot be used.
     fn new(icc: &[u8]) -> Option<Self> {
         let profile = ColorProfile::new_from_slice(icc)
             .ok()
@@ -290,7 +290,7 @@ impl Press {
         Some(srgb::luminance(r, g, b).max(0.0).min(0.18))
     }
 
-    /// Puts the inks' colours into straight pixels, some thousand at a time.
+    /// Puts the inks' colors into straight pixels, some thousand at a time.
     fn print(&self, rgba: &mut [u8], ink: impl Fn(usize) -> [u8; 4]) {
         const AT_ONCE: usize = 4096;
         let light = |v: u16| {

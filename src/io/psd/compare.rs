@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    /// One grey except for one black pixel.
+    /// One gray except for one black pixel.
     fn picture(value: u8) -> Option<Merged> {
         let mut rgba = [value, value, value, 255].repeat(200);
         rgba[..3].fill(0);

@@ -33,7 +33,7 @@ pub struct WrittenPsd {
     pub notes: Vec<String>,
 }
 
-/// The bytes of a Photoshop file, 8 bits a channel; `None` if cancelled. `file` is for messages.
+/// The bytes of a Photoshop file, 8 bits a channel; `None` if canceled. `file` is for messages.
 ///
 /// They are read again as any file is, and compared: every record and pixel, the merged picture,
 /// and the document that comes back live. Fails with a sentence that says what would not come back,

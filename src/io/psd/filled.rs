@@ -64,7 +64,7 @@ fn drawn(
     }
 }
 
-/// A fill and its pixels, which show its shape: if their colours differ, the pixels win.
+/// A fill and its pixels, which show its shape: if their colors differ, the pixels win.
 fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     let is_plain = !record.stroked && !record.unfilled;
     let live = match fill {
@@ -92,7 +92,7 @@ fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     live
 }
 
-/// A straight, opaque gradient whose colours the pixels have.
+/// A straight, opaque gradient whose colors the pixels have.
 fn straight(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option<Content> {
     let rect = filled_rect(record, gradient, size);
     let live =
@@ -110,11 +110,11 @@ fn filled_rect(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Rec
     if gradient.aligned && !layer.is_empty() { layer } else { size.rect() }
 }
 
-/// Whether the pixels have those colours, faint ones aside.
+/// Whether the pixels have those colors, faint ones aside.
 fn is_of(record: &LayerRecord, colour: impl Fn([i32; 2]) -> Option<Color>) -> bool {
     let width = record.rect.width().max(1);
     record.rgba.as_chunks::<4>().0.iter().enumerate().all(|(i, &[r, g, b, a])| {
-        // A faint pixel keeps too little of its colour.
+        // A faint pixel keeps too little of its color.
         let at = [record.rect.x0 + (i % width) as i32, record.rect.y0 + (i / width) as i32];
         a < 64
             || colour(at).is_some_and(|c| {

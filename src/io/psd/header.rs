@@ -17,7 +17,7 @@ pub struct PsdHeader {
     pub channels: u16,
     pub bits: u16,
     pub mode: Mode,
-    /// Its pixels are read as 16 bits: it has more than 8, of colours that are kept as they are,
+    /// Its pixels are read as 16 bits: it has more than 8, of colors that are kept as they are,
     /// and the budget allows deep paint.
     pub is_deep: bool,
 }
@@ -43,7 +43,7 @@ impl PsdHeader {
             * (rgba + planes * value + planes * u64::from(self.bits.div_ceil(8)))
     }
 
-    /// Channels of colour, at most four.
+    /// Channels of color, at most four.
     pub fn colours(&self) -> usize {
         match self.mode {
             Mode::Multichannel => usize::from(self.channels.min(4)),

@@ -1,4 +1,4 @@
-//! Aids that are not part of the picture: guides, and the label colours of layers. Floor 5.
+//! Aids that are not part of the picture: guides, and the label colors of layers. Floor 5.
 
 use super::cursor::ByteCursor;
 use super::header::resource;
@@ -12,7 +12,7 @@ const STEPS_A_PX: f32 = 32.0;
 /// Default distance between the lines of the grid, in the same steps.
 const GRID: u32 = 576;
 
-/// Photoshop's colours of layers, in the order of their numbers.
+/// Photoshop's colors of layers, in the order of their numbers.
 const LABELS: [LayerLabel; 8] = [
     LayerLabel::None,
     LayerLabel::Red,

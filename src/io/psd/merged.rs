@@ -19,7 +19,7 @@ pub struct Merged {
     pub has_alpha: bool,
     /// The writer did not say that it left the picture out.
     pub is_real: bool,
-    /// Its channels beyond colours and transparency.
+    /// Its channels beyond colors and transparency.
     pub selections: Vec<NamedSelection>,
     /// How many of them are inks, which are left out.
     pub inks: usize,
@@ -55,7 +55,7 @@ pub fn merged<T: ColourValue>(
     slots.iter_mut().take(header.colours()).for_each(|slot| *slot = planes.next());
     let alpha = planes.next();
     let mut pixels = T::pixels(*colours, header.size, &slots, alpha.as_deref());
-    // Photoshop blends the colours with white as far as they are transparent; some programs do not.
+    // Photoshop blends the colors with white as far as they are transparent; some programs do not.
     if has_alpha && count.is_some() && is_on_white(&pixels.rgba) {
         off_white(pixels.rgba.as_chunks_mut().0);
         off_white(&mut pixels.deep);
@@ -65,7 +65,7 @@ pub fn merged<T: ColourValue>(
     Some(Merged { pixels, has_alpha, is_real, selections, inks })
 }
 
-/// A channel beyond the colours is the transparency of all layers, not a selection that somebody
+/// A channel beyond the colors is the transparency of all layers, not a selection that somebody
 /// kept.
 fn has_alpha(resources: ByteCursor, mode: Mode, count: Option<i16>) -> bool {
     let names = resource(resources, alpha_channels::NUMBERS).unwrap_or_default();
@@ -100,7 +100,7 @@ fn planes<T: ChannelValue>(
     (planes.len() >= own).then_some(planes)
 }
 
-/// No colour is darker than it can be on white.
+/// No color is darker than it can be on white.
 fn is_on_white(rgba: &[u8]) -> bool {
     rgba.as_chunks::<4>()
         .0
@@ -108,8 +108,8 @@ fn is_on_white(rgba: &[u8]) -> bool {
         .all(|[r, g, b, a]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a))
 }
 
-/// Removes the white beneath colours as far as they are transparent; fully transparent pixels keep
-/// no colour.
+/// Removes the white beneath colors as far as they are transparent; fully transparent pixels keep
+/// no color.
 pub fn off_white<T: ChannelValue + TryFrom<i64>>(texels: &mut [[T; 4]])
 where
     i64: From<T>,

@@ -1,5 +1,5 @@
 //! Photoshop documents, in and out: the format that illustrators exchange (docs/PROJECTS.md says
-//! what is carried). Floor 5. Every kind of colours in, PSD and PSB, RGB and grey with up to 16
+//! what is carried). Floor 5. Every kind of colors in, PSD and PSB, RGB and gray with up to 16
 //! bits; 8-bit RGB out.
 //!
 //! | file | |
@@ -11,8 +11,8 @@
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `adjustments` | what adjustment layers do |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
-//! | `alpha_channels` | selections, the channels besides the colours |
-//! | `marks` | guides, and the colours of layers in the list |
+//! | `alpha_channels` | selections, the channels besides the colors |
+//! | `marks` | guides, and the colors of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
 //! | `compare` | whether that looks like the file's own picture, and what is done if it does not |

@@ -14,7 +14,7 @@ use crate::document::Guides;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Which colour of the table means transparent.
+/// Which color of the table means transparent.
 const TRANSPARENT_NUMBER: u16 = 1047;
 
 /// A file's parts.

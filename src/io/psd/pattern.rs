@@ -62,7 +62,7 @@ fn pattern(
     Ok(rgba(body, mode, size).map(|rgba| PatternResource { id, size, rgba }))
 }
 
-/// Its name, what its colours are, its size, and what follows.
+/// Its name, what its colors are, its size, and what follows.
 fn head(mut data: ByteCursor) -> Option<(String, Mode, Size, ByteCursor)> {
     data.u32()?;
     let mode = Mode::of(u16::try_from(data.u32()?).ok()?)?;
@@ -75,7 +75,7 @@ fn head(mut data: ByteCursor) -> Option<(String, Mode, Size, ByteCursor)> {
 fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
     let mut table = Vec::new();
     if mode == Mode::Indexed {
-        // Here red, green and blue of a colour are interleaved.
+        // Here red, green and blue of a color are interleaved.
         let interleaved = data.take(768)?;
         table = (0..3).flat_map(|c| interleaved.iter().skip(c).step_by(3).copied()).collect();
         data.take(4)?;
@@ -86,7 +86,7 @@ fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
     let most = list.u32()?.min(MOST_CHANNELS);
     let mut planes: [Option<Vec<u8>>; 4] = [None, None, None, None];
     let mut alpha = None;
-    // The places of the colours are followed by two more, for the mask and the transparency.
+    // The places of the colors are followed by two more, for the mask and the transparency.
     for i in 0..most + 2 {
         let Some(plane) = channel_of(&mut list, mode, size)? else { continue };
         match planes.get_mut(i as usize).filter(|_| i < u32::from(mode.channels())) {

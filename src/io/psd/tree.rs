@@ -107,7 +107,7 @@ fn with_guides_of(document: Document, found: Guides) -> Document {
     }
 }
 
-/// What the file's colours were converted to.
+/// What the file's colors were converted to.
 fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
     let header = &parsed.header;
     let what = match header.mode {

@@ -28,7 +28,7 @@ pub fn encode_file(
     long(&mut out, size.height);
     long(&mut out, size.width);
     short(&mut out, 8);
-    // RGB, and no table of colours.
+    // RGB, and no table of colors.
     short(&mut out, 3);
     long(&mut out, 0);
     section(&mut out, &resources(selections, guides, ours));
@@ -45,7 +45,7 @@ pub fn encode_file(
     out
 }
 
-/// The merged picture's colours are blended with white where it is transparent; readers remove the
+/// The merged picture's colors are blended with white where it is transparent; readers remove the
 /// white again.
 pub fn on_white(straight: &[u8]) -> Vec<u8> {
     let mixed = |c: u8, a: u8| {

@@ -1,4 +1,4 @@
-//! Reads and writes adjustments of colours by the parameters that they show. Floor 5. An adjustment
+//! Reads and writes adjustments of colors by the parameters that they show. Floor 5. An adjustment
 //! is an object of its own within a layer: its kind, and what differs from how it begins.
 
 use super::images::stops;

@@ -58,7 +58,7 @@ fn facing(node: &JsonNode) -> Result<StrokeFrame> {
     Ok(facing)
 }
 
-/// `{ "hue": 0, "saturation": 0, "value": 0 }`: how far a dab's colour may be from the stroke's,
+/// `{ "hue": 0, "saturation": 0, "value": 0 }`: how far a dab's color may be from the stroke's,
 /// hue in degrees.
 fn jitter(node: &JsonNode, base: ColorJitter) -> Result<ColorJitter> {
     let mut fields = node.fields()?;

@@ -80,7 +80,7 @@ impl LayerReader<'_> {
     }
 }
 
-/// The default anchor of an image: its centre, if it bends at all.
+/// The default anchor of an image: its center, if it bends at all.
 pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
     match operator {
         Operator::None => Vec::new(),

@@ -230,7 +230,7 @@ impl PictureCache {
     }
 }
 
-/// Normals averaged with their neighbours; their lengths do not matter.
+/// Normals averaged with their neighbors; their lengths do not matter.
 fn blurred(normals: Plane<Vec3>, blur_px: f32) -> Plane<Vec3> {
     let pixels: Vec<[f32; 3]> = normals.values().iter().map(|n| n.to_array()).collect();
     let blurred = blur::gaussian_pixels(normals.size(), &pixels, blur_px);

@@ -26,7 +26,7 @@ pub struct BrushPreset {
     pub group: PresetGroup,
     /// One sentence.
     pub about: String,
-    /// The colour it is shown in; choosing it changes no colour.
+    /// The color it is shown in; choosing it changes no color.
     pub color: Color,
     /// The brush itself.
     pub brush: Brush,
@@ -51,7 +51,7 @@ rilievo_engine::named! {
     }
 }
 
-/// The default colour of a preset: a warm white.
+/// The default color of a preset: a warm white.
 const SHOWN: Color = Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 };
 
 /// The keys of the brushes that come with the program.

@@ -89,7 +89,7 @@ fn named(head: &Value) -> (String, Option<PathBuf>) {
 }
 
 /// The last whole version in the bytes of a log, with the surface that its parts make; `None` if
-/// cancelled.
+/// canceled.
 pub fn read(
     file: &Path,
     log: &[u8],
@@ -117,7 +117,7 @@ impl LostSession {
         UNIX_EPOCH.checked_add(Duration::from_micros(micros))
     }
 
-    /// The last whole version in the log; `None` if cancelled.
+    /// The last whole version in the log; `None` if canceled.
     ///
     /// It leaves a mark file while it works: if it crashes the program, `has_failed` is true the
     /// next time.

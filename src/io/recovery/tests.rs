@@ -365,7 +365,7 @@ fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
     assert!(sessions(&disk(), Path::new("/no/such/folder")).is_empty());
 }
 
-/// Processes are recognised by the locks they hold, not by their ids, which are reused.
+/// Processes are recognized by the locks they hold, not by their ids, which are reused.
 #[test]
 fn a_process_number_that_came_again_hides_nothing() {
     let folder = tempfile::tempdir().unwrap();

@@ -19,7 +19,7 @@ pub use target::{check, is_same_file};
 
 /// Bytes written or compared between two looks at whether the file is still wanted.
 const CHUNK: usize = 1 << 20;
-/// Programs that synchronise folders hold a file for some milliseconds; waited for, twice as long
+/// Programs that synchronize folders hold a file for some milliseconds; waited for, twice as long
 /// each time.
 const RENAME_TRIES: u32 = 6;
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
@@ -91,7 +91,7 @@ impl From<Overwrite> for Terms {
 }
 
 /// Replaces a file by bytes with the mechanism of docs/PROJECTS.md; true if it was done, false if
-/// cancelled.
+/// canceled.
 ///
 /// Fails with [`Error::Changed`] if `terms` do not allow the replacement. Whatever fails, the old
 /// file is unchanged.
@@ -115,7 +115,7 @@ struct ReplaceJob<'a> {
 }
 
 impl ReplaceJob<'_> {
-    /// Whether it was done, and not cancelled.
+    /// Whether it was done, and not canceled.
     fn run(&self) -> Result<bool> {
         let target = self.target()?;
         self.allowed(&target)?;
@@ -137,7 +137,7 @@ impl ReplaceJob<'_> {
         Ok(true)
     }
 
-    /// Writes the new file under another name and verifies it; false if cancelled meanwhile.
+    /// Writes the new file under another name and verifies it; false if canceled meanwhile.
     fn write_part(&self, part: &mut PartFile, target: &Path) -> Result<bool> {
         let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
         self.progress.add_total(2 * chunks);

@@ -157,7 +157,7 @@ impl Autosave {
     pub fn close(&mut self, open_documents: &[OpenDocument], tool: ToolKind) {
         self.follow(open_documents, tool);
         for open in open_documents.iter().filter(|open| !open.is_dirty()) {
-            // A log that cannot be deleted is recognised as safe the next time.
+            // A log that cannot be deleted is recognized as safe the next time.
             let _ = self.end(open.key);
         }
     }
@@ -226,7 +226,7 @@ impl LostSessions {
     }
 
     /// Recovers a drawing: untitled and unsaved. Its old log is deleted once a new one holds it.
-    /// `None` if cancelled: it is offered again.
+    /// `None` if canceled: it is offered again.
     pub fn bring_back(
         &self,
         mut session: recovery::LostSession,

@@ -11,7 +11,7 @@ pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
     painted_with_progress(document, layer, &Progress::default())
 }
 
-/// The same; `None` also if cancelled.
+/// The same; `None` also if canceled.
 pub fn painted_with_progress(
     document: &Document,
     layer: LayerId,

@@ -1,5 +1,5 @@
 //! The crop tool: an area that is dragged over the canvas, or beyond it, until it is applied or
-//! cancelled. Floor 5. Not here: what a document becomes within it (`document::canvas_change`).
+//! canceled. Floor 5. Not here: what a document becomes within it (`document::canvas_change`).
 
 use super::gizmo::TransformHandle;
 use super::snap::{SnapLines, SnapTargets};

@@ -1,4 +1,4 @@
-//! The eyedropper: the colour that the flattened picture shows under the pen.
+//! The eyedropper: the color that the flattened picture shows under the pen.
 //! Floor 5.
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
@@ -29,7 +29,7 @@ impl Gesture for EyedropperGesture {
     }
 }
 
-/// The opaque colour of a pixel; `None` off the canvas and where nothing is painted.
+/// The opaque color of a pixel; `None` off the canvas and where nothing is painted.
 pub fn color_at(document: &Document, at: Vec2) -> Option<Color> {
     let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
     if !document.size.rect().contains(x, y) {

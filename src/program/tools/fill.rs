@@ -68,7 +68,7 @@ fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
     Some((document.with_inserted(layer, place)?, id))
 }
 
-/// The layer's pixels with a colour over the filled area.
+/// The layer's pixels with a color over the filled area.
 fn painted(
     base: &TileGrid,
     filled: &FilledArea,

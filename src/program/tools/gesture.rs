@@ -33,7 +33,7 @@ pub enum Outcome {
     Cancel,
 }
 
-/// A change of settings that a tool makes: the pen dragged a tolerance, or picked a colour.
+/// A change of settings that a tool makes: the pen dragged a tolerance, or picked a color.
 pub type SettingsChange = Box<dyn FnOnce(&mut ToolSettings) + Send>;
 
 /// What is chosen in a document besides its layers.

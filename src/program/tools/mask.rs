@@ -1,6 +1,6 @@
-//! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the
+//! The brush and the eraser on a layer's mask: light colors show the layer, dark ones and the
 //! eraser hide it. The strokes are those of the brush, on a temporary paint layer with the mask's
-//! greys. Floor 5. Not here: the strokes (`brush`).
+//! grays. Floor 5. Not here: the strokes (`brush`).
 
 use super::brush;
 use super::closed;
@@ -34,7 +34,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     painted(context, (pen, purpose), MaskTarget::Layer(layer.id), coverage.clone(), sees)
 }
 
-/// The pen comes down on the selection itself: light colours select, dark ones and the eraser
+/// The pen comes down on the selection itself: light colors select, dark ones and the eraser
 /// deselect.
 pub fn press_on_selection(
     context: &ToolContext,
@@ -50,7 +50,7 @@ pub fn press_on_selection(
     painted(context, (pen, purpose), MaskTarget::Selection, Arc::new(mask), sees)
 }
 
-/// Begins a stroke on a sheet of a mask's greys; `sees`: the document around the sheet.
+/// Begins a stroke on a sheet of a mask's grays; `sees`: the document around the sheet.
 fn painted(
     context: &ToolContext,
     (pen, purpose): (PenSample, StrokePurpose),
@@ -95,7 +95,7 @@ struct MaskGesture {
     /// The mask with the stroke so far, and the tiles that hold the same.
     mask: Arc<Plane<u8>>,
     shown: TileGrid,
-    /// On the sheet of greys.
+    /// On the sheet of grays.
     stroke: Box<dyn Gesture>,
 }
 
@@ -153,7 +153,7 @@ impl Gesture for MaskGesture {
     }
 }
 
-/// A mask as opaque greys; tiles of one grey are one tile.
+/// A mask as opaque grays; tiles of one gray are one tile.
 fn greys(mask: &Plane<u8>) -> TileGrid {
     let canvas = mask.size().rect();
     let mut grid = TileGrid::for_rect(canvas);
@@ -183,7 +183,7 @@ fn greys(mask: &Plane<u8>) -> TileGrid {
     grid
 }
 
-/// The greys of a tile back into the mask; what was erased is black.
+/// The grays of a tile back into the mask; what was erased is black.
 fn put(mask: &mut Plane<u8>, at: TileAt, tile: Option<&Tile>) {
     let (rect, inside) = (at.rect(), at.rect().intersect(mask.size().rect()));
     for y in inside.y0..inside.y1 {

@@ -116,9 +116,9 @@ pub struct ToolSettings {
     pub brush: Brush,
     /// Whether a mouse, which has no pressure, presses less the faster it moves.
     pub presses_by_speed: bool,
-    /// The foreground and the background colour.
+    /// The foreground and the background color.
     pub color: Color,
-    /// The background colour.
+    /// The background color.
     pub second_color: Color,
     /// How new marks follow the surface.
     pub operator: Operator,

@@ -109,7 +109,7 @@ impl Overlay {
     }
 }
 
-/// How the anchors of the selected image share the surface, small, in a corner, each in its colour
+/// How the anchors of the selected image share the surface, small, in a corner, each in its color
 /// (SF fig. 9).
 #[derive(Default)]
 pub struct Insets {

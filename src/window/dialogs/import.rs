@@ -352,7 +352,7 @@ impl ImportDialog {
                     ui.painter().rect_filled(rect, 4.0, Color32::from_gray(0x20));
                     let uv = egui::Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                     ui.painter().image(texture.id(), at, uv, Color32::WHITE);
-                    // A colour that the pictures lack, since their border may be black or white.
+                    // A color that the pictures lack, since their border may be black or white.
                     let chosen_rim = egui::Stroke::new(3.0, ui.visuals().selection.bg_fill);
                     let rim = if is_chosen { chosen_rim } else { ui.visuals().window_stroke };
                     ui.painter().rect_stroke(rect, 4.0, rim, StrokeKind::Inside);

@@ -307,7 +307,7 @@ fn level_handles(
         0 => range.black = tone.round().min(range.white - 2.0).max(0.0),
         2 => range.white = tone.round().max(range.black + 2.0),
         _ => {
-            // The tone that becomes mid-grey: its share of the range to the power 1/γ is a half.
+            // The tone that becomes mid-gray: its share of the range to the power 1/γ is a half.
             let share = (tone - range.black) / (range.white - range.black).max(2.0);
             range.gamma = (share.clamp(0.001, 0.999).ln() / 0.5f32.ln()).clamp(0.1, 9.99);
         }

@@ -1,4 +1,4 @@
-//! Colour: a square of saturation and value next to a bar of hues, numbers, and the last ones used.
+//! Color: a square of saturation and value next to a bar of hues, numbers, and the last ones used.
 //! Floor 7.
 
 use crate::math::srgb::Color;
@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     swatches(ui, "Palette", palette, requests);
 }
 
-/// The current colour and the last ones, in one row: for panels that hide the picker.
+/// The current color and the last ones, in one row: for panels that hide the picker.
 pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     /// As many as a narrow panel has room for.
     const RECENT: usize = 8;
@@ -44,7 +44,7 @@ pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     });
 }
 
-/// Colours to select by a click.
+/// Colors to select by a click.
 fn swatches(
     ui: &mut Ui,
     name: &str,
@@ -65,7 +65,7 @@ fn swatches(
     });
 }
 
-/// Greys and earths, then a few clear hues: a start, not a choice.
+/// Grays and earths, then a few clear hues: a start, not a choice.
 const PALETTE: [[u8; 3]; 14] = [
     [0, 0, 0],
     [64, 64, 64],
@@ -83,7 +83,7 @@ const PALETTE: [[u8; 3]; 14] = [
     [120, 72, 156],
 ];
 
-/// The colour of a hue, a saturation and a value, each in `[0, 1]`, of the encoded numbers.
+/// The color of a hue, a saturation and a value, each in `[0, 1]`, of the encoded numbers.
 fn srgb([h, s, v]: [f32; 3], a: u8) -> Color {
     let channel = |offset: f32| {
         let t = ((h + offset).rem_euclid(1.0) * 6.0 - 3.0).abs() - 1.0;
@@ -92,7 +92,7 @@ fn srgb([h, s, v]: [f32; 3], a: u8) -> Color {
     Color { r: channel(0.0), g: channel(2.0 / 3.0), b: channel(1.0 / 3.0), a }
 }
 
-/// The inverse of [`srgb`]; a grey has hue 0.
+/// The inverse of [`srgb`]; a gray has hue 0.
 fn hsv(color: Color) -> [f32; 3] {
     let [r, g, b, _] = color.to_f32();
     let (high, low) = (r.max(g).max(b), r.min(g).min(b));
@@ -106,7 +106,7 @@ fn hsv(color: Color) -> [f32; 3] {
     [hue / 6.0, if high > 0.0 { span / high } else { 0.0 }, high]
 }
 
-/// The picker; `label` names it for tests and keeps its hue while the colour is grey.
+/// The picker; `label` names it for tests and keeps its hue while the color is gray.
 pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>> {
     let kept = Id::unique(("hue", label.to_owned()));
     let mut now = hsv(color);
@@ -238,7 +238,7 @@ fn hues(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Valu
     picked(&response, rect).map(|changed| changed.map(|[_, y]| [y.min(0.9999), s, v]))
 }
 
-/// Triangles of a grid of colours.
+/// Triangles of a grid of colors.
 fn grid(mesh: &mut Mesh, cols: u32, rows: u32) {
     for j in 0..rows {
         for i in 0..cols {

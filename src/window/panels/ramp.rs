@@ -1,4 +1,4 @@
-//! The stops of a ramp: colours and places. Floor 7.
+//! The stops of a ramp: colors and places. Floor 7.
 
 use super::colors;
 use crate::math::srgb::Color;

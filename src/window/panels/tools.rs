@@ -1,4 +1,4 @@
-//! The tool bar, and the two current colours.
+//! The tool bar, and the two current colors.
 //! Floor 7.
 
 use crate::icons::{Icon, icon_button, sized_button};
@@ -17,7 +17,7 @@ const SMALLEST_PT: f32 = 20.0;
 /// Of those in two columns, and the gap between them.
 const PAIRED_PT: f32 = 24.0;
 const GAP_PT: f32 = 2.0;
-/// The height of the colours beneath the tools, points.
+/// The height of the colors beneath the tools, points.
 const COLOURS_PT: f32 = 124.0;
 
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRe
         .show_separator_line(false)
         .frame(Frame::NONE);
     beneath.show(ui, |ui| ui.vertical_centered(|ui| colours(ui, session, requests)));
-    // In a very low window tools scroll; the colours stay visible.
+    // In a very low window tools scroll; the colors stay visible.
     let area = ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     let columns = if ui.available_width() > LARGEST_PT + 1.0 { 2 } else { 1 };
     let side = side_pt(ui, ui.available_height(), columns).max(SMALLEST_PT);

@@ -40,7 +40,7 @@ impl WindowPen {
                     TouchPhase::Move => {}
                 }
                 self.force = force.filter(|_| self.touches > 0);
-                // The pointer's own events follow, unless the touch was cancelled.
+                // The pointer's own events follow, unless the touch was canceled.
                 (phase == TouchPhase::Cancel).then_some(PenPhase::Lost)
             }
             Event::PointerMoved(at) => {

@@ -44,7 +44,7 @@ pub enum PenPhase {
     /// It moved, above the canvas or on it.
     Move,
     Up,
-    /// It left the tablet, was unplugged, or was cancelled by the platform: its stroke ends where
+    /// It left the tablet, was unplugged, or was canceled by the platform: its stroke ends where
     /// it last was.
     Lost,
 }

@@ -169,7 +169,7 @@ impl MainWindow {
         self.apply(&Action::Clipboard(ClipboardAction::PastePicture { picture, to, at }));
     }
 
-    /// A table of colours for the dialog that is open, or for the chosen adjustment layers.
+    /// A table of colors for the dialog that is open, or for the chosen adjustment layers.
     fn read_color_table(&mut self, file: &Path) {
         let budget = Budget::of_this_machine();
         let read = crate::io::files::read_file(file, budget.json_bytes);

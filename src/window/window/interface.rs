@@ -1,5 +1,5 @@
-//! The look of the window: dark, grey or light, and the size of its controls. Floor 7. Not here: the
-//! colours (`theme`).
+//! The look of the window: dark, gray or light, and the size of its controls. Floor 7. Not here: the
+//! colors (`theme`).
 
 use super::MainWindow;
 use crate::session::Action;

@@ -74,7 +74,7 @@ impl MainWindow {
             Arc::ptr_eq(asked, &surface) && *with == settings
         };
         if self.unwrapping.as_ref().is_some_and(is_asked) {
-            // It was cancelled.
+            // It was canceled.
             if is_shown {
                 self.apply(&Action::View(ViewAction::Unwrapped { on: false }));
             }

@@ -136,7 +136,7 @@ fn picture_difference(before: &Document, after: &Document, by: (i32, i32)) -> [(
     let mut out = [(0, 0); 2];
     for (x, y) in (0..h - by.1).flat_map(|y| (0..w - by.0).map(move |x| (x, y))) {
         let (a, b) = (pixel(&old, x, y), pixel(&new, x + by.0, y + by.1));
-        // Premultiplied: nearly transparent pixels may have any colour.
+        // Premultiplied: nearly transparent pixels may have any color.
         let seen = |p: [u8; 4], c: usize| {
             if c == 3 { p[3] } else { (u16::from(p[c]) * u16::from(p[3]) / 255) as u8 }
         };

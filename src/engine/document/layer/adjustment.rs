@@ -1,4 +1,4 @@
-//! What a layer that adjusts the picture beneath it implements: composed pixels in, changed colours
+//! What a layer that adjusts the picture beneath it implements: composed pixels in, changed colors
 //! out. Floor 4. Not here: composing what lies beneath (`compose`), measuring it (`measure`).
 
 use crate::paint::Scene;
@@ -7,7 +7,7 @@ use crate::shading::RadianceScaling;
 use crate::shading::radiance::{BackdropStats, Exactness};
 use crate::surface::Surface;
 
-/// Changes the colours of what is composed beneath a layer, in its scope.
+/// Changes the colors of what is composed beneath a layer, in its scope.
 pub trait Adjustment {
     /// How much of the picture beneath a changed pixel depends on.
     fn reach(&self) -> Reach {
@@ -15,7 +15,7 @@ pub trait Adjustment {
     }
 
     /// What must be known of the whole picture beneath before a part of it can be adjusted; `None`
-    /// if cancelled.
+    /// if canceled.
     fn measure(&self, _beneath: &dyn BackdropMeter) -> Option<BackdropStats> {
         Some(BackdropStats::default())
     }
@@ -32,7 +32,7 @@ pub trait Adjustment {
     );
 }
 
-/// Measures the picture beneath an adjustment. Every figure is `None` if that is cancelled.
+/// Measures the picture beneath an adjustment. Every figure is `None` if that is canceled.
 pub trait BackdropMeter {
     /// Y*: its greatest luminance over the surface, linear light.
     fn brightest(&self) -> Option<f32>;

@@ -69,7 +69,7 @@ impl<K, V> Default for Memo<K, V> {
 
 impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
     /// The value for a scene, the identical layers beneath and an equal key; computed again if any
-    /// differs. `None` if `measure` is cancelled.
+    /// differs. `None` if `measure` is canceled.
     ///
     /// It never computes while holding the lock: a thread that waits for work in its own pool would
     /// deadlock.

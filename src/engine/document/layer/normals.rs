@@ -26,7 +26,7 @@ pub struct NormalLayer {
 }
 
 impl NormalLayer {
-    /// What it may be.
+    /// Its range.
     pub const STRENGTH: Range = 0.0..=100.0;
 }
 
@@ -41,7 +41,7 @@ pub enum DetailSource {
         /// As it was read.
         map: Arc<DetailMap>,
     },
-    /// A noisy relief. The placement turns and scales it about its centre.
+    /// A noisy relief. The placement turns and scales it about its center.
     Grain(NoiseRelief),
 }
 

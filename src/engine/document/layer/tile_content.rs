@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// The pixels of a layer in one tile.
 pub(in crate::document) enum TileContent {
     Nothing,
-    /// One premultiplied colour everywhere.
+    /// One premultiplied color everywhere.
     Solid([f32; 4]),
     Tile(Arc<Tile>),
     Packed(Arc<PackedTile>),

@@ -48,7 +48,7 @@ pub struct PlacedOutline {
     pub outline: Arc<Outline>,
     /// Those.
     pub moved: (i32, i32),
-    /// The place that it is of no longer has its colour: it is that of the nearest area.
+    /// The place that it is of no longer has its color: it is that of the nearest area.
     pub is_lost: bool,
 }
 

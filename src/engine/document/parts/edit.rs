@@ -18,7 +18,7 @@ impl Document {
         self.with_parts_unshaped(list).reshaped()
     }
 
-    /// The same, a step for each part; `None` if cancelled.
+    /// The same, a step for each part; `None` if canceled.
     pub fn with_parts_with_progress(
         &self,
         list: Vec<Arc<Part>>,

@@ -28,7 +28,7 @@ fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl CachedFlats {
-    /// The places of a colour.
+    /// The places of a color.
     pub fn places_of(&self, color: Color) -> Arc<ColorPlaces> {
         let known = lock(&self.places)
             .iter()
@@ -50,7 +50,7 @@ impl CachedFlats {
 }
 
 impl Parts {
-    /// The flats of a picture, `None` if it is empty; `asked`: colours that are looked for however
+    /// The flats of a picture, `None` if it is empty; `asked`: colors that are looked for however
     /// small their areas are.
     pub(super) fn flats_of(&self, tiles: &TileGrid, asked: &[Color]) -> Option<Arc<CachedFlats>> {
         let last = &self.cache.flats.0;

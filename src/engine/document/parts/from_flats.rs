@@ -1,5 +1,5 @@
-//! Parts of a layer of flat colours: one for each colour, or for each place of one, ordered by who
-//! interrupts whose outline. Floor 4. Not here: what the colours are (`palette`, `shares`), and
+//! Parts of a layer of flat colors: one for each color, or for each place of one, ordered by who
+//! interrupts whose outline. Floor 4. Not here: what the colors are (`palette`, `shares`), and
 //! their order (`order`).
 
 use super::order::farthest_first;
@@ -15,8 +15,8 @@ use crate::shape::flats::shares::Flats;
 
 pub use crate::shape::flats::shares::MOST_COLOURS;
 
-/// From this share of a figure in flat areas on, its colours are worth a part each: shaded paint
-/// has few pixels of any one colour.
+/// From this share of a figure in flat areas on, its colors are worth a part each: shaded paint
+/// has few pixels of any one color.
 pub const LEAST_FLAT: f32 = 0.7;
 
 /// What becomes a part of its own.
@@ -25,9 +25,9 @@ pub enum PartFor {
     /// All that a layer covers.
     #[default]
     Layer,
-    /// Each flat colour of it.
+    /// Each flat color of it.
     Color,
-    /// Each area of a flat colour that is apart from the others of that colour.
+    /// Each area of a flat color that is apart from the others of that color.
     Place,
 }
 
@@ -36,19 +36,19 @@ pub enum PartFor {
 pub struct FlatParts {
     /// The farthest first.
     pub parts: Vec<Part>,
-    /// Colours, or places of them, that are seen but too small or too many to be parts.
+    /// Colors, or places of them, that are seen but too small or too many to be parts.
     pub left_out: usize,
     /// The share of what is painted that lies in flat areas, `[0, 1]`.
     pub flat_share: f32,
 }
 
 impl FlatParts {
-    /// One part that is made of no colours.
+    /// One part that is made of no colors.
     pub fn of_one(part: Part) -> Self {
         Self { parts: vec![part], left_out: 0, flat_share: 1.0 }
     }
 
-    /// What the user is told about colours without a part.
+    /// What the user is told about colors without a part.
     pub fn note(&self) -> Option<String> {
         if self.flat_share < LEAST_FLAT {
             let share = (self.flat_share * 100.0).floor();
@@ -70,7 +70,7 @@ impl FlatParts {
     }
 }
 
-/// The parts of the flats in a layer called `layer`, a part for each colour or each place.
+/// The parts of the flats in a layer called `layer`, a part for each color or each place.
 ///
 /// `tiles`: what the layer shows on the canvas. Nothing makes no parts.
 pub fn parts_of_flats(
@@ -111,7 +111,7 @@ struct FlatAreas {
     left_out: usize,
 }
 
-/// The places of all colours, a colour that has only one without its point.
+/// The places of all colors, a color that has only one without its point.
 fn places(flats: &Flats, rect: Rect) -> FlatAreas {
     let corner = vec2(rect.x0 as f32, rect.y0 as f32);
     let mut left_out = flats.left_out();

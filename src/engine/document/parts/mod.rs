@@ -6,7 +6,7 @@
 //! is on a form, `whole` for all together, `form_cache` for what is kept, and `unchanged` to
 //! compare versions. `inputs` says whether a surface is still the right one, `weight` what memory
 //! it takes. `outlines` finds outlines, `drawn` what layers draw for them; `drawing` says what can
-//! be made of a layer, and `from_flats` makes parts of one in flat colours (`shape::flats`), for
+//! be made of a layer, and `from_flats` makes parts of one in flat colors (`shape::flats`), for
 //! which `order` finds who lies in front; `cut` makes a drawing go with its parts. `forms` has the
 //! forms that were made, `flats_cache` what was found in flats, `scale` changes the canvas, and
 //! `fit` holds parts to what files can hold.
@@ -57,7 +57,7 @@ pub struct Parts {
     /// The surface of the document's maps, beneath all parts; while there are none it is the
     /// document's own.
     pub maps: Option<Arc<Surface>>,
-    /// The parts, by their ids, whose place no longer has their colour, so that they take the
+    /// The parts, by their ids, whose place no longer has their color, so that they take the
     /// nearest area of it.
     pub lost: Vec<String>,
     /// The document's surface is still that of the parts as they were, while the user drags them.
@@ -192,7 +192,7 @@ impl ProfilePicture {
     pub const LIGHT: Range = -1e4..=1e4;
 }
 
-/// A shading of a drawing as a grey picture, and where its light is.
+/// A shading of a drawing as a gray picture, and where its light is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfilePicture {
     /// sRGB.
@@ -258,7 +258,7 @@ impl Default for Inflation {
 /// Where an outline comes from. It stays linked: the part follows what it names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OutlineSource {
-    /// The alpha of a layer, by its name, the topmost of several; or its pixels of one colour.
+    /// The alpha of a layer, by its name, the topmost of several; or its pixels of one color.
     Layer { layer: String, color: Option<FlatColor> },
     /// A picture of coverage; its upper left corner is the frame's.
     File(CoverageFile),
@@ -271,12 +271,12 @@ pub enum OutlineSource {
     Object(u32),
 }
 
-/// A colour of a layer of flats, wherever it is, or in one place only.
+/// A color of a layer of flats, wherever it is, or in one place only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatColor {
     pub color: Color,
     /// A point of the area that is meant, px of the part's frame, which is the canvas before the
-    /// part's matrix. If the colour is not there, the nearest area of it is meant.
+    /// part's matrix. If the color is not there, the nearest area of it is meant.
     pub at: Option<Vec2>,
 }
 

@@ -163,11 +163,11 @@ fn sites(labels: &Plane<u16>, radius: usize, islands: &[Island], n: usize) -> Ve
 }
 
 /// How clearly an area lies in front of another at a pixel of their border, from their shares of
-/// the neighbourhood; below 0 it lies behind.
+/// the neighborhood; below 0 it lies behind.
 ///
 /// * With only the two, the one whose side bulges lies in front: it has the smaller share.
 /// * Where a third meets them, the outline of the one in front continues, so that it has half of
-///   the neighbourhood; the others end at it. If that is the third, nothing is known about the two.
+///   the neighborhood; the others end at it. If that is the third, nothing is known about the two.
 fn in_front_by(own: f32, other: f32) -> f32 {
     const ALONE: f32 = 0.98;
     const HALF: std::ops::RangeInclusive<f32> = 0.4..=0.6;

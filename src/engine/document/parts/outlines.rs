@@ -1,4 +1,4 @@
-//! The outlines that parts name: of layers, colours, pictures, paths and objects.
+//! The outlines that parts name: of layers, colors, pictures, paths and objects.
 //! Floor 4.
 
 use super::drawn::{DrawnLayer, is_same_paint};
@@ -35,17 +35,17 @@ pub enum OutlineKey {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatArea {
     flat: FlatColor,
-    /// The colours of the parts that lie over it, beneath whose edges it continues.
+    /// The colors of the parts that lie over it, beneath whose edges it continues.
     over: Vec<Color>,
-    /// The colours of all nearer parts of the same layer, the farthest first, moved and hidden ones
+    /// The colors of all nearer parts of the same layer, the farthest first, moved and hidden ones
     /// too: it continues beneath what they cover inside of it.
     nearer: Vec<Color>,
-    /// The other colours of parts of that layer.
+    /// The other colors of parts of that layer.
     farther: Vec<Color>,
 }
 
 impl FlatArea {
-    /// The colours of all parts of the layer, in an order that is the same for each of them.
+    /// The colors of all parts of the layer, in an order that is the same for each of them.
     fn asked(&self) -> Vec<Color> {
         let mut all: Vec<Color> =
             [&self.nearer[..], &self.farther[..], &[self.flat.color]].concat();
@@ -54,8 +54,8 @@ impl FlatArea {
         all
     }
 
-    /// The share of each pixel that it takes, and whether its place has its colour no longer, so
-    /// that this is the nearest one; `corner`: of the flats. `None` where the colour is nowhere.
+    /// The share of each pixel that it takes, and whether its place has its color no longer, so
+    /// that this is the nearest one; `corner`: of the flats. `None` where the color is nowhere.
     fn share(&self, known: &CachedFlats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
         let flats = &known.flats;
         let mut share = flats.share_of(self.flat.color, &self.over);
@@ -74,7 +74,7 @@ impl FlatArea {
 }
 
 impl Document {
-    /// What a part takes of the colour of a layer, among the other parts of the same layer.
+    /// What a part takes of the color of a layer, among the other parts of the same layer.
     fn area_of(&self, part: &Part, flat: FlatColor) -> FlatArea {
         let mut area = FlatArea { flat, over: Vec::new(), nearer: Vec::new(), farther: Vec::new() };
         let Some(OutlineSource::Layer { layer: own, .. }) =
@@ -82,7 +82,7 @@ impl Document {
         else {
             return area;
         };
-        // Several parts may take one colour in different places.
+        // Several parts may take one color in different places.
         let add = |to: &mut Vec<Color>, color: Color| {
             if !to.contains(&color) {
                 to.push(color);
@@ -114,7 +114,7 @@ impl Document {
 }
 
 impl Document {
-    /// The places of the colour that a part takes of a layer, wherever it is; `None` for any other
+    /// The places of the color that a part takes of a layer, wherever it is; `None` for any other
     /// part, and for one that has a place already.
     pub fn places_of(&self, part: &Part) -> Option<SplitPlaces> {
         let OutlineSource::Layer { layer, color: Some(FlatColor { color, at: None }) } =
@@ -130,7 +130,7 @@ impl Document {
     }
 
     /// What the user is told when parts take another area than the one that was meant, which no
-    /// longer has their colour; `before`: of those parts nothing is said again.
+    /// longer has their color; `before`: of those parts nothing is said again.
     pub fn note_of_lost(&self, before: Option<&Document>) -> Option<String> {
         let known = |id: &String| before.is_some_and(|before| before.parts.lost.contains(id));
         let part = |id: &String| self.parts.part(id).map(|part| format!("“{}”", part.name));
@@ -146,7 +146,7 @@ impl Document {
         })
     }
 
-    /// With the places of colours in layers that were moved since `before`, paint unchanged, moved
+    /// With the places of colors in layers that were moved since `before`, paint unchanged, moved
     /// as well.
     pub(in crate::document) fn with_places_carried(self, before: &Document) -> Document {
         let carried = |part: &Arc<Part>| {
@@ -237,7 +237,7 @@ impl OutlineKey {
         self.placed_outline(document, most_px).map(|(outline, _)| outline)
     }
 
-    /// The same, and whether it is of another area because its place no longer has its colour.
+    /// The same, and whether it is of another area because its place no longer has its color.
     pub fn placed_outline(&self, document: &Document, most_px: usize) -> Option<(Outline, bool)> {
         let mut is_lost = false;
         let outline = match self {

@@ -86,7 +86,7 @@ impl Part {
         }
     }
 
-    /// The one place of a colour that it takes, if it takes one.
+    /// The one place of a color that it takes, if it takes one.
     pub fn place(&self) -> Option<Vec2> {
         match self.outline() {
             Some(OutlineSource::Layer { color, .. }) => color.and_then(|flat| flat.at),
@@ -94,14 +94,14 @@ impl Part {
         }
     }
 
-    /// Takes only the area of its colour at a point of its frame, if it takes a colour.
+    /// Takes only the area of its color at a point of its frame, if it takes a color.
     pub fn set_place(&mut self, at: Vec2) {
         if let Some(OutlineSource::Layer { color: Some(flat), .. }) = self.outline_mut() {
             flat.at = Some(at);
         }
     }
 
-    /// Whether it takes a colour wherever that is.
+    /// Whether it takes a color wherever that is.
     pub fn is_of_color(&self) -> bool {
         matches!(self.outline(), Some(OutlineSource::Layer { color: Some(flat), .. }) if flat.at.is_none())
     }

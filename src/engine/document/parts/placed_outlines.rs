@@ -24,7 +24,7 @@ struct Sought<'a> {
 
 impl Document {
     /// The outlines of parts in their places, side by side: but one after the other where parts are
-    /// of one colour, whose places are found once, and after the first, which finds what all share.
+    /// of one color, whose places are found once, and after the first, which finds what all share.
     pub(super) fn placed_outlines(&self, parts: &[&Arc<Part>]) -> Vec<Option<PlacedOutline>> {
         let mut found: Vec<Option<PlacedOutline>> = vec![None; parts.len()];
         let Some((first, rest)) = found.split_first_mut() else { return found };

@@ -8,7 +8,7 @@ use crate::shape::{Body, SculptTool};
 
 const SIZE: Size = Size::new(160, 120);
 
-/// A layer with discs of flat colours, anti-aliased by counting.
+/// A layer with discs of flat colors, anti-aliased by counting.
 fn discs(name: &str, discs: &[(Vec2, f32, [u8; 3])]) -> Layer {
     let mut rgba = vec![0u8; SIZE.area() * 4];
     for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
@@ -339,7 +339,7 @@ fn maps_that_are_turned_show_the_turned_object_and_come_back_where_they_lay() {
     for (dx, dy) in [(0, 0), (12, 4), (-10, 7), (3, -9)] {
         let (x, y) = (70 + dx, 60 + dy);
         let before = was.normal(x as usize, y as usize);
-        // Pixel centres: (dx + ½, dy + ½) goes to 1.5 (−dy − ½, dx + ½).
+        // Pixel centers: (dx + ½, dy + ½) goes to 1.5 (−dy − ½, dx + ½).
         let at = middle + 1.5 * vec2(-(dy as f32) - 0.5, dx as f32 + 0.5);
         let after = turned.normal(at.x as usize, at.y as usize);
         // Image axes turn; y of normals is up.

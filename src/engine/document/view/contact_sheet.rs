@@ -7,7 +7,7 @@ use crate::raster::Picture;
 /// Longer side of a view on the sheet, px.
 const CELL_PX: f32 = 320.0;
 const GAP_PX: u32 = 8;
-/// A middle grey: dark and light views are both visible against it.
+/// A middle gray: dark and light views are both visible against it.
 const BACKGROUND: f32 = 0.32;
 
 /// Arranges pictures of one size in rows of four, in order, scaled down to fit. `None` without

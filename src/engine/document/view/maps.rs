@@ -1,4 +1,4 @@
-//! Views of the maps and of curvature: a colour per pixel.
+//! Views of the maps and of curvature: a color per pixel.
 //! Floor 4.
 
 use super::{ViewOptions, painted};
@@ -18,7 +18,7 @@ pub(super) fn mask(surface: &Surface) -> Picture {
     painted(surface.size(), None, |x, y| [f32::from(surface.coverage(x, y)) / 255.0; 3])
 }
 
-/// A colour for each object, darker where it turns away.
+/// A color for each object, darker where it turns away.
 pub(super) fn objects(surface: &Surface) -> Picture {
     let objects = surface.objects();
     let labels = objects.labels();

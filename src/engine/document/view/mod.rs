@@ -28,7 +28,7 @@ crate::named! {
         Depth = "depth",
         /// White where the surface is.
         Mask = "mask",
-        /// The objects into which depth jumps split the surface: a colour for each.
+        /// The objects into which depth jumps split the surface: a color for each.
         Objects = "objects",
         /// Convex blue, concave red, flat yellow.
         Curvature = "curvature",
@@ -168,7 +168,7 @@ fn bend(document: &Document, layer: Option<&Layer>) -> Result<Bend, ViewUnavaila
     }
 }
 
-/// A picture from a colour per pixel, encoded, each in `[0, 1]`; transparent where the surface does
+/// A picture from a color per pixel, encoded, each in `[0, 1]`; transparent where the surface does
 /// not cover.
 fn painted(
     size: Size,

@@ -19,8 +19,8 @@ const MARGIN: f32 = 20.0;
 const MOST: f32 = std::f32::consts::E;
 
 /// Draws the plots: δ from 0 to 1 rightward, σ from 0 to e upward, a line across at σ = 1 and one
-/// down at δ = α, and every curve passes through their crossing. Blue is convex, red concave, grey
-/// flat; the stronger the colour the larger
+/// down at δ = α, and every curve passes through their crossing. Blue is convex, red concave, gray
+/// flat; the stronger the color the larger
 /// |κ|.
 pub(super) fn plots() -> Option<Picture> {
     let size = Size::new(

@@ -1,4 +1,4 @@
-//! The view of weights: one colour per anchor, blended by the weights, and a dot at each anchor
+//! The view of weights: one color per anchor, blended by the weights, and a dot at each anchor
 //! (the insets of SF fig. 9).
 //! Floor 4.
 
@@ -16,7 +16,7 @@ pub(super) fn weights(surface: Option<&Surface>, size: Size, bend: &Bend) -> Pic
         let weights = bend.weights.at(&bend.anchors, q);
         let blended =
             weights.iter().zip(&colors).fold(Vec3::ZERO, |sum, (&w, &color)| sum + w * color);
-        // The surface is shaded, so that the parts that an anchor influences can be recognised.
+        // The surface is shaded, so that the parts that an anchor influences can be recognized.
         let light = surface.map_or(1.0, |s| 0.45 + 0.55 * s.normal(x, y).z.max(0.0));
         (blended * light).to_array()
     });

@@ -1,10 +1,10 @@
-//! A colour for each luminosity. Floor 3.
+//! A color for each luminosity. Floor 3.
 
 use super::hsl;
 use super::parameters::{ParameterVisitor, Parameters, black_to_white, named};
 use crate::paint::{GradientStop, ramp::Ramp};
 
-/// The ramp's colour at the luminosity of each pixel; where the ramp is transparent, the pixel as
+/// The ramp's color at the luminosity of each pixel; where the ramp is transparent, the pixel as
 /// it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GradientMap {
@@ -19,7 +19,7 @@ impl Default for GradientMap {
 }
 
 impl GradientMap {
-    /// Colours of the ramp that are looked up: more than 16 bits of luminosity tell apart on it.
+    /// Colors of the ramp that are looked up: more than 16 bits of luminosity tell apart on it.
     const COLORS: usize = 4096;
 
     pub fn color(&self) -> impl Fn([f32; 3]) -> [f32; 3] + use<> {

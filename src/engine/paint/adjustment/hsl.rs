@@ -1,7 +1,7 @@
-//! Hue, saturation and lightness of encoded colours, and luminosity as blend modes use it.
+//! Hue, saturation and lightness of encoded colors, and luminosity as blend modes use it.
 //! Floor 3.
 
-/// Luminosity of an encoded colour (W3C Compositing and Blending, `Lum`).
+/// Luminosity of an encoded color (W3C Compositing and Blending, `Lum`).
 #[inline(always)]
 pub fn luminosity([r, g, b]: [f32; 3]) -> f32 {
     0.3 * r + 0.59 * g + 0.11 * b
@@ -13,7 +13,7 @@ pub fn extent([r, g, b]: [f32; 3]) -> (f32, f32) {
     (r.min(g).min(b), r.max(g).max(b))
 }
 
-/// The hue in sixths of a turn, `[0, 6)`; 0 for greys.
+/// The hue in sixths of a turn, `[0, 6)`; 0 for grays.
 #[inline(always)]
 pub fn hue(rgb: [f32; 3]) -> f32 {
     let [r, g, b] = rgb;
@@ -42,7 +42,7 @@ pub fn of_rgb(rgb: [f32; 3]) -> [f32; 3] {
     [hue(rgb), saturation, lightness]
 }
 
-/// The colour of a hue, saturation and lightness; the hue in sixths of a turn, of any size.
+/// The color of a hue, saturation and lightness; the hue in sixths of a turn, of any size.
 #[inline(always)]
 pub fn to_rgb([hue, saturation, lightness]: [f32; 3]) -> [f32; 3] {
     let chroma = (1.0 - (2.0 * lightness - 1.0).abs()) * saturation;
@@ -54,7 +54,7 @@ pub fn to_rgb([hue, saturation, lightness]: [f32; 3]) -> [f32; 3] {
     })
 }
 
-/// A colour given a luminosity, drawn toward grey where it would leave `[0, 1]` (`SetLum`).
+/// A color given a luminosity, drawn toward gray where it would leave `[0, 1]` (`SetLum`).
 #[inline(always)]
 pub fn with_luminosity(rgb: [f32; 3], to: f32) -> [f32; 3] {
     let by = to - luminosity(rgb);

@@ -1,4 +1,4 @@
-//! Hue, saturation and lightness, of all colours and of ranges of hues; or everything in one hue.
+//! Hue, saturation and lightness, of all colors and of ranges of hues; or everything in one hue.
 //! Floor 3.
 
 use super::hsl;
@@ -94,7 +94,7 @@ fn saturation_factor(by: f32) -> f32 {
 }
 
 impl HueSaturation {
-    /// The key of what everything is colourised with.
+    /// The key of what everything is colorized with.
     pub const TINT: &'static str = "tint";
 
     /// Lightness of all first, then what ranges darken or lighten, then hue and saturation.
@@ -131,7 +131,7 @@ impl HueSaturation {
     }
 }
 
-/// The lightness of a range moves a colour along the side of the cone of values: its greatest
+/// The lightness of a range moves a color along the side of the cone of values: its greatest
 /// channel stays where it becomes lighter, and its least where it becomes darker.
 #[inline(always)]
 fn range_lighter(rgb: [f32; 3], by: f32) -> [f32; 3] {

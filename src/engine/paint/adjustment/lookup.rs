@@ -1,4 +1,4 @@
-//! The adjustment that looks colours up in a table. Floor 3.
+//! The adjustment that looks colors up in a table. Floor 3.
 
 use super::parameters::{ParameterVisitor, Parameters, named};
 use super::table::ColorTable;

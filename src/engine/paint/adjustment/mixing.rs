@@ -1,5 +1,5 @@
-//! Adjustments that weigh channels against each other: colour balance, vibrance, photo filter,
-//! channel mixer, black and white, selective colour, threshold. Floor 3.
+//! Adjustments that weigh channels against each other: color balance, vibrance, photo filter,
+//! channel mixer, black and white, selective color, threshold. Floor 3.
 
 use super::hsl;
 use super::parameters::{NumberParameter, ParameterName, ParameterVisitor, Parameters, named};
@@ -81,12 +81,12 @@ impl Parameters for ColorBalance {
     }
 }
 
-/// Saturation, more of it for colours that have little.
+/// Saturation, more of it for colors that have little.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vibrance {
     /// `[−100, 100]`.
     pub vibrance: f32,
-    /// The same for all colours, `[−100, 100]`.
+    /// The same for all colors, `[−100, 100]`.
     pub saturation: f32,
 }
 
@@ -115,7 +115,7 @@ impl Parameters for Vibrance {
     }
 }
 
-/// A coloured glass in front of the lens.
+/// A colored glass in front of the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotoFilter {
     pub color: Color,
@@ -172,7 +172,7 @@ pub struct ChannelMixer {
     pub grey: [f32; 4],
 }
 
-/// What each channel consists of where nothing is mixed, and the grey that is offered.
+/// What each channel consists of where nothing is mixed, and the gray that is offered.
 const UNMIXED: [[f32; 4]; 3] =
     [[100.0, 0.0, 0.0, 0.0], [0.0, 100.0, 0.0, 0.0], [0.0, 0.0, 100.0, 0.0]];
 const GREY: [f32; 4] = [40.0, 40.0, 20.0, 0.0];
@@ -218,12 +218,12 @@ impl Parameters for ChannelMixer {
     }
 }
 
-/// Greys, by hues.
+/// Grays, by hues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlackWhite {
     /// Percent of reds, yellows, greens, cyans, blues and magentas, `[−200, 300]`.
     pub weights: [f32; 6],
-    /// The greys are given the hue and saturation of `color`.
+    /// The grays are given the hue and saturation of `color`.
     pub is_tinted: bool,
     pub color: Color,
 }
@@ -240,7 +240,7 @@ impl Default for BlackWhite {
 }
 
 impl BlackWhite {
-    /// min + (mid − min) · weight of the secondary colour + (max − mid) · weight of the primary.
+    /// min + (mid − min) · weight of the secondary color + (max − mid) · weight of the primary.
     #[inline(always)]
     pub fn grey(&self, [r, g, b]: [f32; 3]) -> f32 {
         let [reds, yellows, greens, cyans, blues, magentas] = self.weights;
@@ -286,7 +286,7 @@ impl Parameters for BlackWhite {
     }
 }
 
-/// Inks added to ranges of colours.
+/// Inks added to ranges of colors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SelectiveColor {
     /// For reds, yellows, greens, cyans, blues, magentas, whites, neutrals and blacks: percent of
@@ -297,7 +297,7 @@ pub struct SelectiveColor {
 }
 
 impl SelectiveColor {
-    /// How much of a colour is in each range.
+    /// How much of a color is in each range.
     #[inline(always)]
     pub fn weights(rgb: [f32; 3]) -> [f32; 9] {
         let [r, g, b] = rgb;

@@ -1,4 +1,4 @@
-//! Adjustments of colours, as photographs are edited: levels, curves, hue and saturation and their
+//! Adjustments of colors, as photographs are edited: levels, curves, hue and saturation and their
 //! like. Floor 3. A pixel depends on the pixel alone, alpha stays, and values beyond white become
 //! white. Not here: the layers that hold them (`document`), adjustments of placed pictures
 //! (`adjust`).
@@ -8,7 +8,7 @@
 //! | `parameters` | how their parameters are named, read, written and set |
 //! | `tones`, `curve` | those of each channel by itself |
 //! | `hue_saturation`, `mixing`, `hsl` | those that weigh channels against each other |
-//! | `gradient_map`, `lookup`, `table` | those that look colours up |
+//! | `gradient_map`, `lookup`, `table` | those that look colors up |
 //! | `rows` | what they do to rows of pixels |
 
 mod curve;
@@ -121,7 +121,7 @@ impl ColorAdjustment {
         self
     }
 
-    /// A straight encoded colour, adjusted: what each kind says, without tables. Each channel in
+    /// A straight encoded color, adjusted: what each kind says, without tables. Each channel in
     /// `[0, 1]`, never NaN.
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         let rgb = rgb.map(|v| v.max(0.0).min(1.0));

@@ -80,7 +80,7 @@ pub trait ParameterVisitor {
     fn group(&mut self, name: ParameterName, inside: &mut dyn FnMut(&mut dyn ParameterVisitor));
 }
 
-/// An adjustment, by its parameters and what it does to colours.
+/// An adjustment, by its parameters and what it does to colors.
 pub(super) trait Parameters {
     /// Shows its parameters to a visitor, which may change them.
     fn visit(&mut self, visitor: &mut dyn ParameterVisitor);

@@ -1,8 +1,8 @@
-//! Colour look-up tables, one- and three-dimensional, as `.cube` files hold them. Floor 3.
+//! Color look-up tables, one- and three-dimensional, as `.cube` files hold them. Floor 3.
 
 use std::sync::Arc;
 
-/// Colours for evenly spaced colours, 16 bits a channel.
+/// Colors for evenly spaced colors, 16 bits a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTable {
     title: String,
@@ -57,8 +57,8 @@ impl ColorTable {
         std::array::from_fn(|c| self.values.get(3 * i + c).map_or(0.0, |v| f32::from(*v) / 65535.0))
     }
 
-    /// Straight lines between entries in one dimension; in three, the tetrahedron that the colour
-    /// lies in: greys between greys stay grey.
+    /// Straight lines between entries in one dimension; in three, the tetrahedron that the color
+    /// lies in: grays between grays stay gray.
     #[inline(always)]
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         let last = (self.side - 1) as f32;

@@ -209,7 +209,7 @@ fn hues_turn_and_greys_stay() {
 #[test]
 fn black_and_white_weighs_hues() {
     let own = BlackWhite::default();
-    // Orange: 0.2 is grey, from there to 0.5 yellow (60 %), from 0.5 to 1 red (40 %).
+    // Orange: 0.2 is gray, from there to 0.5 yellow (60 %), from 0.5 to 1 red (40 %).
     assert!((own.grey([1.0, 0.5, 0.2]) - (0.2 + 0.3 * 0.6 + 0.5 * 0.4)).abs() < 1e-6);
     assert_eq!(own.grey([0.5; 3]), 0.5);
 }

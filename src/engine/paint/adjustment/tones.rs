@@ -1,5 +1,5 @@
 //! Adjustments that change each channel by itself: levels, curves, brightness and contrast,
-//! exposure, inversion, posterising. Floor 3. Values are straight and sRGB-encoded, in `[0, 1]`.
+//! exposure, inversion, posterizing. Floor 3. Values are straight and sRGB-encoded, in `[0, 1]`.
 
 use super::curve::{ToneCurve, ToneSpline};
 use super::parameters::{NumberParameter, ParameterName, ParameterVisitor, Parameters, named};
@@ -164,7 +164,7 @@ fn inverse(spline: &ToneSpline, y: f32) -> f32 {
     0.5 * (low + high)
 }
 
-/// Brightness shifts; contrast stretches around mid grey, at 100 without limit.
+/// Brightness shifts; contrast stretches around mid gray, at 100 without limit.
 fn legacy(brightness: f32, contrast: f32, x: f32) -> f32 {
     let shifted = x + brightness / 255.0;
     let c = contrast / 100.0;
@@ -221,7 +221,7 @@ impl Parameters for Exposure {
     }
 }
 
-/// Light becomes dark, and each colour its complement.
+/// Light becomes dark, and each color its complement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Invert;
 

@@ -47,9 +47,9 @@ pub(super) struct RowPaint<'r> {
 
 /// What is known of a row's pixels before their coverage.
 pub(super) struct RowZones {
-    /// Distance from the dab's centre in the image plane, in radii.
+    /// Distance from the dab's center in the image plane, in radii.
     r: [f32; TILE],
-    /// |Jᵀ p|², p from the centre to the pixel: the pixel's width toward the centre times r, squared; in radii to the
+    /// |Jᵀ p|², p from the center to the pixel: the pixel's width toward the center times r, squared; in radii to the
     /// fourth.
     toward: [f32; TILE],
     /// |J|²: the sum of both squared widths of the pixel, in radii.
@@ -71,7 +71,7 @@ const SOFT: u32 = 8;
 /// the falloff.
 const NARROW_SQUARED: f32 = 2.0 / (12.0 * 12.0);
 
-/// Added to squared distances, px²: the centre itself has no direction toward it.
+/// Added to squared distances, px²: the center itself has no direction toward it.
 const AT_CENTER: f32 = 1e-12;
 
 impl Default for RowZones {
@@ -149,7 +149,7 @@ impl RoundTip {
         let half = self.half_width.0 + self.half_width.1 * widest;
         let (inner, outer) = (r - half, r + half);
         let end = if end < self.inner { end } else { self.inner };
-        // The profile's even continuation through the centre is no part of the falloff.
+        // The profile's even continuation through the center is no part of the falloff.
         let first = if start > 0.0 { start } else { 0.0 };
         let beyond = if inner > self.falloff.1 { BEYOND } else { 0 };
         let within = if outer < start { WITHIN } else { 0 };
@@ -186,7 +186,7 @@ impl RoundTip {
         (beyond * beyond, if is_sure { within * within } else { 0.0 })
     }
 
-    /// A pixel at p from the centre, J's columns `across` and `along`; canvas px. Gives r, |Jᵀ p|²,
+    /// A pixel at p from the center, J's columns `across` and `along`; canvas px. Gives r, |Jᵀ p|²,
     /// |J|² and the zone.
     #[inline(always)]
     fn judge(&self, p: (f32, f32), across: (f32, f32), along: (f32, f32)) -> (f32, f32, f32, u32) {

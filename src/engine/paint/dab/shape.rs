@@ -1,5 +1,5 @@
 //! Tips in closed form that are not round: ellipses and squares, averaged over each pixel's piece
-//! of the image plane. Floor 3. They are evaluated in *tip space*, where the dab's centre is the
+//! of the image plane. Floor 3. They are evaluated in *tip space*, where the dab's center is the
 //! origin and its half-axes have length 1.
 
 use super::round::slope;
@@ -81,9 +81,9 @@ pub struct TipSpanNeighbours<'f> {
     pub above: (&'f [f32], &'f [f32]),
     pub row: (&'f [f32], &'f [f32]),
     pub below: (&'f [f32], &'f [f32]),
-    /// Which neighbours continue the surface, one for each pixel of the span.
+    /// Which neighbors continue the surface, one for each pixel of the span.
     pub linked: &'f [u8],
-    /// ∂/∂q where no neighbour does.
+    /// ∂/∂q where no neighbor does.
     pub flat: Mat2,
 }
 
@@ -97,7 +97,7 @@ pub fn ellipse<P: Profile>(
     across: (f32, f32),
     along: (f32, f32),
 ) -> (f32, f32) {
-    // At the exact centre there is no direction; the next pixel's width serves as well as any.
+    // At the exact center there is no direction; the next pixel's width serves as well as any.
     let r2 = x * x + y * y + 1e-12;
     let (a, b) = (across.0 * x + across.1 * y, along.0 * x + along.1 * y);
     let (r, width_squared) = (r2.sqrt(), (a * a + b * b) / r2);
@@ -175,7 +175,7 @@ crate::widest! {
     }
 }
 
-/// Visits the pixels of a span with J by differences toward linked neighbours. `thin`: the dab's
+/// Visits the pixels of a span with J by differences toward linked neighbors. `thin`: the dab's
 /// own.
 #[inline(always)]
 fn for_each(

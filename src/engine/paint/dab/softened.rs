@@ -53,7 +53,7 @@ impl SoftenedStamps {
 }
 
 impl TipStamp {
-    /// A⁻¹ after the shift to the dab's centre: texels from canvas px. The footprint is turned
+    /// A⁻¹ after the shift to the dab's center: texels from canvas px. The footprint is turned
     /// counter-clockwise as seen.
     pub fn texels_from_canvas(&self, dab: &Dab) -> Affine2 {
         let texels_per_px = Vec2::splat(self.texels_per_radius / dab.radius);

@@ -1,4 +1,4 @@
-//! Which pixels are joined to one by colours like its own, over their four neighbours. Floor 3.
+//! Which pixels are joined to one by colors like its own, over their four neighbors. Floor 3.
 //! Finds which pixels may be filled, a row of a tile at a time; `raster::flood` spreads.
 
 use crate::math::Size;
@@ -26,7 +26,7 @@ pub(super) fn joined(
     Some(Flooded::from((x, y), canvas, opened))
 }
 
-/// All pixels of the canvas with a colour like one's, wherever they are.
+/// All pixels of the canvas with a color like one's, wherever they are.
 pub(super) fn alike(
     start: (i32, i32),
     canvas: Size,

@@ -4,7 +4,7 @@ use crate::raster::TileGrid;
 
 const CANVAS: Size = Size::new(200, 150);
 
-/// A picture from a colour for each pixel.
+/// A picture from a color for each pixel.
 fn picture(color: impl Fn(i32, i32) -> [u8; 4]) -> TileGrid {
     let rgba: Vec<u8> = (0..150)
         .flat_map(|y| (0..200).map(move |x| (x, y)))

@@ -95,7 +95,7 @@ impl StrokeGrain {
     }
 }
 
-/// Two greys and the share of the first, for a mean grey m, the mean of its square and the share p
+/// Two grays and the share of the first, for a mean gray m, the mean of its square and the share p
 /// that is not black, all in `[0, 1]`. If some is black, that is one part, since paint never fills
 /// it; else with σ² = ⟨G²⟩ − m²:
 ///

@@ -27,7 +27,7 @@ impl PictureSource {
 }
 
 impl PlacedImage {
-    /// One tile of the layer; `None` beyond the canvas. Colours may be brighter than white.
+    /// One tile of the layer; `None` beyond the canvas. Colors may be brighter than white.
     pub fn render_pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         let area = scene.area(at);
         if area.is_empty() {

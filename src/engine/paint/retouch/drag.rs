@@ -1,4 +1,4 @@
-//! Where smudge and clone take the colour of a pixel from: what a dab drags or copies is bent like
+//! Where smudge and clone take the color of a pixel from: what a dab drags or copies is bent like
 //! its footprint. Floor 3.
 
 use super::TileDab;
@@ -11,15 +11,15 @@ use crate::raster::TileGrid;
 use crate::surface::Deformation;
 use crate::surface::deformation::DeformedRect;
 
-/// A smudge takes no colour from farther than this many steps: where the surface turns away, D
+/// A smudge takes no color from farther than this many steps: where the surface turns away, D
 /// hardly changes and its inverse would reach arbitrarily far.
 const FARTHEST_STEPS: f32 = 3.0;
 
-/// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` if it did
+/// The colors that a smudge drags onto the pixels of a touched area, row by row; `None` if it did
 /// not move.
 ///
 /// What was under the previous dab is under this one, at the same point of the image plane relative
-/// to its centre. With F_k(q) = D_k(q) − q_k, a pixel q takes the colour of the point p with
+/// to its center. With F_k(q) = D_k(q) − q_k, a pixel q takes the color of the point p with
 /// F_{k−1}(p) = F_k(q), found by one step of Newton's method from q:
 ///
 /// `p = q − (∂D_{k−1}/∂q)⁻¹ (F_{k−1}(q) − F_k(q))`.
@@ -27,7 +27,7 @@ const FARTHEST_STEPS: f32 = 3.0;
 /// On a flat canvas, and wherever n̄ changes evenly, that is the dab's movement, p = q − (q_k −
 /// q_{k−1}).
 ///
-/// * `length`: the share of the colour that is left after a drag of one radius, `[0, 1]`, however
+/// * `length`: the share of the color that is left after a drag of one radius, `[0, 1]`, however
 ///   many dabs it took.
 pub(super) fn smudged(
     touch: &TileDab,
@@ -60,9 +60,9 @@ pub(super) fn smudged(
     Some(colors)
 }
 
-/// The colours that a clone copies onto the pixels of a touched area, row by row.
+/// The colors that a clone copies onto the pixels of a touched area, row by row.
 ///
-/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab
+/// Pixel q takes the color at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab
 /// like its footprint. Where a pixel covers several of the picture, it is the mean of a grid of
 /// points in the patch under it.
 pub(super) fn cloned(
@@ -97,7 +97,7 @@ fn solved(jacobian: Mat2, v: Vec2) -> Vec2 {
     if jacobian.determinant().abs() > 1e-3 { jacobian.inverse() * v } else { v }
 }
 
-/// The centres of the canvas's pixels: only between them can be read.
+/// The centers of the canvas's pixels: only between them can be read.
 struct SourceBounds {
     last: Vec2,
 }

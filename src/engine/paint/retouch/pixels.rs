@@ -97,7 +97,7 @@ impl<'p> PixelReader<'p> {
         held
     }
 
-    /// The colour at a canvas point, interpolated from the four pixels around it.
+    /// The color at a canvas point, interpolated from the four pixels around it.
     pub fn between(&mut self, at: Vec2) -> [f32; 4] {
         let corner = (at - 0.5).floor();
         let t = at - 0.5 - corner;

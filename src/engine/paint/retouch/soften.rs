@@ -18,7 +18,7 @@ const CUT: f32 = 3.0;
 /// do not change.
 const LEAST_WEIGHT: f32 = 1e-3;
 
-/// The blurred colours of the pixels of a touched area, row by row.
+/// The blurred colors of the pixels of a touched area, row by row.
 ///
 /// * `width`: the standard deviation that a stroke leaves in its middle, a ratio of the dab's
 ///   radius. The variances of the dabs over a pixel add up, 2 r / step of them: so each has the
@@ -57,7 +57,7 @@ pub(super) fn blurred(
     out
 }
 
-/// The weighted mean colour, premultiplied.
+/// The weighted mean color, premultiplied.
 fn mean([r, g, b, a, weight]: &WeightedPixel) -> [f32; 4] {
     let per = if *weight > 0.0 { 1.0 / weight } else { 0.0 };
     // The filter for wide Gaussians can undershoot 0 by its error.

@@ -7,14 +7,14 @@ use std::collections::HashMap;
 const SIZE: Size = Size::new(200, 150);
 const FLAT: Scene = Scene { size: SIZE, surface: None };
 
-/// A layer from a straight colour for each pixel.
+/// A layer from a straight color for each pixel.
 fn layer(color: impl Fn(i32, i32) -> [u8; 4]) -> TileGrid {
     let all = (0..150).flat_map(|y| (0..200).map(move |x| (x, y)));
     let rgba: Vec<u8> = all.flat_map(|(x, y)| color(x, y)).collect();
     TileGrid::from_straight_rgba(&rgba, 200, 150, 0, 0)
 }
 
-/// Each pixel's colour encodes its position.
+/// Each pixel's color encodes its position.
 fn places() -> TileGrid {
     layer(|x, y| [x as u8, y as u8, 0, 255])
 }
@@ -79,7 +79,7 @@ fn touch(area: Rect) -> TileDab {
     TileDab { at: TileAt::of_pixel(area.x0, area.y0), area, coverage: Box::new([1.0; TILE_AREA]) }
 }
 
-/// The position that a colour of [`places`] encodes.
+/// The position that a color of [`places`] encodes.
 fn encoded_place(color: [f32; 4]) -> Vec2 {
     vec2(color[0], color[1]) * 255.0 + 0.5
 }
@@ -308,7 +308,7 @@ fn hostile_samples_and_settings_end_in_finite_pixels() {
     }
 }
 
-/// A brush of one colour that picks up paint.
+/// A brush of one color that picks up paint.
 fn picking(amount: f32, length: f32) -> Brush {
     Brush {
         pickup: crate::paint::Pickup { amount, length, radius: 1.0 },

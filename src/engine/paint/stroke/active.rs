@@ -31,7 +31,7 @@ pub enum Backdrop {
 ///
 /// Their pixels do not depend on how the samples are batched: they equal those of the finished
 /// strokes painted at once. They take 16 KiB for every tile that a stroke touches (64 if its dabs
-/// vary in colour), and 64 more if there are strokes below.
+/// vary in color), and 64 more if there are strokes below.
 pub struct ActiveStrokes {
     scene: Scene,
     backdrop: Backdrop,

@@ -30,8 +30,8 @@ fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
     coverage + f * if room > 0.0 { room } else { 0.0 }
 }
 
-/// One premultiplied pixel with a colour over it that covers g of it, k of what is there; up to a
-/// ceiling: colours mix as in source over, coverage rises no higher than the ceiling.
+/// One premultiplied pixel with a color over it that covers g of it, k of what is there; up to a
+/// ceiling: colors mix as in source over, coverage rises no higher than the ceiling.
 #[inline(always)]
 fn mixed(p: [f32; 4], (g, k): (f32, f32), source: [f32; 3], ceiling: f32) -> [f32; 4] {
     let over = |c: usize| p[c] * (1.0 - k) + source[c];
@@ -74,7 +74,7 @@ crate::widest! {
         }
     }
 
-    /// Blends one premultiplied colour over a row, weighted by each pixel's coverage.
+    /// Blends one premultiplied color over a row, weighted by each pixel's coverage.
     pub(super) fn lay_coverage(coverage: &[f32; TILE], color: [f32; 4], row: &mut PixelRow) {
         for (plane, c) in row.rgb.iter_mut().chain([&mut row.a]).zip(color) {
             for (p, a) in plane.iter_mut().zip(coverage) {
@@ -100,8 +100,8 @@ crate::widest! {
     }
 }
 
-/// Adds colours to a row from column `x` on, as many as `reach` has pixels; `source`: the coverage
-/// of each pixel, the straight colour, and the share that is reached.
+/// Adds colors to a row from column `x` on, as many as `reach` has pixels; `source`: the coverage
+/// of each pixel, the straight color, and the share that is reached.
 pub(super) fn add_colors(
     source: impl Fn(usize) -> (f32, [f32; 3], f32),
     ceiling: f32,

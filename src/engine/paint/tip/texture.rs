@@ -59,7 +59,7 @@ const KEPT: usize = 32;
 static MADE: Mutex<Vec<((TipTexture, u32), PictureSource)>> = Mutex::new(Vec::new());
 
 impl TipTexture {
-    /// The picture for dabs of a diameter in px: coverage, opaque and grey. Every brush gets the
+    /// The picture for dabs of a diameter in px: coverage, opaque and gray. Every brush gets the
     /// same one.
     pub fn source(self, diameter_px: f32) -> PictureSource {
         // For NaN the comparisons give the smallest.
@@ -102,7 +102,7 @@ impl TipTexture {
     }
 }
 
-/// Values in `[0, 1]` as an opaque grey picture.
+/// Values in `[0, 1]` as an opaque gray picture.
 pub fn grey(plane: &Plane<f32>) -> Picture {
     let texels = plane.values().iter().map(|v| {
         let byte = (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8;

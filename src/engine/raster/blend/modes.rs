@@ -73,7 +73,7 @@ macro_rules! declare {
         $(#[$meta:meta])*
         $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);
     )+) => {
-        /// How a layer's colour meets the colour below: a function `B(cb, cs)` mixed source-over as
+        /// How a layer's color meets the color below: a function `B(cb, cs)` mixed source-over as
         /// W3C mixes its own, except for [`BlendMode::Plus`]; what [`BlendMode::Dissolve`] leaves
         /// of a layer is mixed this way.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -153,12 +153,12 @@ impl BlendMode {
     }
 
     /// OpenRaster can express it, and other programs read it as this one does: most read its `plus`
-    /// as a sum of colours alone, whatever the alpha.
+    /// as a sum of colors alone, whatever the alpha.
     pub fn is_said_by_openraster(self) -> bool {
         self.openraster().starts_with("svg:") && self != BlendMode::Plus
     }
 
-    /// A step of one colour may change the result by more than a step.
+    /// A step of one color may change the result by more than a step.
     pub fn is_steep(self) -> bool {
         use BlendMode as Mode;
         let is_even = matches!(self, Mode::Normal | Mode::Multiply | Mode::Screen)

@@ -324,7 +324,7 @@ fn in_linear_light(d: &mut PixelRow, s: &mut PixelRow, mix: Mix) {
     }
 }
 
-/// Applies a transfer curve to the straight colours of a premultiplied row.
+/// Applies a transfer curve to the straight colors of a premultiplied row.
 #[inline(always)]
 fn through_straight(row: &mut PixelRow, curve: impl Fn(f32) -> f32) {
     for channel in &mut row.rgb {

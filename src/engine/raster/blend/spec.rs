@@ -1,4 +1,4 @@
-//! The blend functions as the specification writes them: straight colours in [0, 1], one function a
+//! The blend functions as the specification writes them: straight colors in [0, 1], one function a
 //! mode. Floor 1. The reference that reads like W3C Compositing and Blending Level 1, sec. 9;
 //! `rows` is the fast twin. Modes that W3C does not define follow Photoshop, compared with files
 //! that it saved.
@@ -7,7 +7,7 @@ use crate::math::hash;
 use crate::raster::planar::sane;
 
 /// One mode's B(cb, cs), backdrop first as in the specification: for a component, or for a whole
-/// colour.
+/// color.
 #[derive(Clone, Copy)]
 pub enum BlendFunction {
     /// Each component on its own (sec. 9.1).
@@ -22,7 +22,7 @@ impl BlendFunction {
     /// Composites one premultiplied pixel over another (sec. 5.8): the backdrop's share, the
     /// source's share outside the backdrop, and B where both are.
     ///
-    /// Total: every component is brought into `[0, 1]` first, colours to at most their alpha, NaN
+    /// Total: every component is brought into `[0, 1]` first, colors to at most their alpha, NaN
     /// to 0.
     pub fn composited(self, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
         let (backdrop, source) = (sane(backdrop), sane(source));
@@ -219,7 +219,7 @@ pub fn lum([r, g, b]: [f32; 3]) -> f32 {
     0.3 * r + 0.59 * g + 0.11 * b
 }
 
-/// Brings a colour back into [0, 1] along the line to its grey.
+/// Brings a color back into [0, 1] along the line to its gray.
 #[inline(always)]
 pub fn clip_color(c: [f32; 3]) -> [f32; 3] {
     let l = lum(c);

@@ -1,4 +1,4 @@
-//! Blend modes against the specification, hand-computed values and an independent rasteriser.
+//! Blend modes against the specification, hand-computed values and an independent rasterizer.
 
 use super::spec::BlendFunction;
 use super::*;
@@ -106,7 +106,7 @@ fn non_separable_modes_give_the_values_computed_by_hand() {
     // The darker and the lighter of both as they are.
     assert_eq!((spec::darker(cb, cs), spec::lighter(cb, cs)), (cs, cb));
     assert_eq!((spec::darker(cs, cb), spec::lighter(cs, cb)), (cs, cb));
-    // Too bright a colour is drawn back toward its grey, which stays.
+    // Too bright a color is drawn back toward its gray, which stays.
     let clipped = spec::clip_color([1.2, 0.6, 0.4]);
     assert!(
         (spec::lum(clipped) - spec::lum([1.2, 0.6, 0.4])).abs() < 1e-6
@@ -227,7 +227,7 @@ fn atop_keeps_the_alpha_of_what_it_is_painted_on() {
         assert!(got[..3].iter().all(|&c| (0.0..=0.4 + 1e-6).contains(&c)), "{name}: {got:?}");
         assert_eq!(fast(mix, [0.0; 4], [0.3, 0.6, 0.0, 0.6]), [0.0; 4], "{name}");
     }
-    // Normal: 0.6 of the colour (0.5, 1, 0) and 0.4 of the previous one.
+    // Normal: 0.6 of the color (0.5, 1, 0) and 0.4 of the previous one.
     let got =
         fast(Mix { atop: true, ..Mix::default() }, [0.2, 0.1, 0.0, 0.4], [0.3, 0.6, 0.0, 0.6]);
     assert!(

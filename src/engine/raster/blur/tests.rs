@@ -50,7 +50,7 @@ fn a_point_spreads_to_a_gaussian_of_either_kind() {
 #[test]
 fn a_step_blurs_to_the_normal_distribution_within_a_byte_step() {
     // Odd σ, so that half and one and a half deviations from the border of two pixels lie on pixel
-    // centres.
+    // centers.
     for sigma in [3usize, 5, 9, 61] {
         let step = Plane::from_fn(Size::new(600, 3), |x, _| if x < 300 { 0.0 } else { 1.0 });
         let blurred = gaussian(&step, sigma as f32);

@@ -11,7 +11,7 @@ pub const DISTANCE_PX: Range = 0.0..=distance::FARTHEST as f32 - 2.0;
 pub const SOFTNESS_PX: Range = 0.0..=500.0;
 
 /// Coverage of marked pixels with their edge moved outward by g: ½ + g − d, clamped, with d how far
-/// a pixel's centre lies beyond the edge, which runs midway between marked and unmarked pixels: a
+/// a pixel's center lies beyond the edge, which runs midway between marked and unmarked pixels: a
 /// step across an axis stays sharp, a slanted one is smoothed.
 ///
 /// * `marked`: not 0. Beyond the plane nothing is marked, and nothing ends.

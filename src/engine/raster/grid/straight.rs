@@ -53,7 +53,7 @@ impl TileGrid {
         })
     }
 
-    /// `of`: a pixel's premultiplied 16 bits; colours above alpha are lowered to it.
+    /// `of`: a pixel's premultiplied 16 bits; colors above alpha are lowered to it.
     fn from_deep_rows<T: Copy + Sync>(
         pixels: &[T],
         [width, height]: [usize; 2],

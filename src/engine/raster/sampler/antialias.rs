@@ -7,8 +7,8 @@
 //! figures). A grid of bilinear taps covers it, each for a cell of about two texels of the mip
 //! level, which is the coarsest that the taps can still resolve.
 //!
-//! Eight neighbours whose patches are alike share a grid, and their taps are placed and read
-//! together; a pixel unlike its neighbours (a crease, a silhouette) has its own grid and is read
+//! Eight neighbors whose patches are alike share a grid, and their taps are placed and read
+//! together; a pixel unlike its neighbors (a crease, a silhouette) has its own grid and is read
 //! alone.
 
 mod grid;
@@ -23,7 +23,7 @@ use lattice::{LANES, TapLattice};
 /// The piece of the image plane under each pixel of a row, in texels of level 0.
 #[derive(Clone, Copy)]
 pub struct PatchRow<'a> {
-    /// The image of the pixel's centre.
+    /// The image of the pixel's center.
     pub x: &'a [f32],
     pub y: &'a [f32],
     /// From there to the image of the middle of the left, right, upper and lower edge of the pixel:
@@ -46,7 +46,7 @@ pub struct Antialias {
     x: Vec<f32>,
     y: Vec<f32>,
     cells: CellCounts,
-    /// Neighbours that share a grid.
+    /// Neighbors that share a grid.
     groups: Vec<(TapGroup, TapGrid)>,
     /// Pixels that do not.
     lone: Vec<(u16, TapGrid)>,

@@ -1,5 +1,5 @@
 //! Reading a texture of floats: the same taps as for bytes, weighted and added without rounding.
-//! Floor 1. For pictures that are written once, so it follows the definition and is not optimised.
+//! Floor 1. For pictures that are written once, so it follows the definition and is not optimized.
 
 use super::antialias::Antialias;
 use super::{PatchRow, bilinear_in};
@@ -7,7 +7,7 @@ use crate::math::vec2;
 use crate::raster::Outside;
 use crate::raster::texture::DeepTexture;
 
-/// The picture's premultiplied colour at each position (`x`, `y`; texels), one of `out` for each:
+/// The picture's premultiplied color at each position (`x`, `y`; texels), one of `out` for each:
 /// twin of [`Bilinear::row`](super::Bilinear::row).
 pub fn bilinear_row(
     texture: &DeepTexture,
@@ -22,7 +22,7 @@ pub fn bilinear_row(
 }
 
 impl Antialias {
-    /// The picture's premultiplied colour averaged over each patch, one of `out` for each: twin of
+    /// The picture's premultiplied color averaged over each patch, one of `out` for each: twin of
     /// [`Antialias::row`].
     pub fn deep_row(
         &mut self,

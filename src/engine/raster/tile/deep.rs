@@ -40,7 +40,7 @@ pub fn pixel_of(rows: &[DeepRow], x: usize, y: usize) -> [u16; 4] {
     rows.get(y).map_or([0; 4], |row| std::array::from_fn(|c| row[c].get(x).copied().unwrap_or(0)))
 }
 
-/// Puts a pixel into a row; colours above alpha are lowered to it.
+/// Puts a pixel into a row; colors above alpha are lowered to it.
 #[inline(always)]
 pub fn put(row: &mut DeepRow, x: usize, [r, g, b, a]: [u16; 4]) {
     for (channel, value) in row.iter_mut().zip([r.min(a), g.min(a), b.min(a), a]) {
@@ -57,7 +57,7 @@ fn off_byte(v: u16) -> u16 {
 }
 
 crate::widest! {
-    /// Rounds a premultiplied row of floats; colours above alpha are lowered to it.
+    /// Rounds a premultiplied row of floats; colors above alpha are lowered to it.
     pub fn quantise_row(row: [&[f32; TILE]; 4], deep: &mut DeepRow) {
         for (channel, deep) in row.into_iter().zip(deep.iter_mut()) {
             for x in 0..TILE {
@@ -121,10 +121,10 @@ crate::widest! {
 }
 
 /// Whether bytes would lose what was painted: some pixels are soft. A pixel is soft if bytes cannot
-/// hold it, and all four neighbours differ by less than a level of 8 bits in every channel.
+/// hold it, and all four neighbors differ by less than a level of 8 bits in every channel.
 ///
 /// In soft pixels rounding makes steps that are wider than a pixel, which show as bands, and faint
-/// paint that builds up stroke by stroke is rounded away. At an edge, where neighbours are levels
+/// paint that builds up stroke by stroke is rounded away. At an edge, where neighbors are levels
 /// apart, neither shows: so ink, including its rims, stays in bytes.
 ///
 /// * `row`: puts a row in place, the top one first; each is requested once.

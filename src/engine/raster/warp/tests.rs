@@ -25,7 +25,7 @@ fn tiles() -> Vec<TileAt> {
     TileAt::covering(CANVAS.rect()).collect()
 }
 
-/// An opaque grey picture.
+/// An opaque gray picture.
 fn picture(value: impl Fn(f32, f32) -> f32) -> TileGrid {
     let grey = |i: i32| quantise(value((i % SIDE) as f32 + 0.5, (i / SIDE) as f32 + 0.5));
     let rgba: Vec<u8> = (0..SIDE * SIDE).flat_map(|i| [grey(i), grey(i), grey(i), 255]).collect();

@@ -11,7 +11,7 @@ crate::named! {
         /// u = atan2(e_x, −e_z) / 2π, v = acos(e_y) / π from the top.
         #[default]
         LatLong = "lat-long",
-        /// The centre is toward the viewer, the radius proportional to the angle from it, the rim
+        /// The center is toward the viewer, the radius proportional to the angle from it, the rim
         /// directly away.
         Angular = "angular",
         /// A photographed mirror ball: the picture is the ball, seen orthographically.
@@ -30,7 +30,7 @@ impl Projection {
                 // The whole rim is one direction, directly away from the viewer: any point of it is
                 // right.
                 let around = vec2(e.x, -e.y).normalize_or(Vec2::X);
-                // atan2 keeps the digits that acos loses near the centre and the rim.
+                // atan2 keeps the digits that acos loses near the center and the rim.
                 0.5 + 0.5 * around * (e.truncate().length().atan2(e.z) / PI)
             }
             Projection::MirrorBall => {

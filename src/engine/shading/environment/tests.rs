@@ -53,7 +53,7 @@ fn the_same_light_is_found_whatever_the_projection() {
             let (x, y) = (2.0 * p.x / side as f32 - 1.0, 1.0 - 2.0 * p.y / side as f32);
             let r = x.hypot(y);
             let e = match projection {
-                // Beyond the disc is a colour that must never show.
+                // Beyond the disc is a color that must never show.
                 _ if r > 1.0 => return [9e3, 9e3, 9e3, 1.0],
                 Projection::Angular => {
                     let (sin, cos) = (r * std::f32::consts::PI).sin_cos();

@@ -3,7 +3,7 @@
 //! by the same functions.
 //!
 //! Light has no factor 1/π, as everywhere here: ρ is π times the paper's reflectance, times n·ℓ.
-//! R_s is the colour × weight of the `specular` term, R_d that of `diffuse`.
+//! R_s is the color × weight of the `specular` term, R_d that of `diffuse`.
 
 use super::{Shading, lobes};
 use crate::math::{Vec3, fast};
@@ -75,7 +75,7 @@ fn add_glossy(
             &row.delta,
         );
     }
-    // R_s + (1 − R_s) f = R_s + f (1 − R_s): a coloured part and a whiter one.
+    // R_s + (1 − R_s) f = R_s + f (1 − R_s): a colored part and a whiter one.
     let rs = mirrored_color(shading);
     lobes::add_lit(light, lobes::tint(rs, lit.radiance), &row.rho, lit);
     row.rho.iter_mut().zip(&row.white).for_each(|(rho, f)| *rho *= f);
@@ -204,7 +204,7 @@ struct GlossyRow {
 }
 
 crate::widest! {
-    /// ρ_d without its colours, and n·ℓ.
+    /// ρ_d without its colors, and n·ℓ.
     fn matt_row(normal: &[RowValues; 3], direction: &[RowValues; 3], rho: &mut RowValues, delta: &mut RowValues) {
         for x in 0..TILE {
             let n_l = normal[0][x] * direction[0][x] + normal[1][x] * direction[1][x] + normal[2][x] * direction[2][x];

@@ -155,7 +155,7 @@ fn frame(n: Vec3) -> (Vec3, Vec3) {
 }
 
 /// How wide a part of the lobe a half vector represents, radians. For ℓ: dω_h / dω_ℓ = 1 / (4 h·e).
-/// Slightly more than its share, so that neighbours overlap.
+/// Slightly more than its share, so that neighbors overlap.
 #[inline(always)]
 fn width_rad(h_e: f32, density: f32) -> f32 {
     1.5 * (4.0 * fast::max(h_e, 0.0) / (density * HALVES as f32)).sqrt()

@@ -1,4 +1,4 @@
-//! Adds up the terms of a material along a row: σ(κ, δ) ρ times a colour (RS sec. 5). Floor 3. Not
+//! Adds up the terms of a material along a row: σ(κ, δ) ρ times a color (RS sec. 5). Floor 3. Not
 //! here: ρ and δ (each model's own file).
 
 use crate::math::fast;
@@ -10,12 +10,12 @@ use crate::shading::surface_row::{Light3, RowValues};
 /// Pixels whose sums are kept in registers.
 const CHUNK: usize = 16;
 
-/// A term's colour × weight, linear, times a light's.
+/// A term's color × weight, linear, times a light's.
 pub fn tint(color: [f32; 3], radiance: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|c| color[c] * radiance[c])
 }
 
-/// Adds σ times light that was looked up, one colour per pixel.
+/// Adds σ times light that was looked up, one color per pixel.
 pub fn add_incoming(
     light: &mut Light3,
     incoming: &Light3,
@@ -109,7 +109,7 @@ crate::widest! {
         }
     }
 
-    /// Adds light of a different colour at each pixel: tint · σ · shown.
+    /// Adds light of a different color at each pixel: tint · σ · shown.
     pub fn add_shown(light: &mut Light3, tint: [f32; 3], shown: &Light3, sigma: &RowValues) {
         for c in 0..3 {
             for x in 0..TILE {

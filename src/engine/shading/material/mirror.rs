@@ -70,7 +70,7 @@ struct RayRow {
     dy: Directions,
 }
 
-/// A row of a tile with a neighbour at each end.
+/// A row of a tile with a neighbor at each end.
 const SPAN: usize = TILE + 2;
 type Span = [[f32; SPAN]; 3];
 

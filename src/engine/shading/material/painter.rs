@@ -1,4 +1,4 @@
-//! The painter's light: key, contact shade, fill, bounce, turning edge, rim and shine, on a colour
+//! The painter's light: key, contact shade, fill, bounce, turning edge, rim and shine, on a color
 //! that is the material's own or that of the picture beneath (MATH 5). Floor 3. The function for
 //! one pixel is in the tests and reads like the equations; rows are computed here. Not here: its
 //! numbers (`shading::painter`), cast shadows (`shading::shadow`).
@@ -13,10 +13,10 @@ use crate::surface::Surface;
 use crate::surface::shadow::ContactShade;
 use std::sync::Arc;
 
-/// The powers of a colour's channels where the light turns: light that bounced in the body is
+/// The powers of a color's channels where the light turns: light that bounced in the body is
 /// richer.
 const RICH: [f32; 3] = [0.94, 1.06, 1.12];
-/// Light of a level part under the lamp of “studio”, straight ahead: it keeps its colour.
+/// Light of a level part under the lamp of “studio”, straight ahead: it keeps its color.
 const LEVEL: [f32; 3] = [1.31, 1.288, 1.22];
 /// Light up to `KNEE.0` is kept; more of it nears `KNEE.0` + `KNEE.1`, so that white parts keep
 /// their form.
@@ -107,7 +107,7 @@ impl PainterTerms {
         }
     }
 
-    /// The light of the row, linear. `albedo`: the colour that is lit, linear.
+    /// The light of the row, linear. `albedo`: the color that is lit, linear.
     pub fn shade(
         &self,
         shading: &Shading,
@@ -284,7 +284,7 @@ crate::widest! {
         }
     }
 
-    /// Puts the sums on the colour; `terms`: the turning edge, the rim.
+    /// Puts the sums on the color; `terms`: the turning edge, the rim.
     fn finish_row(
         albedo: &Light3,
         even: &Light3,

@@ -1,5 +1,5 @@
 //! Phong, and the sub-Lambertian material that is Phong with a flatter matt term (RS sec. 5.1, MATH
-//! 5). Floor 3. Toon quantises the same terms into bands.
+//! 5). Floor 3. Toon quantizes the same terms into bands.
 
 use super::{Model, Shading, lobes};
 use crate::raster::TILE;
@@ -13,7 +13,7 @@ use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, 
 /// it is mean-curvature shading, e^(γκ).
 pub struct PhongTerms {
     lobes: Vec<Lobe>,
-    /// Colour × weight of each, times its light's, linear.
+    /// Color × weight of each, times its light's, linear.
     pub tints: Vec<[f32; 3]>,
     /// σρ of each along the row.
     pub scaled: Vec<RowValues>,

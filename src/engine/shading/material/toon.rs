@@ -1,4 +1,4 @@
-//! Toon: Phong in flat tones, each term quantised after scaling (RS sec. 5.1, MATH 5). Floor 3.
+//! Toon: Phong in flat tones, each term quantized after scaling (RS sec. 5.1, MATH 5). Floor 3.
 
 use super::{Shading, lobes, phong::PhongTerms};
 use crate::math::fast;
@@ -9,7 +9,7 @@ use crate::surface::links;
 /// Adds every light's terms in `bands` tones to the rows of a tile.
 ///
 /// The edge of a tone is where σρ crosses a multiple of 1 / bands. It is antialiased: the gradient
-/// of σρ, from the neighbours in the tile, gives the share of the pixel on either side.
+/// of σρ, from the neighbors in the tile, gives the share of the pixel on either side.
 pub fn shade_tile(shading: &Shading, rows: &[SurfaceRow], light: &mut [Light3]) {
     let Some(first) = rows.first() else { return };
     let mut lights = shading.row_lights(first.surface);
@@ -45,7 +45,7 @@ fn add_tones(
     }
 }
 
-/// The links of a row's pixels to neighbours that are in the tile.
+/// The links of a row's pixels to neighbors that are in the tile.
 fn inside_links(surface_row: &SurfaceRow, has_above: bool, has_below: bool) -> [u8; TILE] {
     let mut linked = [0; TILE];
     let row = &mut linked[..surface_row.width];
@@ -82,7 +82,7 @@ fn tone(value: f32, change: f32, bands: f32) -> f32 {
 
 crate::widest! {
     /// The tones of a row, from the values above, here and below; differences are central where
-    /// both neighbours are linked, one-sided where one is.
+    /// both neighbors are linked, one-sided where one is.
     fn tones(values: [&RowValues; 3], linked: &[u8; TILE], bands: f32) -> RowValues {
         let [above, here, below] = values;
         // One more pixel at both ends, to which nothing is linked.
@@ -197,7 +197,7 @@ mod tests {
                     inside += 1;
                 }
             }
-            // At the rim, normals turn within a pixel more than its neighbours show.
+            // At the rim, normals turn within a pixel more than its neighbors show.
             if inside == 256 && (x as f32 - 47.5).hypot(y as f32 - 47.5) < 40.0 {
                 let found = crate::math::srgb::decode(f32::from(red) / 255.0);
                 worst = worst.max((found - sum / 256.0).abs());

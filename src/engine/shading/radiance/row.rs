@@ -23,7 +23,7 @@ pub(super) struct RowScaler {
     factors: LuminanceRow,
     /// The factors' 5/12th powers: the effect of a factor of the light on encoded values.
     roots: LuminanceRow,
-    /// Without approximations: the brightest straight colour that is left.
+    /// Without approximations: the brightest straight color that is left.
     exact: Option<f32>,
 }
 

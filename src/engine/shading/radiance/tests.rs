@@ -14,7 +14,7 @@ fn scene() -> Scene {
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 
-/// Every pixel the same colour.
+/// Every pixel the same color.
 fn flat(r: f32, g: f32, b: f32, a: f32) -> PlanarTile {
     let mut pixels = transparent_f32();
     pixels.fill([r * a, g * a, b * a, a]);

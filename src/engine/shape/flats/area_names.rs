@@ -1,4 +1,4 @@
-//! Names of the areas of a drawing: by their colour, and by where they are if several have it.
+//! Names of the areas of a drawing: by their color, and by where they are if several have it.
 //! Floor 3.
 
 use super::palette::NOTHING;
@@ -19,12 +19,12 @@ const HUES: [(f32, &str); 10] = [
     (345.0, "pink"),
     (360.0, "red"),
 ];
-/// A colour less saturated than this is a grey.
+/// A color less saturated than this is a gray.
 const LEAST_CHROMA: f32 = 0.09;
 /// Two places nearer to each other than this share of the figure are not told apart by a side.
 const LEAST_APART: f32 = 0.05;
 
-/// What a colour is called: “dark blue”.
+/// What a color is called: “dark blue”.
 pub fn color_name(color: Color) -> String {
     let [r, g, b] = [color.r, color.g, color.b].map(|v| f32::from(v) / 255.0);
     let (most, least) = (r.max(g).max(b), r.min(g).min(b));
@@ -110,7 +110,7 @@ fn middles(labels: &Plane<u16>, n: usize) -> (Vec<Vec2>, Vec2) {
     (sums.iter().map(middle).collect(), (high - low).max(Vec2::ONE))
 }
 
-/// Where an area is among those of its colour.
+/// Where an area is among those of its color.
 fn place_among(own: usize, alike: &[usize], middles: &[Vec2], figure: Vec2) -> String {
     let side = |axis: usize, [low, high]: [&'static str; 2]| {
         let of = |i: usize| middles[i][axis] / figure[axis];

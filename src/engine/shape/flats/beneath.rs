@@ -1,5 +1,5 @@
-//! What a flat colour covers unseen: its area goes on beneath nearer colours, as a face does
-//! beneath its eyes. Floor 3. Not here: which share of a visible pixel a colour takes (`shares`).
+//! What a flat color covers unseen: its area goes on beneath nearer colors, as a face does
+//! beneath its eyes. Floor 3. Not here: which share of a visible pixel a color takes (`shares`).
 
 use super::areas::{self, around_all, beside, least_area, over, pixels, walk};
 use super::shares::{FlatOwner, Flats, MOSTLY, REACH};
@@ -9,31 +9,31 @@ use crate::raster::Plane;
 use std::collections::BTreeMap;
 
 /// A glint in a pupil is painted on it and no hole through which the white of the eye is seen: a
-/// flat area of a farther colour that is at most so many times as large as the smallest part, and
-/// at most this share of what the colour around it covers.
+/// flat area of a farther color that is at most so many times as large as the smallest part, and
+/// at most this share of what the color around it covers.
 const LARGEST_GLINT: usize = 10;
 const GLINT_SHARE: f32 = 0.125;
 
-/// An area that goes on beyond the colour by more than this share of the colour's longer side is
+/// An area that goes on beyond the color by more than this share of the color's longer side is
 /// open.
 const LOOKED_BEYOND: f32 = 0.5;
 
-/// What is seen at a pixel, from far to near: this, the nearer colours in their order, glints, and
-/// the colour itself.
+/// What is seen at a pixel, from far to near: this, the nearer colors in their order, glints, and
+/// the color itself.
 const OPEN: u16 = 0;
-/// Of a farther colour: open, or a glint.
+/// Of a farther color: open, or a glint.
 const FARTHER: u16 = u16::MAX - 3;
 const GLINT: u16 = u16::MAX - 2;
-/// No flat area, and no colour of a part.
+/// No flat area, and no color of a part.
 const UNKNOWN: u16 = u16::MAX - 1;
 const OWN: u16 = u16::MAX;
 
-/// Gives a colour the areas that nearer colours cover inside of it; `nearer`: the farthest of them
+/// Gives a color the areas that nearer colors cover inside of it; `nearer`: the farthest of them
 /// first.
 ///
-/// A nearer area is inside of the colour if it meets nothing but the colour itself, areas nearer
+/// A nearer area is inside of the color if it meets nothing but the color itself, areas nearer
 /// than itself, which may hide how it goes on, and other areas inside of it. A hole, through which
-/// nothing or a farther colour is seen, stays.
+/// nothing or a farther color is seen, stays.
 pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) {
     let own = around_all(share, |share| share >= MOSTLY);
     let beyond = (LOOKED_BEYOND * own.width().max(own.height()) as f32) as i32 + 1;
@@ -88,7 +88,7 @@ fn what_is_seen(
     })
 }
 
-/// Decides for areas of farther colours whether they are glints or open; `least`: the pixels of the
+/// Decides for areas of farther colors whether they are glints or open; `least`: the pixels of the
 /// smallest part.
 fn turn_small_areas_to_glints(seen: &mut Plane<u16>, least: usize) {
     let own = seen.values().iter().filter(|seen| **seen == OWN).count();
@@ -133,7 +133,7 @@ fn spread(seen: &mut Plane<u16>) {
         }
         rim = next;
     }
-    // What nothing is known about, in the middle of the colour itself.
+    // What nothing is known about, in the middle of the color itself.
     seen.values_mut().iter_mut().filter(|seen| **seen == UNKNOWN).for_each(|seen| *seen = OPEN);
 }
 
@@ -171,7 +171,7 @@ fn is_border((x, y): (usize, usize), (w, h): (usize, usize)) -> bool {
     x == 0 || y == 0 || x + 1 == w || y + 1 == h
 }
 
-/// Gives a colour all of the mixed pixels at its rim.
+/// Gives a color all of the mixed pixels at its rim.
 fn fill_mixed_around(share: &mut Plane<u8>, x: usize, y: usize) {
     let reach = REACH - 1;
     let (x, y) = (x as i32, y as i32);

@@ -1,4 +1,4 @@
-//! What is painted and of no flat colour, such as lines and specks, is given to the areas beside
+//! What is painted and of no flat color, such as lines and specks, is given to the areas beside
 //! it. Floor 3.
 
 use super::areas::{pixels, spread};

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const HALF_WIDTH: f32 = 0.005;
 const HALF_WIDTH_SMALL: f32 = 0.01;
 const SMALL_PX: f32 = 2.0;
-/// The share of a colour that must be in lines, and the share of these that must have two areas on
+/// The share of a color that must be in lines, and the share of these that must have two areas on
 /// their sides.
 const LEAST_THIN: f32 = 0.3;
 const LEAST_BETWEEN: f32 = 0.4;
@@ -31,7 +31,7 @@ pub fn half_width(size: Size) -> usize {
     (HALF_WIDTH * side).max(SMALL_PX.min(HALF_WIDTH_SMALL * side)).max(1.0) as usize
 }
 
-/// How many pixels a colour takes, and how many of them are beside others.
+/// How many pixels a color takes, and how many of them are beside others.
 #[derive(Clone, Copy, Default)]
 pub struct ColorPixels {
     all: usize,
@@ -39,7 +39,7 @@ pub struct ColorPixels {
     area: Rect,
 }
 
-/// Those of the first `n` colours.
+/// Those of the first `n` colors.
 pub fn color_pixels(of: &Plane<u16>, n: usize) -> Vec<ColorPixels> {
     let count = |mut counts: Vec<ColorPixels>, y: usize| {
         for (x, color) in of.row(y).iter().enumerate() {
@@ -66,15 +66,15 @@ pub fn color_pixels(of: &Plane<u16>, n: usize) -> Vec<ColorPixels> {
     (0..of.height()).into_par_iter().fold(none, count).reduce(none, both)
 }
 
-/// Whether a pixel is beside one of another colour.
+/// Whether a pixel is beside one of another color.
 fn is_rim(of: &Plane<u16>, (x, y): (usize, usize)) -> bool {
     beside((x, y), (of.width(), of.height())).any(|(x1, y1)| of.at(x1, y1) != of.at(x, y))
 }
 
-/// The pixels of lines between areas in one colour, if that is mostly such lines.
+/// The pixels of lines between areas in one color, if that is mostly such lines.
 ///
-/// * `of`: the number of the colour that takes the most of each pixel.
-/// * `count`: of the colour.
+/// * `of`: the number of the color that takes the most of each pixel.
+/// * `count`: of the color.
 pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usize, usize)>> {
     let half = half_width(of.size());
     let ColorPixels { all, rim, area } = count;
@@ -105,7 +105,7 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
     is_ink.then(|| lines.into_iter().map(|(x, y)| (x + x0, y + y0)).collect())
 }
 
-/// The pixels of a colour that are in none of its areas that are wider than lines and large enough
+/// The pixels of a color that are in none of its areas that are wider than lines and large enough
 /// to be parts.
 ///
 /// `least`: the pixels of the smallest of these.
@@ -143,7 +143,7 @@ fn taken(set: &mut Plane<bool>, start: (usize, usize)) -> Vec<(usize, usize)> {
     area
 }
 
-/// Whether different colours, or a colour and nothing, lie on the two sides of a pixel of a line.
+/// Whether different colors, or a color and nothing, lie on the two sides of a pixel of a line.
 fn is_between_areas(of: &Plane<u16>, (x, y): (usize, usize), reach: usize) -> bool {
     let own = of.at(x, y);
     let side = |dx: i32, dy: i32| {

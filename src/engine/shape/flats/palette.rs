@@ -1,5 +1,5 @@
-//! The colours of flats: one is all that an area shows, also where it is shaded, as long as nothing
-//! in it is an edge. Floor 3. Not here: which share of a pixel a colour takes (`shares`).
+//! The colors of flats: one is all that an area shows, also where it is shaded, as long as nothing
+//! in it is an edge. Floor 3. Not here: which share of a pixel a color takes (`shares`).
 
 use super::areas::LEAST_SEEN;
 use super::color_distance::{color_distance, is_near};
@@ -8,16 +8,16 @@ use crate::raster::Plane;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 
-/// The most shades of which colours are made.
+/// The most shades of which colors are made.
 const MOST_SHADES: usize = 256;
-/// Neighbouring pixels that differ by no more, in any channel of 8 bits, are shaded; others are an
+/// Neighboring pixels that differ by no more, in any channel of 8 bits, are shaded; others are an
 /// edge.
 const SOFT_STEP: u8 = 4;
 /// Two shades lie on the two sides of so many pixels, or of one edge, px.
 const ACROSS: usize = 3;
-/// The share of a common border without an edge, from which two shades are one colour.
+/// The share of a common border without an edge, from which two shades are one color.
 const LEAST_SOFT: f32 = 0.3;
-/// Shades no farther apart than this, in any channel of 8 bits, are one colour if they lie mingled:
+/// Shades no farther apart than this, in any channel of 8 bits, are one color if they lie mingled:
 /// noise.
 const MINGLED: u8 = 32;
 /// The least length of their border, px for each pixel of the rarer one, from which two shades lie
@@ -27,12 +27,12 @@ const LEAST_MINGLED: f32 = 0.5;
 /// noise.
 const LEAST_SOLID: f32 = 0.05;
 
-/// In a plane of colours: none is known.
+/// In a plane of colors: none is known.
 pub const NONE: u16 = u16::MAX;
 /// Nothing is painted.
 pub const NOTHING: u16 = NONE - 1;
 
-/// A colour of flats.
+/// A color of flats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaletteColor {
     /// Its most frequent shade.
@@ -43,16 +43,16 @@ pub struct PaletteColor {
     pub is_asked: bool,
 }
 
-/// The colours of flats.
+/// The colors of flats.
 pub struct Palette {
     /// Those that were asked for, then the most frequent first.
     pub colors: Vec<PaletteColor>,
-    /// The number of the colour of each pixel in a flat area; [`NOTHING`], or [`NONE`] elsewhere.
+    /// The number of the color of each pixel in a flat area; [`NOTHING`], or [`NONE`] elsewhere.
     pub of: Plane<u16>,
 }
 
 impl Palette {
-    /// `asked`: colours that are looked for however small their areas are, and never joined with
+    /// `asked`: colors that are looked for however small their areas are, and never joined with
     /// each other.
     pub fn of(picture: &FlatPicture, asked: &[Pixel]) -> Self {
         let FlatPicture { pixels, is_flat, .. } = picture;
@@ -60,7 +60,7 @@ impl Palette {
         let of = shade_of_each(pixels, is_flat, &shades);
         let solid = solid(&of, shades.len());
         let joined = joined(&borders(pixels, &of), &shades, &solid, asked.len());
-        // Shades of one colour have the number of the first of them: it was asked for, or is the
+        // Shades of one color have the number of the first of them: it was asked for, or is the
         // most frequent.
         let mut firsts: Vec<usize> = joined.clone();
         firsts.sort_unstable();
@@ -117,7 +117,7 @@ fn shades(pixels: &Plane<Pixel>, is_flat: &Plane<bool>, asked: &[Pixel]) -> Vec<
     shades
 }
 
-/// The colour nearest to a pixel of those that are near at all.
+/// The color nearest to a pixel of those that are near at all.
 pub fn nearest(colors: impl Iterator<Item = Pixel>, pixel: Pixel) -> Option<usize> {
     let near = colors.enumerate().filter(|(_, color)| is_near(*color, pixel));
     near.min_by_key(|(i, color)| (color_distance(*color, pixel), *i)).map(|(i, _)| i)
@@ -146,7 +146,7 @@ fn shade_of_each(
     of
 }
 
-/// For each shade the first one that is the same colour: shading leads from one to the other, and
+/// For each shade the first one that is the same color: shading leads from one to the other, and
 /// no edge parts them, or it lies mingled with it.
 ///
 /// * `solid`: how many pixels of each shade have it all around.
@@ -162,7 +162,7 @@ fn joined(
     });
     let mut joins: Vec<(usize, usize, usize)> =
         soft.map(|((a, b), border)| (border.soft, usize::from(*a), usize::from(*b))).collect();
-    // Noise has one colour only; two areas are not joined by what lies between them.
+    // Noise has one color only; two areas are not joined by what lies between them.
     for shade in (asked..shades.len()).filter(|shade| !is_solid(solid[*shade], shades[*shade].1)) {
         let beside = borders.iter().filter_map(|((a, b), border)| {
             let (a, b) = (usize::from(*a), usize::from(*b));

@@ -9,17 +9,17 @@ use rayon::prelude::*;
 /// Premultiplied.
 pub type Pixel = [u8; 4];
 
-/// A pixel is mostly of a colour that takes this share of it.
+/// A pixel is mostly of a color that takes this share of it.
 pub const MOSTLY: u8 = 128;
 /// How far from a mixed pixel the areas that it lies between are sought, px: edges are rarely
 /// blurred more.
 pub const REACH: i32 = 3;
-/// A pixel in a flat area has its colour in this many of its eight neighbours; along a straight
+/// A pixel in a flat area has its color in this many of its eight neighbors; along a straight
 /// edge two have it.
 const LEAST_ALIKE: usize = 3;
 /// One in the thinnest line has it in so many.
 const LEAST_ALIKE_ALONG: usize = 2;
-/// A pixel farther than this from the line between two colours is no mixture of them, a sum of
+/// A pixel farther than this from the line between two colors is no mixture of them, a sum of
 /// squares over the channels.
 const FARTHEST: i32 = (4 * NEAR) * (4 * NEAR);
 /// The longest side of pixel art, px, in which every pixel is meant.
@@ -48,7 +48,7 @@ pub struct Between {
 pub struct MixedPixel {
     /// In the plane.
     pub index: usize,
-    /// The numbers of their colours, or what a palette has for none.
+    /// The numbers of their colors, or what a palette has for none.
     pub sides: [u16; 2],
     /// The share of the second, 255 the whole.
     pub share: u8,
@@ -163,7 +163,7 @@ impl FlatPicture {
 const AROUND: [(i32, i32); 8] =
     [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
-/// How many of a pixel's neighbours have its colour.
+/// How many of a pixel's neighbors have its color.
 fn alike(pixels: &Plane<Pixel>, x: usize, y: usize) -> usize {
     let here = pixels.at(x, y);
     let beside =
@@ -180,7 +180,7 @@ fn ring(reach: i32) -> impl Iterator<Item = (i32, i32)> {
     })
 }
 
-/// The pair of colours whose mixture a pixel is, and the share of the second.
+/// The pair of colors whose mixture a pixel is, and the share of the second.
 fn nearest_way(pixel: Pixel, colors: &[(Pixel, Option<usize>)]) -> Option<(usize, usize, u8)> {
     let pairs = (0..colors.len()).flat_map(|i| (i + 1..colors.len()).map(move |j| (i, j)));
     let off = |(i, j): (usize, usize)| {

@@ -1,5 +1,5 @@
-//! The places of a flat colour: its areas that nothing joins, or only a passage too narrow to be
-//! meant. Floor 3. Not here: which share of a pixel a colour takes (`shares`), the gap closing
+//! The places of a flat color: its areas that nothing joins, or only a passage too narrow to be
+//! meant. Floor 3. Not here: which share of a pixel a color takes (`shares`), the gap closing
 //! (`paint::fill`).
 
 use super::areas::{LEAST_SEEN, around_all, least_area, over, spread};
@@ -9,16 +9,16 @@ use crate::math::{Rect, Size, Vec2, vec2};
 use crate::raster::gaps::rooms;
 use crate::raster::{Plane, distance};
 
-/// How far around a colour pixels are looked at, px: what lies over its edge belongs to its places.
+/// How far around a color pixels are looked at, px: what lies over its edge belongs to its places.
 const BESIDE: i32 = 2;
 
-/// The areas of one colour of flats, numbered from 1.
+/// The areas of one color of flats, numbered from 1.
 pub struct ColorPlaces {
     /// Of the flats.
     size: Size,
-    /// Where the colour is.
+    /// Where the color is.
     area: Rect,
-    /// The place of each pixel there that is mostly of the colour; 0 elsewhere.
+    /// The place of each pixel there that is mostly of the color; 0 elsewhere.
     labels: Plane<u32>,
     /// What each covers of these, and how many pixels that is; the first is place 1.
     areas: Vec<(Rect, usize)>,
@@ -98,7 +98,7 @@ impl ColorPlaces {
     }
 
     /// A point of a place, as far from its rim as one can be (of several such points, the one
-    /// nearest to its centre of gravity): the centre of a pixel, px of the plane.
+    /// nearest to its center of gravity): the center of a pixel, px of the plane.
     pub fn middle(&self, place: u32) -> Vec2 {
         let Some((rect, pixels)) = self.areas.get((place as usize).wrapping_sub(1)) else {
             return Vec2::ZERO;
@@ -142,7 +142,7 @@ impl ColorPlaces {
         }
     }
 
-    /// The share of each pixel that each of some places takes of what the colour takes: mixed
+    /// The share of each pixel that each of some places takes of what the color takes: mixed
     /// pixels go to the nearest place.
     pub fn shares(&self, places: &[u32], share: &Plane<u8>) -> Vec<Plane<u8>> {
         let mut labels = self.labels.clone();
@@ -157,7 +157,7 @@ impl ColorPlaces {
     }
 }
 
-/// The places that a part of a colour can be split into.
+/// The places that a part of a color can be split into.
 pub struct SplitPlaces {
     places: ColorPlaces,
     large: Vec<u32>,

@@ -91,7 +91,7 @@ impl Level {
     pub(super) fn held_of_block(&self, x: usize, y: usize) -> f32 {
         let held = |x: usize, y: usize| {
             let held = self.at_number(&self.held, x, y);
-            // A pixel with all its neighbours is not held by a rim, but where it is itself.
+            // A pixel with all its neighbors is not held by a rim, but where it is itself.
             let is_inner = held > 0.0 && self.at_number(&self.diagonal, x, y) - held > 3.999;
             if is_inner { held } else { HELD_BY_RIM * held }
         };

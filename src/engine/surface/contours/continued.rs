@@ -32,13 +32,13 @@ impl Continued {
         Some(Self { nbar: [x, y], depth })
     }
 
-    /// n̄ at a distance from the pixel's centre, px, shortened to the disc where it leaves it.
+    /// n̄ at a distance from the pixel's center, px, shortened to the disc where it leaves it.
     pub fn nbar(&self, from_center: Vec2) -> Vec2 {
         let [x, y] = self.nbar.map(|fit| fit.here + fit.slope.dot(from_center));
         within_rim(vec2(x, y))
     }
 
-    /// z at a distance from the pixel's centre, `[0, 1]`.
+    /// z at a distance from the pixel's center, `[0, 1]`.
     pub fn depth(&self, from_center: Vec2) -> f32 {
         (self.depth.here + self.depth.slope.dot(from_center)).clamp(0.0, 1.0)
     }

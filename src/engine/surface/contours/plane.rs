@@ -7,7 +7,7 @@ use crate::math::{Vec2, vec2};
 /// A plane v(x, y) fitted to a window's values by weighted least squares.
 #[derive(Clone, Copy, Debug)]
 pub struct LeastSquaresPlane {
-    /// At the middle pixel's centre.
+    /// At the middle pixel's center.
     pub here: f32,
     /// Per px, image axes.
     pub slope: Vec2,
@@ -54,7 +54,7 @@ impl LeastSquaresPlane {
         if w <= 1e-12 {
             return None;
         }
-        // Centred, the two slopes come from a 2 × 2 system.
+        // Centered, the two slopes come from a 2 × 2 system.
         let ridge = f64::from(ridge);
         let (a, b, c) = (xx - x * x / w + ridge, xy - x * y / w, yy - y * y / w + ridge);
         let det = a * c - b * b;

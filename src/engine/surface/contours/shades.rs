@@ -5,7 +5,7 @@ use super::line::ContourLine;
 use crate::math::{Vec2, vec2};
 use crate::raster::Plane;
 
-/// Shades that a line may predict wrongly at one neighbour of a pixel, and in the mean, and still
+/// Shades that a line may predict wrongly at one neighbor of a pixel, and in the mean, and still
 /// be the mask's edge.
 const SHADE_OFF: f32 = 0.35;
 const SHADES_OFF: f32 = 0.12;
@@ -55,7 +55,7 @@ impl ContourLine {
         (most <= SHADE_OFF && all <= SHADES_OFF * around.len() as f32).then_some(line)
     }
 
-    /// The same line from another pixel's centre.
+    /// The same line from another pixel's center.
     fn at(self, step: Vec2) -> Self {
         Self { distance_px: self.height(step), ..self }
     }

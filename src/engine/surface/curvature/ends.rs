@@ -1,6 +1,6 @@
 //! Curvature of blurred normals near the ends of a surface. A blur along rows and then columns sees
 //! the stairs of a contour: it ends in blocks and streaks there. Normals that flow to linked
-//! neighbours in small steps do not: the heat equation, whose steps of variance 2 t add up to the
+//! neighbors in small steps do not: the heat equation, whose steps of variance 2 t add up to the
 //! Gaussian's, with nothing flowing over an end. Floor 2.
 
 use super::tile_rect::TileRect;
@@ -8,7 +8,7 @@ use super::{CurvatureRims, slope, tensor};
 use crate::surface::{Surface, links};
 use std::ops::Range;
 
-/// What flows to each neighbour in a step; up to a quarter is stable.
+/// What flows to each neighbor in a step; up to a quarter is stable.
 const FLOW: f32 = 0.24;
 /// Wider blurs take too many steps, and stay as they are.
 const WIDEST_PX: f32 = 8.0;
@@ -150,7 +150,7 @@ impl FlowRegion {
         }
     }
 
-    /// H of a pixel by differences to linked neighbours in the region.
+    /// H of a pixel by differences to linked neighbors in the region.
     fn tensor_at(&self, i: usize) -> [f32; 3] {
         let slope_at = |i: usize| {
             let [x, y, z] = self.normal.each_ref().map(|channel| channel[i]);
@@ -183,7 +183,7 @@ struct SideFlows<'r> {
     down: &'r [f32],
 }
 
-/// One step of some columns of a row: each pixel moves toward its linked neighbours.
+/// One step of some columns of a row: each pixel moves toward its linked neighbors.
 fn flow_row(rows: [&[f32]; 3], sides: SideFlows, span: Range<usize>, out: &mut [f32]) {
     let (n, [above, here, below]) = (out.len(), rows);
     let mut at_border = |x: usize| {
@@ -209,7 +209,7 @@ fn flow_row(rows: [&[f32]; 3], sides: SideFlows, span: Range<usize>, out: &mut [
 }
 
 crate::widest! {
-    /// Pixels move toward their neighbours above, below, at the right and at the left.
+    /// Pixels move toward their neighbors above, below, at the right and at the left.
     fn flow_inside(flows: [&[f32]; 4], beside: [&[f32]; 4], here: &[f32], out: &mut [f32]) {
         let n = out.len();
         let [up, down, right, left] = flows.map(|flow| &flow[..n]);

@@ -1,4 +1,4 @@
-//! View-centred curvature: how the surface bends as seen by the viewer (MATH 4; RS sec. 4, after
+//! View-centered curvature: how the surface bends as seen by the viewer (MATH 4; RS sec. 4, after
 //! Vergne et al. 2009). Floor 2. Here: what curvature is and its equations. Not here: the fast way
 //! to compute it over a whole map (`tiles`), or its uses (`shading::radiance`, the detail of D_n).
 
@@ -25,7 +25,7 @@ use std::sync::Arc;
 pub const GRAZING_NZ: f32 = 0.05;
 
 /// The curvature tensor H of every pixel: axes x right, y **up**; convex > 0; per pixel, before the
-/// curvature scale *s*. At the ends of the surface it is continued from neighbours; off the surface
+/// curvature scale *s*. At the ends of the surface it is continued from neighbors; off the surface
 /// it is 0.
 pub struct Curvature {
     pub hxx: Plane<f32>,

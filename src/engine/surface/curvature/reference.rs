@@ -7,7 +7,7 @@ use crate::raster::blur::half_kernel;
 use crate::surface::contours::mean_of;
 use crate::surface::{Surface, links};
 
-/// The neighbour of a pixel in a direction, if it continues its surface.
+/// The neighbor of a pixel in a direction, if it continues its surface.
 fn step(surface: &Surface, (x, y): (usize, usize), bit: u8) -> Option<(usize, usize)> {
     (surface.links_plane().at(x, y) & bit != 0).then(|| match bit {
         links::LEFT => (x - 1, y),
@@ -62,7 +62,7 @@ fn slope_at(surface: &Surface, at: (usize, usize), taps: &[f32]) -> (f32, f32) {
 }
 
 /// `[h_xx, h_xy, h_yy]` of a pixel; at an end of the surface the mean of nearby ones that have all
-/// their neighbours.
+/// their neighbors.
 pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     match rims::members(surface, x as i32, y as i32) {
         Some(members) if members != 0 => [0, 1, 2].map(|i| {
@@ -74,7 +74,7 @@ pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3
 
 fn differenced(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     let taps = half_kernel(blur_px);
-    // Central where both neighbours continue the surface, one-sided where one does, none where
+    // Central where both neighbors continue the surface, one-sided where one does, none where
     // neither.
     let difference = |back: u8, forth: u8| {
         let ends = [back, forth].map(|bit| step(surface, (x, y), bit));

@@ -1,4 +1,4 @@
-//! Curvature at the ends of a surface: continued from nearby pixels that have all their neighbours.
+//! Curvature at the ends of a surface: continued from nearby pixels that have all their neighbors.
 //! Floor 2.
 
 use crate::raster::Plane;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The pixels at which a neighbour is missing, and which pixels of the window around them their
+/// The pixels at which a neighbor is missing, and which pixels of the window around them their
 /// curvature is continued from. Differences there are one-sided: noisy, and of a normal that is
 /// seen edge-on.
 pub struct CurvatureRims {
@@ -127,12 +127,12 @@ crate::widest! {
     }
 }
 
-/// A covered pixel that lacks a neighbour on the canvas.
+/// A covered pixel that lacks a neighbor on the canvas.
 fn rim(surface: &Surface, x: i32, y: i32) -> Option<RimPixel> {
     members(surface, x, y).map(|members| RimPixel { x, y, members })
 }
 
-/// The pixels around a rim's that belong to its piece and have all their neighbours; `None` for a
+/// The pixels around a rim's that belong to its piece and have all their neighbors; `None` for a
 /// pixel that is no rim.
 pub(super) fn members(surface: &Surface, x: i32, y: i32) -> Option<u64> {
     let whole = |x: i32, y: i32| {

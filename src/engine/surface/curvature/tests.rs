@@ -3,7 +3,7 @@ use crate::math::{Size, vec3};
 use crate::surface::Maps;
 
 /// A surface over the whole canvas from its slope (∂height/∂x, ∂height/∂y up), the origin at the
-/// canvas's centre.
+/// canvas's center.
 fn from_height_slope(side: u32, slope: impl Fn(f32, f32) -> (f32, f32) + Sync) -> Surface {
     let half = side as f32 * 0.5;
     let size = Size::new(side, side);

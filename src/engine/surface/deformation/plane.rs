@@ -32,7 +32,7 @@ pub(super) struct LaidPlanes {
 pub struct OwnPlane<'p> {
     pub x: &'p Plane<f32>,
     pub y: &'p Plane<f32>,
-    /// The dab's centre there.
+    /// The dab's center there.
     pub at: Vec2,
 }
 
@@ -161,7 +161,7 @@ impl LaidPlanes {
         Self { is_bounded: false, ..self }
     }
 
-    /// D(q) at the centre of a pixel that the surface covers.
+    /// D(q) at the center of a pixel that the surface covers.
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         let (object, u) = (self.objects.labels().at(x, y), self.unwrapping.at(x, y));
         match self.fits.iter().find(|fit| fit.object == object) {

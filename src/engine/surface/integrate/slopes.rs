@@ -1,4 +1,4 @@
-//! The steps between neighbouring pixels that normals give: computed pixel by pixel, never stored.
+//! The steps between neighboring pixels that normals give: computed pixel by pixel, never stored.
 //! Floor 2.
 
 use crate::math::{Vec3, vec2};

@@ -41,7 +41,7 @@ struct HorizonDirection {
     steps: Vec<HorizonStep>,
 }
 
-/// A place along the way, between two neighbouring pixels.
+/// A place along the way, between two neighboring pixels.
 struct HorizonStep {
     near: (i32, i32),
     far: (i32, i32),
@@ -56,7 +56,7 @@ impl HorizonSlices {
     fn new(radius_px: f32) -> Self {
         let slice = |i: usize| {
             let (sin, cos) = (i as f32 / SLICES as f32 * PI).sin_cos();
-            // Neighbouring directions look at different distances, so that an edge casts no echo.
+            // Neighboring directions look at different distances, so that an edge casts no echo.
             let phase = (i as f32 * 0.618_034).fract();
             [
                 way(vec2(cos, sin), radius_px, phase),
@@ -73,7 +73,7 @@ impl HorizonSlices {
 }
 
 /// Steps by whole pixels along the nearer axis and interpolates between two pixels across it:
-/// jumping from pixel to pixel would pick the higher neighbour.
+/// jumping from pixel to pixel would pick the higher neighbor.
 fn way(toward: Vec2, radius_px: f32, phase: f32) -> HorizonDirection {
     let is_across = toward.x.abs() >= toward.y.abs();
     let (along, across) = if is_across { (toward.x, toward.y) } else { (toward.y, toward.x) };
@@ -122,7 +122,7 @@ fn open_part(along: f32, up: f32, horizons: [f32; 2]) -> f32 {
     0.25 * length * (half(horizons[0], 1.0) + half(horizons[1], -1.0))
 }
 
-/// The height between two neighbouring pixels, `t` of the way; across a cliff, the lower one's
+/// The height between two neighboring pixels, `t` of the way; across a cliff, the lower one's
 /// height.
 #[inline(always)]
 fn height_between(near: f32, far: f32, t: f32) -> f32 {
@@ -149,7 +149,7 @@ fn slope(surface: &Surface, x: usize, y: usize) -> Vec2 {
     let links = surface.links_plane();
     let height = |x: usize, y: usize| -surface.depth(x, y) * surface.depth_range_px();
     let here = links.at(x, y);
-    // The mean of the steps next to the pixel and, where linked, next to its two neighbours across.
+    // The mean of the steps next to the pixel and, where linked, next to its two neighbors across.
     let mean = |steps: &[Option<f32>]| {
         let (sum, count) =
             steps.iter().flatten().fold((0.0, 0.0), |(s, n), step| (s + step, n + 1.0));

@@ -84,7 +84,7 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
 }
 
 /// The open part averaged over five pixels each way, never across a depth jump: the remaining
-/// artefacts of depth steps and few directions are finer than that.
+/// artifacts of depth steps and few directions are finer than that.
 pub(super) fn smoothed(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
     let across = along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
     along_links(surface, &across, (links::UP, links::DOWN), (0, 1))
@@ -224,7 +224,7 @@ fn along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
 /// do so anywhere.
 ///
 /// Most places lie below the tangent plane, which their rise shows without a root or a division.
-/// Only where that of one of a few neighbours does not, they are looked at.
+/// Only where that of one of a few neighbors does not, they are looked at.
 #[inline(always)]
 fn march(
     heights: &Heights,

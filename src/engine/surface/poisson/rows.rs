@@ -1,4 +1,4 @@
-//! The loops of the solver over a row of the grid, in plain loops that the compiler vectorises.
+//! The loops of the solver over a row of the grid, in plain loops that the compiler vectorizes.
 //! Floor 2. Their twin that reads like the equation is `PoissonGrid::pull`.
 
 /// The couplings of a row of unknowns: to the right, up (none in the first row) and down.
@@ -9,7 +9,7 @@ pub(super) struct GridRow<'g> {
     pub down: &'g [f32],
 }
 
-/// Visits every unknown of a row with Σ w, its own value and Σ w v over its neighbours.
+/// Visits every unknown of a row with Σ w, its own value and Σ w v over its neighbors.
 ///
 /// `[above, here, below]`: the values; above and below are empty beyond the grid.
 #[inline(always)]

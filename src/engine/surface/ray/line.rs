@@ -97,7 +97,7 @@ impl RayLine {
         map.near.map_or(seen, |near| seen * near.focal_px() / self.nearness(steps).max(1e-3))
     }
 
-    /// The two pixels across the line between whose centres a point lies.
+    /// The two pixels across the line between whose centers a point lies.
     #[inline(always)]
     pub fn pixels(&self, at: Vec2, size: Size) -> [(usize, usize); 2] {
         let clamp = |v: f32, n: u32| (v.max(0.0) as usize).min(n as usize - 1);

@@ -33,7 +33,7 @@ fn view(eye: Eye, at: Vec2) -> (Vec3, Vec3) {
     }
 }
 
-/// What a pixel's centre shows: the place and the normal.
+/// What a pixel's center shows: the place and the normal.
 fn shown(balls: &[Ball], eye: Eye, at: Vec2) -> Option<(Vec3, Vec3)> {
     let (from, toward) = view(eye, at);
     cast(balls, from, toward).map(|(t, n)| (from + toward * t, n))

@@ -73,7 +73,7 @@ struct LampRay {
 enum Aim {
     /// The way in the picture, unit, image axes, and the px that it rises for each of it.
     Along { way: Vec2, rise: f32 },
-    /// Place in the picture, px between pixel centres, and height, px.
+    /// Place in the picture, px between pixel centers, and height, px.
     To(Vec3),
 }
 
@@ -196,7 +196,7 @@ impl HeightMaps {
         Self { upright, turned, highest: range }
     }
 
-    /// h between pixels, `x` and `y` between their centres; 0 beyond the picture. Along a row or a
+    /// h between pixels, `x` and `y` between their centers; 0 beyond the picture. Along a row or a
     /// column it is linear.
     #[cfg(test)]
     fn between(&self, x: f32, y: f32) -> f32 {

@@ -79,7 +79,7 @@ fn a_flat_occluder_throws_its_umbra_to_the_pixel() {
         let sharp = ShadowLamp { radius: 0.0, ..lamp(LampPlace::Afar(direction)) };
         let sharp = ShadowLamp { reach_px: 1000.0, ..sharp };
         let end = crossing(&surface.shadow(&sharp, 1), 30, 110..310, 0.5);
-        // The table's last pixel ends at 99.5, counted from pixel centres.
+        // The table's last pixel ends at 99.5, counted from pixel centers.
         let exact = 99.5 + 60.0 / rise;
         assert!((end - exact).abs() < 1.0, "{direction}: {end}, not {exact}");
     }

@@ -71,7 +71,7 @@ impl RadialOffset {
             |softness| second_order::offset_factor_slope_of_softness(u, self.alpha_px, softness);
         let slope = self.softness.map_or(0.0, curved);
         let factor = self.factor(u).abs();
-        // κ lies in (−1, 1): a difference to one neighbour is below 2 in each direction.
+        // κ lies in (−1, 1): a difference to one neighbor is below 2 in each direction.
         let by_curvature = factor * u * self.detail.abs() * 2.0 * std::f32::consts::SQRT_2;
         ((factor + u * slope.abs()) * (1.0 + self.detail.abs()), by_curvature)
     }
@@ -139,7 +139,7 @@ impl BlockImage {
     pub fn scaled(self, span: DepthSpan, z: f32, rate: f32) -> Self {
         let scale = |u| 1.0 + first_order::scale_factor_of_rate(u, rate);
         let (nearest, farthest) = (span.low - z, span.high - z);
-        // One px more: the differences' neighbours.
+        // One px more: the differences' neighbors.
         let steepest = first_order::scale_factor_slope_of_rate(farthest, rate) * span.slope;
         let pixel = scale(farthest) + (self.far + 1.0) * steepest;
         Self { near: scale(nearest) * self.near, far: scale(farthest) * self.far, pixel }

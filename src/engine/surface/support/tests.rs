@@ -40,7 +40,7 @@ fn operator() -> impl Strategy<Value = Operator> {
     ]
 }
 
-/// |∂(|D − q_0|)/∂q| by differences between linked neighbours, as the marks take it.
+/// |∂(|D − q_0|)/∂q| by differences between linked neighbors, as the marks take it.
 fn pixel_length(surface: &Surface, d: &Deformation, at: Vec2, x: i32, y: i32) -> f32 {
     let linked = surface.smooth_links_plane().at(x as usize, y as usize);
     let along = (d.at(x, y) - at).normalize_or_zero();

@@ -30,7 +30,7 @@ impl HeapSize for PlaneLayout {
 pub struct LaidPiece {
     /// The number of its object: see [`crate::surface::Objects::labels`].
     pub object: u32,
-    /// The centre of one of its pixels, canvas px.
+    /// The center of one of its pixels, canvas px.
     pub at: Vec2,
     /// From its plane to the sheet, whole px.
     pub shift: Vec2,
@@ -55,7 +55,7 @@ const GAP_PX: i32 = 16;
 const BESIDE_PX: i32 = GAP_PX / 2;
 
 impl PlaneLayout {
-    /// `None` where no two neighbouring pixels of the surface lie in a plane.
+    /// `None` where no two neighboring pixels of the surface lie in a plane.
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Option<Self> {
         let unwrapping = surface.unwrapped(settings);
         let mut pieces = extents(surface, &unwrapping);

@@ -89,7 +89,7 @@ const LEAST_PULL: f32 = 1e-3;
 /// Where objects touch in a hollow they hardly pull on each other; across raised edges, a cube's,
 /// the print goes on.
 ///
-/// * `a`, `b`: unit normals of two neighbours, camera space.
+/// * `a`, `b`: unit normals of two neighbors, camera space.
 /// * `along`: from the first to the second; image axes.
 #[inline(always)]
 pub fn hollow(a: Vec3, b: Vec3, along: Vec2) -> f32 {

@@ -66,7 +66,7 @@ impl PerspectiveView {
         Some(Self { at_zero: (at_zero / mean) as f32, per_depth: (1.0 / mean) as f32, ..self })
     }
 
-    /// b of a pixel's centre: focal lengths from the point before the eye.
+    /// b of a pixel's center: focal lengths from the point before the eye.
     #[inline(always)]
     pub fn beside(&self, x: usize, y: usize) -> Vec2 {
         self.beside_at(vec2(x as f32 + 0.5, y as f32 + 0.5))

@@ -6,7 +6,7 @@ use crate::surface::Surface;
 use rayon::prelude::*;
 
 /// Pieces smaller than this many pixels are crumbs of a ragged edge or a speckled mask: they lie as
-/// their neighbours do.
+/// their neighbors do.
 const CRUMB_PX: usize = 64;
 /// The number of a pixel that no coupling joins to any other.
 const NONE: u32 = u32::MAX;

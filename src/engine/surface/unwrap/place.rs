@@ -35,7 +35,7 @@ impl Unwrapping {
         PlanePlace { object, at: self.at(x, y) + turn * from(x, y), turn }
     }
 
-    /// ∂D/∂q at a pixel, differenced within its piece; where a pixel has no neighbour along an
+    /// ∂D/∂q at a pixel, differenced within its piece; where a pixel has no neighbor along an
     /// axis, 1.
     pub fn jacobian(&self, surface: &Surface, x: usize, y: usize) -> Mat2 {
         let near = DifferencePairs::linked(surface, x, y);

@@ -127,10 +127,10 @@ struct PlaneCorner {
 }
 
 impl PlaneRaster {
-    /// Fills the plane's pixels whose centres lie in a triangle, unless something nearer lies
+    /// Fills the plane's pixels whose centers lie in a triangle, unless something nearer lies
     /// there.
     fn triangle(&mut self, corners: [PlaneCorner; 3]) {
-        /// Of a side: neighbouring triangles leave no gap between them.
+        /// Of a side: neighboring triangles leave no gap between them.
         const SLACK: f32 = 1e-4;
         let [a, b, c] = corners;
         let area = (b.at - a.at).perp_dot(c.at - a.at);

@@ -104,7 +104,7 @@ fn turned(
 
 /// The local step at one pixel: R S − 1.
 ///
-/// * `s`: S − 1; `dx`, `dy`: ∂δ/∂x and ∂δ/∂y, each with whether the pixel has a neighbour that way.
+/// * `s`: S − 1; `dx`, `dy`: ∂δ/∂x and ∂δ/∂y, each with whether the pixel has a neighbor that way.
 #[inline(always)]
 fn turned_at([a, b, c]: [f32; 3], (dx, has_x): (Vec2, f32), (dy, has_y): (Vec2, f32)) -> [f32; 4] {
     // J, rows of it; M = J S⁻¹ up to a positive factor, which its angle does not see.

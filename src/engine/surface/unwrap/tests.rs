@@ -37,7 +37,7 @@ fn distortion(m: Mat2) -> f32 {
     most.max(1.0 / least.max(1e-6))
 }
 
-/// Distortions of D against the surface's metric over pixels with all their neighbours, in order.
+/// Distortions of D against the surface's metric over pixels with all their neighbors, in order.
 fn distortions(surface: &Surface, d: &Unwrapping) -> Vec<f32> {
     let size = surface.size();
     let inside = (0..size.area()).map(|i| (i % size.width as usize, i / size.width as usize));

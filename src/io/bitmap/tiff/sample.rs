@@ -8,12 +8,12 @@ use image::{DynamicImage, ImageBuffer};
 pub trait TiffSample: Copy {
     /// White for black.
     fn inverted(self) -> Self;
-    /// A colour that was multiplied by alpha.
+    /// A color that was multiplied by alpha.
     fn divided(self, alpha: Self) -> Self;
     /// Multiplied, white being 1.
     fn times(self, other: Self) -> Self;
     fn index(self) -> usize;
-    /// One to four channels: grey or RGB, and alpha.
+    /// One to four channels: gray or RGB, and alpha.
     fn image(size: Size, channels: usize, values: Vec<Self>) -> Option<DynamicImage>;
     /// `None` where this kind of number is not stored so.
     fn rgb_of_ycbcr(_: Vec<Self>) -> Option<Vec<Self>> {
@@ -102,7 +102,7 @@ impl TiffSample for f32 {
         self.max(0.0) as usize
     }
 
-    /// There is no grey of floats: it becomes RGB.
+    /// There is no gray of floats: it becomes RGB.
     fn image(size: Size, channels: usize, values: Vec<Self>) -> Option<DynamicImage> {
         let (w, h) = (size.width, size.height);
         let rgb = |grey: &[f32]| [&[grey[0]; 3], &grey[1..]].concat();

@@ -193,7 +193,7 @@ pub fn summed(a: &[Vec2], b: &[Vec2]) -> Vec<Vec2> {
     places.into_iter().map(|x| vec2(x, level(a, x) + level(b, x))).collect()
 }
 
-/// Without the points that lie on the line between their neighbours, to a five hundredth of all
+/// Without the points that lie on the line between their neighbors, to a five hundredth of all
 /// that the curve spans.
 pub fn straightened(points: &[Vec2]) -> Vec<Vec2> {
     let (least, most) = points

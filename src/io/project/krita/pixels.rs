@@ -27,7 +27,7 @@ enum PixelNumber {
 }
 
 impl PixelFormat {
-    /// By Krita's names of the colours and the profile; `None` for others than RGB and grey.
+    /// By Krita's names of the colors and the profile; `None` for others than RGB and gray.
     pub fn of(space: &str, profile: &str) -> Option<Self> {
         let (is_grey, rest) = match space.strip_prefix("RGBA") {
             Some(rest) => (false, rest),

@@ -171,7 +171,7 @@ mod generated {
             for (x, y) in (0..32).flat_map(|y| (0..32).map(move |x| (x, y))).filter(|at| !mixed.contains(at)) {
                 let (a, b) = (ours.pixel(x, y), theirs.pixel(x, y));
                 let off = shown(a).into_iter().zip(shown(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-                // Each layer's picture is rounded to bytes once more; saturations of near-greys
+                // Each layer's picture is rounded to bytes once more; saturations of near-grays
                 // make most of that, 4.4 in the worst of 30,000 documents.
                 prop_assert!(off <= 6.0, "at {x}, {y}: {a:?} is {b:?} elsewhere");
             }

@@ -184,7 +184,7 @@ fn selective_color(own: &SelectiveColor) -> Vec<u8> {
     out
 }
 
-/// Classic, smooth, of solid colours.
+/// Classic, smooth, of solid colors.
 fn gradient_map(own: &GradientMap) -> Vec<u8> {
     const WHOLE: f32 = 4096.0;
     const MIDDLE: u32 = 50;

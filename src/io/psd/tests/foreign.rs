@@ -24,7 +24,7 @@ pub fn attack(bytes: &[u8]) {
     for i in 0..250 {
         let mut broken = bytes.to_vec();
         for j in 0..1 + i % 3 {
-            // Colours, resources and records come first; most values that may be wrong are there.
+            // Colors, resources and records come first; most values that may be wrong are there.
             let at = dice(i, 4 * j) % broken.len().min(if i % 2 == 0 { usize::MAX } else { 900 });
             match dice(i, 4 * j + 1) % 5 {
                 0 => broken[at] ^= 1 << (dice(i, 4 * j + 2) % 8),
@@ -113,7 +113,7 @@ fn a_spare_channel_with_a_name_is_no_transparency() {
 
 #[test]
 fn what_is_left_out_and_missed_brings_the_file_s_own_picture() {
-    // An adjustment, a look-up that turns grey 100 into 30.
+    // An adjustment, a look-up that turns gray 100 into 30.
     let mut made = plain(4, 4, [100; 3]);
     made.layers.as_mut().unwrap().push(empty("dark", vec![(b"levl", vec![0; 4])]));
     made.merged = vec![vec![30; 16]; 3];

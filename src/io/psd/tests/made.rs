@@ -3,7 +3,7 @@
 
 /// A file in the making.
 pub struct Made {
-    /// The number of its kind of colours.
+    /// The number of its kind of colors.
     pub mode: u16,
     pub bits: u16,
     pub width: u32,
@@ -31,7 +31,7 @@ pub struct MadeLayer {
     pub blocks: Vec<(&'static [u8; 4], Vec<u8>)>,
 }
 
-/// One opaque colour on a canvas, its picture the same.
+/// One opaque color on a canvas, its picture the same.
 pub fn plain(width: u32, height: u32, rgb: [u8; 3]) -> Made {
     let area = (width * height) as usize;
     Made {

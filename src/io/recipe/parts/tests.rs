@@ -101,7 +101,7 @@ fn a_place_of_a_colour_is_written_read_and_told_of_when_its_colour_is_gone() {
     let back = project::read(file, &stored(&document), &Budget::default()).unwrap();
     assert!(back.is_whole && back.notes.is_empty(), "{:?}", back.notes);
     assert_eq!(document.difference(&back.document), None);
-    // Beyond the canvas nothing has the colour.
+    // Beyond the canvas nothing has the color.
     let mut away = part.clone();
     away[0]["outline"]["at"] = json!([300, -50]);
     let back = project::read(file, &stored(&read(&away).unwrap()), &Budget::default()).unwrap();

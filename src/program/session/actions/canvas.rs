@@ -79,7 +79,7 @@ impl CanvasAction {
         matches!(self, CanvasAction::Trim {}).then_some("Trimming the canvas")
     }
 
-    /// The step on a document, or why there is none; `None` once it is cancelled.
+    /// The step on a document, or why there is none; `None` once it is canceled.
     pub fn long_step(
         &self,
         document: &Document,

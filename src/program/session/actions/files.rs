@@ -24,7 +24,7 @@ names!(ShapeMap);
 actions! {
     /// Paths are those of the user's own files.
     FileAction {
-        /// An empty document, its bottom layer filled with a colour where there is one.
+        /// An empty document, its bottom layer filled with a color where there is one.
         "new" New { width: u32, height: u32, background: Option<Color> }
         /// A document, or a picture as one.
         "open" Open { file: PathBuf }
@@ -176,7 +176,7 @@ fn unless_forced(session: &Session) -> Overwrite {
 }
 
 /// The flattened picture as a file, or the document as a Photoshop file; none is written if
-/// cancelled. Returns what the format cannot hold.
+/// canceled. Returns what the format cannot hold.
 pub fn export(
     document: &Document,
     file: &Path,

@@ -1,4 +1,4 @@
-//! The current settings: tool, brush, colours, operator.
+//! The current settings: tool, brush, colors, operator.
 //! Floor 6.
 
 use crate::io::recipe::read_brush;

@@ -90,7 +90,7 @@ fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
 }
 
 /// The operator of a dropped picture if the current one is flat: like a reflection that is still
-/// recognisable.
+/// recognizable.
 const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
 
 /// A picture as a document of its own size.

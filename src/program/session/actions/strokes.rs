@@ -27,7 +27,7 @@ actions! {
         /// On a part of the shape by its id, on `canvas`, or on what the layer lies on; they show
         /// where they showed.
         "home" Home { layer: LayerPath, strokes: Vec<usize>, part: Option<String> }
-        /// Takes its brush, operator and colour as the current ones.
+        /// Takes its brush, operator and color as the current ones.
         "take" Take { layer: LayerPath, stroke: usize }
     }
 }

@@ -13,7 +13,7 @@ use crate::session::actions::placing::{Lies, add_image};
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Writes a painting as it lies in the planes of its surface; nothing if cancelled.
+/// Writes a painting as it lies in the planes of its surface; nothing if canceled.
 ///
 /// Fails if there is no surface, and for formats that cannot hold what is requested.
 pub fn export(

@@ -1,4 +1,4 @@
-//! Preview of a retouching brush: bands of colour over the surface, and one stroke across them.
+//! Preview of a retouching brush: bands of color over the surface, and one stroke across them.
 //! Floor 6.
 
 use super::{clay, scaled, wave};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Bands across the side of the picture.
 const BANDS: f32 = 5.0;
-/// The colours of the bands, one after the other.
+/// The colors of the bands, one after the other.
 const COLORS: [[u8; 4]; 3] =
     [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
 
@@ -37,7 +37,7 @@ pub fn drawn(
     let tools = ToolSettings { operator: preset.operator, ..ToolSettings::with_brush(brush) };
     let context = ToolContext {
         layer: Some(layer),
-        // From the neighbouring band.
+        // From the neighboring band.
         clone_offset: Some(vec2(side / BANDS, 0.0)),
         ..ToolContext::new(&document, &tools)
     };

@@ -8,7 +8,7 @@ use crate::tools::{ModifierKeys, Symmetry};
 
 const SIZE: Size = Size::new(256, 192);
 
-/// A fine pattern of colours.
+/// A fine pattern of colors.
 fn document() -> Document {
     let mut rgba = Vec::new();
     for y in 0..SIZE.height {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 const SIZE: Size = Size::new(200, 130);
 
-/// Bands of grey that get lighter from left to right, 20 px wide; the sixth is separate from the
+/// Bands of gray that get lighter from left to right, 20 px wide; the sixth is separate from the
 /// rest.
 fn bands() -> Document {
     let grey = |x: usize| (x / 20 * 20) as u8;

@@ -1,4 +1,4 @@
-//! The wand: all pixels of a colour like the one under the pen, joined to it or everywhere; a drag
+//! The wand: all pixels of a color like the one under the pen, joined to it or everywhere; a drag
 //! to the right or the left changes the tolerance. Floor 5. Not here: finding the region
 //! (`paint::fill`).
 

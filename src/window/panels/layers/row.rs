@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 const ROW_PT: f32 = 38.0;
 const INDENT_PT: f32 = 14.0;
-/// The width of the strip of a label's colour.
+/// The width of the strip of a label's color.
 const LABEL_PT: f32 = 4.0;
 
 /// A layer in its place.

@@ -76,7 +76,7 @@ pub fn show(
     });
 }
 
-/// What can be done with a part that has its colour from a drawing, and with that drawing.
+/// What can be done with a part that has its color from a drawing, and with that drawing.
 fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequests) {
     let split = part.is_of_color().then(|| PartAction::Split { part: part.id.clone() });
     let drawing = document.drawing_to_cut(part).and_then(|id| LayerPath::of(document, id));

@@ -128,7 +128,7 @@ fn mesh_and_liquify_are_one_resampling() {
 
 #[test]
 fn a_zone_plate_reduced_by_a_mesh_is_its_mean_and_no_moire() {
-    // To an eighth: rings finer than a pixel, whose mean is grey.
+    // To an eighth: rings finer than a pixel, whose mean is gray.
     let bend = |k: usize, p: Vec2| {
         vec2(128.0, 96.0) + (p - vec2(128.0, 96.0)) / if k == 5 { 7.9 } else { 8.0 }
     };

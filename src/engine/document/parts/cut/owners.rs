@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// No part.
 pub const NO_PART: u16 = u16::MAX;
 
-/// The outline of a part, and the flat colour that it has in the drawing, if it is of one.
+/// The outline of a part, and the flat color that it has in the drawing, if it is of one.
 pub struct PieceOutline {
     pub outline: Arc<Outline>,
     pub color: Option<Pixel>,

@@ -88,7 +88,7 @@ fn an_eye_that_is_moved_takes_its_paint_along_and_leaves_a_whole_face() {
     for (x, y) in (44..78).flat_map(|y| (104..138).map(move |x| (x, y))) {
         let is_face =
             ((vec2(x as f32, y as f32) - vec2(100.0, 80.0)) / vec2(50.0, 43.0)).length() < 1.0;
-        // So much a pixel of a flat colour may be off it.
+        // So much a pixel of a flat color may be off it.
         let off = off(after.pixel(x, y), body);
         assert!(!is_face || off <= NEAR, "({x}, {y}): {:?} for {body:?}", after.pixel(x, y));
     }

@@ -45,7 +45,7 @@ fn part(id: &str, outline: OutlineSource) -> Arc<Part> {
     Arc::new(Part::new(id, PartKind::Inflate { outline, inflation: Inflation::default() }))
 }
 
-/// Parts of two colours of a paint layer, of strokes, and of a group; all layers are in a group.
+/// Parts of two colors of a paint layer, of strokes, and of a group; all layers are in a group.
 fn drawing() -> Document {
     let flats =
         discs("Flats", &[(vec2(50.0, 40.0), 24.0, ORANGE), (vec2(110.0, 40.0), 20.0, GREEN)]);

@@ -38,7 +38,7 @@ pub fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
     TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0)
 }
 
-/// Discs (middle, radius, colour), the last in front, each with a line of 4 px around it.
+/// Discs (middle, radius, color), the last in front, each with a line of 4 px around it.
 pub fn inked(discs: &'static [([f32; 2], f32, [f32; 3])]) -> TileGrid {
     drawn(|p| {
         let front = discs

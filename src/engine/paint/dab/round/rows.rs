@@ -9,7 +9,7 @@ use crate::surface::links;
 use crate::surface::support::{BLOCK, TILE_BLOCKS};
 use std::ops::Range;
 
-/// A pixel all of whose neighbours continue its surface.
+/// A pixel all of whose neighbors continue its surface.
 const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
 
 /// The greatest length of a pixel in each block of a tile, px; row by row.
@@ -29,7 +29,7 @@ pub(in crate::paint::dab) type TilePlanes<'t> =
     (&'t mut [f32; TILE_AREA], &'t mut [f32; TILE_AREA]);
 
 crate::widest! {
-    /// If D is the identity; (x, y) is the centre of the first pixel.
+    /// If D is the identity; (x, y) is the center of the first pixel.
     pub(in crate::paint::dab) fn flat_row(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
         flat_span(x, y, tip, row, paint);
     }
@@ -188,7 +188,7 @@ fn sort(x: &[f32], y: &[f32], sure: (&[f32], &[f32]), tip: &RoundTip, near: &mut
     }
 }
 
-/// What pixels of a row are classified by: D at them and at their neighbours.
+/// What pixels of a row are classified by: D at them and at their neighbors.
 #[inline(always)]
 fn judge(d: SpanNeighbours, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
     if are_inside(&d.linked[pixels.clone()]) {
@@ -232,7 +232,7 @@ fn judge_inside<'d>(
     }
 }
 
-/// Along a silhouette, a depth jump or outside: J from linked neighbours only.
+/// Along a silhouette, a depth jump or outside: J from linked neighbors only.
 #[inline(always)]
 fn judge_rim<'d>(d: SpanNeighbours<'d>, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
     let n = pixels.len();
@@ -263,7 +263,7 @@ fn judge_rim<'d>(d: SpanNeighbours<'d>, pixels: Range<usize>, tip: &RoundTip, ro
     }
 }
 
-/// The derivative at `here` from its linked neighbours, of two; `flat`, the identity's, without
+/// The derivative at `here` from its linked neighbors, of two; `flat`, the identity's, without
 /// any.
 #[inline(always)]
 pub fn slope(

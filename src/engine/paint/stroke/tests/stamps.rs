@@ -45,7 +45,7 @@ fn a_bent_stamp_over_tile_borders_equals_the_picture_read_at_d() {
     {
         let texel = (d.at(x, y) - at) * 64.0 / 50.0;
         let r = (texel / vec2(30.0, 14.0)).length();
-        // Away from the rim and from the seam of the two colours.
+        // Away from the rim and from the seam of the two colors.
         if r < 0.8 && texel.x.abs() > 8.0 {
             let color = if texel.x < 0.0 { [255, 0, 0, 255] } else { [0, 255, 0, 255] };
             assert_eq!(grid.pixel(x, y), color, "({x}, {y})");

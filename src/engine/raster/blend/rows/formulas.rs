@@ -1,5 +1,5 @@
 //! Formulas of blend modes without divisions: αs αb B(D/αb, S/αs) of premultiplied values, and B of
-//! whole colours. Floor 1. The twins of those in `spec`.
+//! whole colors. Floor 1. The twins of those in `spec`.
 
 use crate::raster::blend::spec;
 
@@ -115,7 +115,7 @@ pub(super) fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
     let shift = l - spec::lum(c);
     let [r, g, b] = [c[0] + shift, c[1] + shift, c[2] + shift];
     let (n, x) = (least(least(r, g), b), greatest(greatest(r, g), b));
-    // ClipColor: first up to 0, then down to 1, both along the line to the grey, so their factors
+    // ClipColor: first up to 0, then down to 1, both along the line to the gray, so their factors
     // multiply.
     let up = if n < 0.0 { l * reciprocal(l - n) } else { 1.0 };
     let x = l + (x - l) * up;

@@ -6,7 +6,7 @@ use glam::{Vec3, vec2, vec3};
 /// Width and height of the canvas, px.
 pub const CANVAS: [u32; 2] = [260, 200];
 
-/// Centre, height and radius, px; the first is in front.
+/// Center, height and radius, px; the first is in front.
 const SPHERES: [(f32, f32, f32, f32); 9] = [
     (61.3, 58.7, 180.0, 34.2),
     (97.9, 71.2, 150.0, 40.6),

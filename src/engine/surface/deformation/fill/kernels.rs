@@ -5,7 +5,7 @@ use super::FastPin;
 use crate::math::{Mat2, Vec2};
 use crate::surface::operator::{first_order, second_order};
 
-/// The pixels of a row: their centres, and what the maps hold.
+/// The pixels of a row: their centers, and what the maps hold.
 #[derive(Clone, Copy)]
 pub(super) struct KernelSpan<'s> {
     pub(super) x: &'s [f32],
@@ -203,7 +203,7 @@ crate::widest! {
         }
     }
 
-    /// Shepard's weight at power 2, not yet normalised.
+    /// Shepard's weight at power 2, not yet normalized.
     pub(super) fn inverse_squares(span: KernelSpan, pin: &FastPin, weight: &mut [f32], weight_sum: &mut [f32]) {
         for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
             *w = 1.0 / distance_squared(span, pin, k).max(AT_ANCHOR);

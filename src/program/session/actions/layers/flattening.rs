@@ -45,7 +45,7 @@ impl LayerAction {
     }
 
     /// Performs a long edit on a document; `None` for any other edit, if it is impossible, or if it
-    /// was cancelled.
+    /// was canceled.
     pub fn flattened(&self, document: &Document, progress: &Progress) -> Option<Edit> {
         match self {
             LayerAction::MergeDown { layer } => {

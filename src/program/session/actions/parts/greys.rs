@@ -96,7 +96,7 @@ fn lights_of(names: &[&str]) -> Vec<Vec3> {
     said.iter().map(|said| said.or_else(|| left.next()).map_or(Vec3::Z, |i| LIGHTS[i].1)).collect()
 }
 
-/// The luminance of an encoded colour, encoded.
+/// The luminance of an encoded color, encoded.
 fn grey(r: f32, g: f32, b: f32) -> f32 {
     if r == g && g == b { r } else { encode(luminance(decode(r), decode(g), decode(b))) }
 }

@@ -1,4 +1,4 @@
-//! One part of a colour that stands in several places becomes a part for each place.
+//! One part of a color that stands in several places becomes a part for each place.
 //! Floor 6. Not here: where the places are (`shape::flats::places`).
 
 use super::{PartRefusal, free_id};

@@ -1,4 +1,4 @@
-//! A colour goes on beneath what nearer parts cover inside of it, and holes stay.
+//! A color goes on beneath what nearer parts cover inside of it, and holes stay.
 
 use super::shares::{BODY, EYE, PUPIL, SIZE, WING, at, color, drawn};
 use crate::document::parts::from_flats::{PartFor, parts_of_flats};

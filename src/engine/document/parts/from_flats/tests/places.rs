@@ -1,4 +1,4 @@
-//! Areas of one colour are told apart, and parts follow theirs.
+//! Areas of one color are told apart, and parts follow theirs.
 
 use crate::document::parts::from_flats::{PartFor, parts_of_flats};
 use crate::document::parts::{FlatColor, Inflation, OutlineSource, Part, PartKind};
@@ -14,7 +14,7 @@ const SIZE: Size = Size::new(200, 120);
 const EYE: [u8; 3] = [250, 250, 250];
 const BODY: [u8; 3] = [200, 120, 60];
 
-/// Discs (middle, radius, colour), the last in front, anti-aliased by counting.
+/// Discs (middle, radius, color), the last in front, anti-aliased by counting.
 fn tiles(discs: &[([f32; 2], f32, [u8; 3])]) -> TileGrid {
     let mut rgba = vec![0u8; SIZE.area() * 4];
     for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
@@ -192,7 +192,7 @@ fn a_part_follows_its_place_when_the_flats_are_painted_again() {
     assert_eq!(elsewhere.note_of_lost(Some(&elsewhere)), None);
     let back = painted(&elsewhere, face(&EYES));
     assert!(back.parts.lost.is_empty() && covered(&back, 80, 50));
-    // Without the colour there is no part.
+    // Without the color there is no part.
     assert!(painted(&document, face(&[])).surface.is_none());
 }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub const SIZE: Size = Size::new(200, 160);
 pub const BODY: [u8; 4] = [200, 120, 60, 255];
 pub const WING: [u8; 4] = [90, 140, 60, 255];
-/// White and the pupil's colour mix to the body's, nearly.
+/// White and the pupil's color mix to the body's, nearly.
 pub const EYE: [u8; 4] = [255, 255, 255, 255];
 pub const PUPIL: [u8; 4] = [145, 10, 0, 255];
 
@@ -69,7 +69,7 @@ fn the_shares_of_a_pixel_add_up_to_what_is_painted_of_it() {
 
 #[test]
 fn only_areas_are_colours() {
-    // A long straight edge half-way through its pixels is a long row of one mixed colour.
+    // A long straight edge half-way through its pixels is a long row of one mixed color.
     let halves = drawn(1.0, |p| if p.x < 90.5 { BODY } else { WING });
     assert_eq!(Flats::of(&halves, SIZE.rect(), &[]).unwrap().colors().len(), 2);
     assert_eq!(Flats::of(&drawn(2.2, at), SIZE.rect(), &[]).unwrap().colors().len(), 4);

@@ -19,7 +19,7 @@ fn each_flat_colour_becomes_a_part() {
     assert_eq!(at(3.0, 3.0), None);
 }
 
-/// Two discs of one colour, apart from each other.
+/// Two discs of one color, apart from each other.
 fn pair() -> Document {
     let inside = |x: f32, y: f32, cx: f32, r: f32| (x - cx).hypot(y - 40.0) < r;
     let texel = |i: usize| {
@@ -110,7 +110,7 @@ fn a_part_is_split_by_place_with_its_touches_and_the_user_is_told_of_a_place_tha
     // It has one place now.
     tell(&mut session, r#"{"in":"part","do":"split","part":"part-1"}"#);
     assert!(session.notes.pop().unwrap().contains("everywhere"));
-    // The larger disc is erased: its part takes the nearest area of the colour.
+    // The larger disc is erased: its part takes the nearest area of the color.
     let layer = shown(&session).layers[0].id;
     let other = pair();
     let left = |mut tiles: crate::raster::TileGrid| {
