@@ -22,6 +22,7 @@ mod maps;
 mod names;
 mod overwriting;
 mod performance;
+mod python;
 mod recipe;
 mod scripting;
 mod shape;

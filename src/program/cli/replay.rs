@@ -1,6 +1,8 @@
 //! `rilievo replay`: repeats recorded actions without the window.
 //! Floor 7.
 
+mod piped;
+
 use super::force::Force;
 use super::print;
 use crate::io::files::read_file;
@@ -10,9 +12,12 @@ use crate::{Error, Result};
 use std::path::PathBuf;
 
 /// Run a script: a file of actions, one JSON object per line, as docs/SCRIPTING.md describes
+///
+/// With “-” the actions come from standard input, and each is answered with a line of JSON as soon
+/// as it is done.
 #[derive(clap::Args)]
 pub struct ReplayArgs {
-    /// The script
+    /// The script; - reads it from standard input
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Keep recovery logs in this folder as the window does, and print every step once it is logged
@@ -23,11 +28,14 @@ pub struct ReplayArgs {
 }
 
 pub fn run(args: &ReplayArgs) -> Result<()> {
-    let text = read_file(&args.file, Budget::of_this_machine().json_bytes)?;
-    let text = String::from_utf8_lossy(&text);
     let mut session = Session::default();
     session.replaces_unasked = args.force.or(Overwrite::Nothing) == Overwrite::Forced;
     session.autosave = args.recover_in.clone().map(Autosave::new);
+    if args.file.as_os_str() == "-" {
+        return piped::run(session);
+    }
+    let text = read_file(&args.file, Budget::of_this_machine().json_bytes)?;
+    let text = String::from_utf8_lossy(&text);
     let (mut steps, mut last) = (0, None);
     session.replay_with_progress(&args.file, &text, |session| {
         let Session { autosave: Some(autosave), open_documents, tool, .. } = session else {

@@ -284,14 +284,20 @@ pub(crate) use names;
 
 /// The lines of a replay as values. Empty lines and lines that begin with `#` are skipped.
 pub fn lines<T: ReplayValue>(file: &Path, text: &str) -> Result<Vec<T>> {
-    let told = text
-        .lines()
-        .enumerate()
-        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
-    told.map(|(i, line)| {
-        let value: std::result::Result<Value, _> = serde_json::from_str(line);
-        let read = value.map_err(|e| format!("is not JSON: {e}")).and_then(|value| T::read(&value));
-        read.map_err(|reason| Error::invalid(file, format!("line {}", i + 1), reason))
-    })
-    .collect()
+    let read = |(i, text)| line(text).map_err(|reason| refused(file, i + 1, reason)).transpose();
+    text.lines().enumerate().filter_map(read).collect()
+}
+
+/// One line as a value, `None` if it is empty or begins with `#`. Fails with the reason.
+pub fn line<T: ReplayValue>(text: &str) -> std::result::Result<Option<T>, String> {
+    if text.trim().is_empty() || text.starts_with('#') {
+        return Ok(None);
+    }
+    let value: Value = serde_json::from_str(text).map_err(|e| format!("is not JSON: {e}"))?;
+    T::read(&value).map(Some)
+}
+
+/// The error of a line that cannot be read, counted from 1.
+pub fn refused(file: &Path, line: usize, reason: String) -> Error {
+    Error::invalid(file, format!("line {line}"), reason)
 }

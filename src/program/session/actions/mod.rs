@@ -98,7 +98,6 @@ rooms! {
 impl Action {
     /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file
     /// could hold is refused in a note.
-    /// Performs it.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         session.record_targets();
         let mut done = Ok(());

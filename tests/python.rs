@@ -1,0 +1,49 @@
+//! The package of `dist/python` beside the program: its own tests, and the example of its page.
+//! Skipped, and said so, where there is no Python.
+
+use std::path::Path;
+use std::process::Command;
+
+/// Runs Python in a folder, with our package and program; `None` if it is not installed.
+fn python(folder: &Path, args: &[&str]) -> Option<()> {
+    let is_there = Command::new("python3").arg("--version").output();
+    if !is_there.is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: python3 is not installed, or cannot run here");
+        return None;
+    }
+    let output = Command::new("python3")
+        .args(args)
+        .current_dir(folder)
+        .env("RILIEVO", env!("CARGO_BIN_EXE_rilievo"))
+        .env("PYTHONPATH", root().join("dist/python"))
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(())
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_package_does_what_its_tests_say() {
+    python(root(), &["-m", "unittest", "discover", "dist/python/tests"]);
+}
+
+#[test]
+fn the_example_of_its_page_runs() {
+    let page = std::fs::read_to_string(root().join("dist/python/README.md")).unwrap();
+    let example = page.split("```python\n").nth(1).and_then(|rest| rest.split("```").next());
+    let example = example.expect("the page has an example");
+    let folder = tempfile::tempdir().unwrap();
+    let sample = "sample_normals/rocket/flats.png";
+    std::fs::create_dir_all(folder.path().join(sample).parent().unwrap()).unwrap();
+    std::fs::copy(root().join(sample), folder.path().join(sample)).unwrap();
+    if python(folder.path(), &["-c", example]).is_some() {
+        for made in ["rocket.ora", "rocket.png"] {
+            assert!(folder.path().join(made).is_file(), "{made} was not written");
+        }
+    }
+}
