@@ -31,7 +31,7 @@ fn layers_are_chosen_with_keys_held_and_grouped_as_one_step() {
     row(&mut harness, "Fill 2", Modifiers::NONE);
     row(&mut harness, "Background", Modifiers::SHIFT);
     assert_eq!(chosen(&harness), ["Background", "Fill", "Fill 2"]);
-    assert!(harness.query_by_label("Layer Fill 2, chosen").is_some(), "a screen reader is told");
+    assert!(harness.query_by_label("Layer Fill 2, selected").is_some(), "a screen reader is told");
     key(&mut harness, Modifiers::COMMAND, Key::G);
     assert_eq!(layers(&harness), ["Group", "Fill 3"]);
     key(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::G);

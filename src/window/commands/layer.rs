@@ -235,14 +235,14 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| step(session, requests, -1, false),
     ),
     row(
-        "Choose up to layer above",
+        "Select layer above too",
         &[shift(Key::PageUp)],
         "Extends the selection of layers upward",
         has_layer,
         |session, requests| step(session, requests, 1, true),
     ),
     row(
-        "Choose down to layer below",
+        "Select layer below too",
         &[shift(Key::PageDown)],
         "Extends the selection of layers downward",
         has_layer,

@@ -55,7 +55,7 @@ impl LayerRow<'_> {
         let (_, rect) = ui.allocate_space(vec2(ui.available_width(), ROW_PT));
         let response = ui.interact(rect, row_id(layer.id), Sense::click_and_drag());
         let is_selected = open.is_chosen(layer.id);
-        let label = format!("Layer {}{}", layer.name, if is_selected { ", chosen" } else { "" });
+        let label = format!("Layer {}{}", layer.name, if is_selected { ", selected" } else { "" });
         response.widget_info(|| {
             egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label)
         });
