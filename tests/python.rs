@@ -1,5 +1,5 @@
-//! The package of `dist/python` beside the program: its own tests, and the example of its page.
-//! Skipped, and said so, where there is no Python.
+//! The package of `dist/python` beside the program: its own tests, and the example of its page; and
+//! the add-on of `dist/blender`. Skipped, and said so, where there is no Python, or no Blender in it.
 
 use std::path::Path;
 use std::process::Command;
@@ -46,4 +46,16 @@ fn the_example_of_its_page_runs() {
             assert!(folder.path().join(made).is_file(), "{made} was not written");
         }
     }
+}
+
+#[test]
+fn the_add_on_of_blender_renders_maps_that_are_read_as_they_are_meant() {
+    if !Command::new("python3")
+        .args(["-c", "import bpy"])
+        .output()
+        .is_ok_and(|o| o.status.success())
+    {
+        return eprintln!("skipped: python3 has no bpy (Blender as a package)");
+    }
+    let _ = python(root(), &["dist/blender/test.py", env!("CARGO_BIN_EXE_rilievo")]);
 }
