@@ -70,7 +70,7 @@ fn every_refusal_names_file_and_field() {
             said_of(json!({ "kind": "gradient", "from": [1] })),
             "layers[0].from: has 1 items; it must have 2",
         ),
-        (said_of(json!({ "kind": "gradient", "from": [1, "2"] })), "layers[0].from[1]: is a text"),
+        (said_of(json!({ "kind": "gradient", "from": [1, "2"] })), "layers[0].from[1]: is text"),
         (
             said_of(json!({ "kind": "strokes", "strokes": [{ "brush": { "preset": "crayon" } }] })),
             "layers[0].strokes[0].brush.preset: is “crayon”; the presets are pencil-hb",

@@ -86,7 +86,7 @@ impl<'a> JsonNode<'a> {
             Value::Null => "null",
             Value::Bool(_) => "true or false",
             Value::Number(_) => "a number",
-            Value::String(_) => "a text",
+            Value::String(_) => "text",
             Value::Array(_) => "a list",
             Value::Object(_) => "an object",
         };
@@ -178,7 +178,7 @@ impl<'a> JsonNode<'a> {
 
     /// A text.
     pub fn text(&self) -> Result<&'a str> {
-        self.value.as_str().ok_or_else(|| self.wrong_kind("a text"))
+        self.value.as_str().ok_or_else(|| self.wrong_kind("text"))
     }
 
     /// Canvas px.
@@ -335,7 +335,7 @@ mod tests {
         let mut f = root(&value);
         let says = |r: Result<f32>, what: &str| assert!(r.unwrap_err().to_string().contains(what));
         says(f.number("a", 0.0, 0.0..=1.0), "a: is 2; it must be between 0 and 1");
-        says(f.number("b", 0.0, 0.0..=1.0), "b: is a text; it must be a number");
+        says(f.number("b", 0.0, 0.0..=1.0), "b: is text; it must be a number");
         says(f.point("c", Vec2::ZERO).map(|p| p.x), "c: has 1 items; it must have 2");
         says(f.number("d", 0.0, COORDINATE), "must be between");
         says(f.color("e", Color::BLACK).map(|_| 0.0), "#rrggbb");

@@ -141,7 +141,7 @@ fn an_edit_out_of_its_range_is_read_and_one_that_is_no_value_is_named() {
     let said = read(json!({ "do": "operator", "operator": { "kind": "depth", "gama": 1 } }));
     assert!(said.contains("“operator” gama: is unknown; did you mean “gamma”?"), "{said}");
     let said = read(json!({ "do": "mask", "mask": { "kind": "fresnel", "f0": "much" } }));
-    assert!(said.contains("“mask” f0: is a text; it must be a number"), "{said}");
+    assert!(said.contains("“mask” f0: is text; it must be a number"), "{said}");
     let said = read(json!({ "do": "mask", "mask": 7 }));
     assert!(said.contains("“mask” is a number; it must be an object"), "{said}");
 }
