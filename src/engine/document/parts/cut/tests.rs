@@ -175,7 +175,7 @@ fn what_cannot_be_cut_is_told() {
     assert_eq!(cut(&document).drawing_to_cut(part), None, "it is cut already");
     assert!(document.cut_by_parts(LayerId::fresh()).is_err());
     let bare = document.with_parts(Vec::new());
-    assert!(bare.cut_by_parts(bare.layers[0].id).err().unwrap().contains("outline"));
+    assert!(bare.cut_by_parts(bare.layers[0].id).err().unwrap().contains("was made from"));
     let on =
         document.with_layer_on(document.layers[0].id, Some(&document.parts.list[0].id)).unwrap();
     assert!(on.cut_by_parts(on.layers[0].id).err().unwrap().contains("already"));

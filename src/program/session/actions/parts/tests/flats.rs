@@ -52,7 +52,7 @@ fn each_place_of_a_colour_becomes_a_part_at_once() {
 fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     let mut session = opened(pair());
     tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
-    assert!(session.notes.pop().unwrap().contains("bake"), "it is a placed picture yet");
+    assert!(session.notes.pop().unwrap().contains("into pixels"), "it is a placed picture yet");
     tell(&mut session, r#"{"in":"layer","do":"bake","layer":"0"}"#);
     tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
     assert!(session.notes.pop().unwrap().contains("outline"), "it has no part yet");
