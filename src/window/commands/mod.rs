@@ -84,4 +84,20 @@ mod tests {
             assert_eq!(keys.insert(format!("{letter:?}"), tool.label()), None, "{}", tool.label());
         }
     }
+
+    #[test]
+    fn the_page_of_the_window_lists_every_command() {
+        let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/WINDOW.md");
+        let page = std::fs::read_to_string(page).unwrap();
+        let menus = page.split_once("\n| menu | commands |").unwrap().1;
+        let is_listed = |name: &str| {
+            menus.lines().any(|line| {
+                let mut names = line.split(['|', '·']).map(|part| part.split(" **").next());
+                names.any(|listed| listed.map(str::trim) == Some(name))
+            })
+        };
+        let missing: Vec<&str> =
+            all().map(|command| command.name).filter(|name| !is_listed(name)).collect();
+        assert!(missing.is_empty(), "docs/WINDOW.md does not list {missing:?}");
+    }
 }
