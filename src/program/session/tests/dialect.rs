@@ -145,3 +145,36 @@ fn an_edit_out_of_its_range_is_read_and_one_that_is_no_value_is_named() {
     let said = read(json!({ "do": "mask", "mask": 7 }));
     assert!(said.contains("“mask” is a number; it must be an object"), "{said}");
 }
+
+#[test]
+fn the_page_on_scripts_names_every_action_and_property() {
+    use crate::session::actions::{
+        CanvasAction, ClipboardAction, EditAction, FileAction, GuideAction, HandAction,
+        LayerAction, PartAction, PointerAction, SelectionAction, StrokeAction, Style, ViewAction,
+    };
+    use crate::session::property::Property;
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/SCRIPTING.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let words = [
+        CanvasAction::WORDS,
+        ClipboardAction::WORDS,
+        EditAction::WORDS,
+        FileAction::WORDS,
+        GuideAction::WORDS,
+        HandAction::WORDS,
+        LayerAction::WORDS,
+        PartAction::WORDS,
+        PointerAction::WORDS,
+        SelectionAction::WORDS,
+        StrokeAction::WORDS,
+        Style::WORDS,
+        ViewAction::WORDS,
+        Property::WORDS,
+    ]
+    .concat();
+    let is_named = |word: &str| {
+        page.contains(&format!("`{word}`")) || page.contains(&format!("\"do\":\"{word}\""))
+    };
+    let missing: Vec<&str> = words.into_iter().filter(|word| !is_named(word)).collect();
+    assert!(missing.is_empty(), "docs/SCRIPTING.md does not name {missing:?}");
+}
