@@ -63,6 +63,7 @@ impl Document {
             layer.id = id;
             Some(())
         })?;
+        let next = next.with_ink_layers_renamed(self, id);
         Some(if self.parts.is_empty() {
             next
         } else {

@@ -170,7 +170,11 @@ impl Total {
                 self.values += light::A_SCALE * scaling.features.scales.len()
             }
             Content::Adjustment(live) => self.values += marks::adjustment_values(live.params()),
-            Content::Fill(_) | Content::Pixels(_) | Content::Normals(_) | Content::Group(_) => {}
+            Content::Fill(_)
+            | Content::Pixels(_)
+            | Content::Normals(_)
+            | Content::Ink(_)
+            | Content::Group(_) => {}
         }
     }
 
@@ -205,7 +209,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
     }
     match &layer.content {
         // The numbers of an adjustment are held where it is made.
-        Content::Fill(_) | Content::Group(_) | Content::Adjustment(_) => Ok(()),
+        Content::Fill(_) | Content::Ink(_) | Content::Group(_) | Content::Adjustment(_) => Ok(()),
         Content::Pixels(pixels) => pixels_fit(pixels, canvas),
         Content::Image(live) => marks::image(live.params()),
         Content::Gradient(live) => marks::gradient(live.params()),

@@ -18,7 +18,7 @@ pub(super) mod warp;
 
 pub use adjustment::{AdjustedPlace, Adjustment, BackdropMeter, Reach};
 pub use cache::{EncodedPixels, LayerCache, PreviewKind};
-pub use content::{Content, Group, PixelLayer, Role, StrokeList};
+pub use content::{Content, Group, InkLayer, PixelLayer, Role, StrokeList};
 pub use live::Live;
 pub use map::LayerMap;
 pub use mask::{DerivedMask, LayerMask, MaskKind};
@@ -31,6 +31,7 @@ use crate::math::srgb::Color;
 use crate::math::{PlaneMap, Range, Size, UNIT};
 use crate::paint::HomeFrame;
 use crate::raster::{BlendMode, Lattice};
+use crate::shape::flats::lifted_ink::LiftedInk;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -82,6 +83,9 @@ pub struct Layer {
     pub on: Option<HomeFrame>,
     /// What it holds.
     pub content: Content,
+    /// Its ink, if an ink layer shows that; what is left is shown here. No part of the document's
+    /// value: it follows from the content.
+    pub lifted: Option<Arc<LiftedInk>>,
     /// Cached values of this layer; no part of the document's value.
     pub cache: LayerCache,
 }
@@ -116,6 +120,7 @@ impl Layer {
             liquify: None,
             on: None,
             content: content.into(),
+            lifted: None,
             cache: LayerCache::default(),
         }
     }

@@ -20,6 +20,7 @@ pub mod guides;
 mod histogram;
 pub mod history;
 mod homes;
+mod ink_layers;
 mod layer;
 pub mod mask;
 mod measure;
@@ -54,9 +55,9 @@ pub use histogram::Histogram;
 pub use history::{EditLabel, History, LabelledLayer};
 pub use layer::{
     AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels,
-    Group, Layer, LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask, LayerTransform,
-    LayerWarp, Live, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer, PreviewKind, Reach, Role,
-    StrokeList, TransformShape,
+    Group, InkLayer, Layer, LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask,
+    LayerTransform, LayerWarp, Live, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer,
+    PreviewKind, Reach, Role, StrokeList, TransformShape,
 };
 pub use memory_use::{MemoryCount, MemoryUse};
 pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};

@@ -234,6 +234,7 @@ fn content(a: &Content, b: &Content) -> Option<&'static str> {
                 (a.placement, a.outside, a.strength) == (b.placement, b.outside, b.strength);
             ("detail", alike && is_same_detail(&a.source, &b.source))
         }
+        (Content::Ink(a), Content::Ink(b)) => ("drawing", a.of == b.of),
         (Content::Group(a), Content::Group(b)) => {
             ("passing through", a.pass_through == b.pass_through)
         }

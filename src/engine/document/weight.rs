@@ -75,7 +75,7 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
     let warped = if layer.is_warped() { 2 * area * tile_bytes } else { 0 };
     mask + warped
         + match &layer.content {
-            Content::Fill(_) | Content::Pixels(_) | Content::Adjustment(_) => 0,
+            Content::Fill(_) | Content::Pixels(_) | Content::Ink(_) | Content::Adjustment(_) => 0,
             Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
             Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,
             Content::Shading(live) => {

@@ -5,7 +5,8 @@ use super::LayerReader;
 use super::value::RecipeValue;
 use super::{images, liquify, masks, normals, shading, strokes, transforms};
 use crate::document::{
-    Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList,
+    Content, Group, HomeFrame, InkLayer, Layer, LayerLabel, LayerLock, Live, PixelLayer,
+    SelectionList,
 };
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
@@ -24,7 +25,7 @@ const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
 /// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
-const KINDS: [(ReadContent, &str); 10] = [
+const KINDS: [(ReadContent, &str); 11] = [
     (|_, fields, _| Ok(Content::Fill(fields.color("color", Color::BLACK)?)), "fill"),
     (|reader, fields, _| Ok(Content::Pixels(reader.pixels(fields)?)), "pixels"),
     (|reader, fields, _| Ok(Content::Image(Live::new(reader.image(fields)?))), "image"),
@@ -40,6 +41,7 @@ const KINDS: [(ReadContent, &str); 10] = [
         "adjustment",
     ),
     (|reader, fields, _| Ok(Content::Normals(reader.normals(fields)?)), "normals"),
+    (|_, fields, _| Ok(Content::Ink(InkLayer::of(fields.required("of")?.text()?))), "ink"),
     (|reader, fields, depth| Ok(Content::Group(reader.group(fields, depth)?)), "group"),
 ];
 
@@ -192,6 +194,7 @@ fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
         Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
         Content::Adjustment(live) => out.set("adjust", live.params().to_json()),
         Content::Normals(layer) => normals::write(out, layer, canvas),
+        Content::Ink(lines) => out.set("of", lines.of.as_str().into()),
         Content::Group(group) => out.flag("pass_through", group.pass_through, false),
     }
 }

@@ -9,10 +9,12 @@ use crate::document::parts::from_flats::{self, FlatParts, PartFor};
 use crate::document::parts::{Inflation, Part};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
+use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::files::read_file;
-use crate::io::{Budget, picture};
+use crate::io::{Budget, Terms, picture};
 use crate::math::{Range, Size};
 use crate::raster::TileGrid;
+use crate::shape::flats::lifted_ink::LiftedInk;
 use crate::{Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
@@ -53,6 +55,10 @@ pub struct ShapeArgs {
     /// Direction of green in the normals: up (opengl) or down (directx)
     #[arg(long, value_name = "WORD", default_value = "opengl", value_parser = ["opengl", "directx"])]
     convention: String,
+    /// Also write the drawing's ink alone (_ink), to lie unlit on top, and the drawing without it
+    /// (_flats), whose colors continue beneath
+    #[arg(long)]
+    ink: bool,
     /// Bits per channel of a PNG: 8 or 16
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = values::bits)]
     bits: u8,
@@ -110,10 +116,39 @@ pub fn run(args: &ShapeArgs) -> Result<()> {
         let maps = ShapeMap::ALL.map(|(map, _)| map);
         // The extension of the name is not part of it.
         let base = args.output.join(format!("{stem}.{}", args.format));
-        ShapeFiles::new(&base, &maps, options, &args.force.export(reads))?.write(surface)?;
+        let terms = args.force.export(reads);
+        let maps = ShapeFiles::new(&base, &maps, options, &terms)?;
+        let ink = args.ink.then(|| InkFiles::new(&args.output, &stem, &terms)).transpose()?;
+        maps.write(surface)?;
+        if let Some(files) = ink {
+            files.write(&document)?;
+        }
         tell(args.flats.as_ref().unwrap_or(&args.drawing), note.as_slice());
         Ok(())
     })
+}
+
+/// Where the two halves of a drawing go.
+struct InkFiles {
+    ink: OutputFile,
+    flats: OutputFile,
+}
+
+impl InkFiles {
+    fn new(folder: &Path, stem: &str, terms: &Terms) -> Result<Self> {
+        let file =
+            |what: &str| OutputFile::new(&folder.join(format!("{stem}_{what}.png")), terms.clone());
+        Ok(Self { ink: file("ink")?, flats: file("flats")? })
+    }
+
+    fn write(&self, document: &Document) -> Result<()> {
+        let drawing = document.layer_named("Drawing").map(|layer| &layer.content);
+        let Some(Content::Pixels(drawing)) = drawing else { return Ok(()) };
+        let lifted = LiftedInk::of(&drawing.tiles);
+        let options = ExportOptions::default();
+        self.ink.write(&lifted.lines, document.size, &options)?;
+        self.flats.write(&lifted.flats, document.size, &options)
+    }
 }
 
 /// The drawing as a document with parts, and what is told about colors without one.

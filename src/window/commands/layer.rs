@@ -157,6 +157,16 @@ pub const COMMANDS: &[MenuCommand] = &[
         },
     ),
     row(
+        "Lines on top",
+        &[],
+        "A layer above all others shows the ink of the selected one as it was drawn; light falls on what lies beneath",
+        has_layer,
+        |session, requests| {
+            let lines = session.layer_path().map(|layer| Action::Part(PartAction::Ink { layer }));
+            requests.actions.extend(lines);
+        },
+    ),
+    row(
         "Cut drawing by parts",
         &[],
         "Divides the selected layer into a layer for each part, so that a part moves with its \

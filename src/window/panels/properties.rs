@@ -35,6 +35,12 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         Content::Pixels(_) => {
             ui.weak("Paint. Strokes on it are pixels.");
         }
+        Content::Ink(lines) => {
+            ui.label(format!(
+                "The ink of “{}”, as it was drawn: no light falls on it. Draw on that layer, and the lines follow.",
+                lines.of
+            ));
+        }
         Content::Strokes(live) => {
             strokes::show(ui, session, &setter.layer, &live.params().strokes, setter.requests);
         }

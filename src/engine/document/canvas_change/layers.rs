@@ -7,8 +7,8 @@ use super::{CanvasChange, TURNED};
 use crate::document::apply_transform::{in_place, placed};
 use crate::document::layer::on_canvas::on_canvas;
 use crate::document::{
-    Content, DerivedMask, DetailSource, Group, Layer, LayerId, LayerMap, LayerMask, LayerTransform,
-    Live, MaskKind, NormalLayer, PixelLayer, StrokeList, TransformShape,
+    Content, DerivedMask, DetailSource, Group, InkLayer, Layer, LayerId, LayerMap, LayerMask,
+    LayerTransform, Live, MaskKind, NormalLayer, PixelLayer, StrokeList, TransformShape,
 };
 use crate::math::{Mat2, PlaneMap, Size, Vec2, vec2, vec3};
 use crate::paint::{Gradient, PlacedImage, Stroke};
@@ -151,6 +151,7 @@ impl Carrier<'_> {
             Content::Fill(_) | Content::RadianceScaling(_) | Content::Adjustment(_) => {
                 content.clone()
             }
+            Content::Ink(lines) => Content::Ink(InkLayer::of(lines.of.clone())),
             Content::Pixels(pixels) => Content::Pixels(self.pixels(pixels, frame)),
             Content::Image(live) => Content::Image(Live::new(self.image(live.params(), frame))),
             Content::Gradient(live) => {

@@ -8,6 +8,7 @@ mod from;
 mod gradient;
 mod group;
 mod image;
+mod ink;
 mod normals;
 mod pixels;
 mod radiance_scaling;
@@ -15,6 +16,7 @@ mod shading;
 pub(in crate::document) mod strokes;
 
 pub use group::Group;
+pub use ink::{InkLayer, InkSource, ShownInk};
 pub use pixels::PixelLayer;
 pub use strokes::StrokeList;
 
@@ -60,6 +62,8 @@ pub enum Content {
     Adjustment(LiveAdjustment),
     /// Detail for the surface that layers above see.
     Normals(NormalLayer),
+    /// The ink of a drawing beneath, unlit.
+    Ink(InkLayer),
     /// Layers.
     Group(Group),
 }
@@ -233,6 +237,7 @@ impl Content {
             Content::RadianceScaling(scaling) => scaling,
             Content::Adjustment(adjustment) => adjustment,
             Content::Normals(normals) => normals,
+            Content::Ink(lines) => lines,
             Content::Group(group) => group,
         }
     }
@@ -387,6 +392,7 @@ impl Content {
             (Content::Pixels(a), Content::Pixels(b)) => a.tiles.ptr_eq(&b.tiles),
             (Content::Normals(a), Content::Normals(b)) => a == b,
             (Content::Fill(a), Content::Fill(b)) => a == b,
+            (Content::Ink(a), Content::Ink(b)) => a.is_identical(b),
             (Content::RadianceScaling(a), Content::RadianceScaling(b)) => a == b,
             (Content::Adjustment(a), Content::Adjustment(b)) => a == b,
             _ => false,

@@ -1,7 +1,7 @@
 //! Layers as they lie on the canvas, kept as long as nothing in them changes. Floor 4.
 
 use super::Layer;
-use super::content::{Content, Group};
+use super::content::{Content, Group, PixelLayer};
 use super::map::LayerMap;
 use super::mask::{LayerMask, MaskKind};
 use super::warp::{LastWarp, LayerWarp, displaced_mask};
@@ -26,6 +26,7 @@ pub(in crate::document) fn on_canvas(layer: &Arc<Layer>, map: &LayerMap) -> Arc<
 
 /// The same with the layer's own transform and home in the map.
 pub(in crate::document) fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
+    let layer = &without_ink(layer);
     let warp = LayerWarp::of(layer, map);
     if map.is_none() && warp.is_none() && !layer.content.has_homes() {
         return layer.clone();
@@ -39,6 +40,16 @@ pub(in crate::document) fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer
         on: None,
         ..Layer::clone(layer)
     })
+}
+
+/// A drawing as it is shown beneath its lines.
+fn without_ink(layer: &Arc<Layer>) -> Arc<Layer> {
+    let (Some(lifted), Content::Pixels(pixels)) = (&layer.lifted, &layer.content) else {
+        return layer.clone();
+    };
+    let content =
+        Content::Pixels(PixelLayer { tiles: lifted.shown(&pixels.tiles), ..pixels.clone() });
+    Arc::new(Layer { content, lifted: None, ..Layer::clone(layer) })
 }
 
 /// Visits the layers of a list with the map of each, groups opened, bottom first.

@@ -69,8 +69,10 @@ impl Document {
         let above = LayerSlot { index: place.index + 1, ..place };
         let next = self
             .with_inserted(group, above)
-            .and_then(|next| next.with_layer(layer, |layer| layer.visible = false));
-        Ok((next.ok_or(NO_LAYER)?.reshaped(), id))
+            .and_then(|next| next.with_layer(layer, |layer| layer.visible = false))
+            .ok_or(NO_LAYER)?;
+        let lined = next.layer(id).map(|group| group.name.clone()).unwrap_or_default();
+        Ok((next.with_ink_layers_of(&drawing.name, &lined).reshaped(), id))
     }
 
     /// The drawing that a part has a colour of, if it can be cut by parts.

@@ -87,9 +87,14 @@ impl DrawingTraits {
         matches!(self.background, FigureBackground::Transparent | FigureBackground::Flat(_))
     }
 
+    /// Whether most of it is flat, so that lines are told from it.
+    pub fn has_flats(&self) -> bool {
+        self.flat_share >= LEAST_FLAT
+    }
+
     /// Whether its colours are worth a part each.
     pub fn is_of_flats(&self) -> bool {
-        self.colors > 1 && self.flat_share >= LEAST_FLAT
+        self.colors > 1 && self.has_flats()
     }
 }
 

@@ -117,7 +117,8 @@ impl DrawnLayer {
             let next = self.maps.as_ref().and_then(|maps| selection.found_on(maps));
             next.map_or_else(|| selection.clone(), Arc::new)
         };
-        let layers = alone.layers.iter().map(|layer| selecting(layer, &found)).collect();
+        let layers =
+            alone.layers.iter().map(|layer| selecting(&with_its_ink(layer), &found)).collect();
         // Nobody cancels it.
         flatten_layer(&Document { layers, ..alone }, self.layer.id, &Progress::default())
     }
@@ -130,6 +131,24 @@ fn painted(mut tiles: TileGrid) -> TileGrid {
         tiles.iter().filter(|(_, tile)| is_blank(tile)).map(|(at, _)| at).collect();
     blank.into_iter().for_each(|at| tiles.set(at, None));
     tiles
+}
+
+/// With the ink on its drawings, whatever ink layer shows it: that follows from the drawings.
+fn with_its_ink(layer: &Arc<Layer>) -> Arc<Layer> {
+    let next = match &layer.content {
+        Content::Group(group) => {
+            let layers: Vec<_> = group.layers.iter().map(with_its_ink).collect();
+            let is_same = layers.iter().zip(&group.layers).all(|(a, b)| Arc::ptr_eq(a, b));
+            let content = Content::Group(Group { layers, ..group.clone() });
+            (!is_same).then(|| Layer {
+                content,
+                cache: LayerCache::default(),
+                ..Layer::clone(layer)
+            })
+        }
+        _ => layer.lifted.as_ref().map(|_| Layer { lifted: None, ..Layer::clone(layer) }),
+    };
+    next.map_or_else(|| layer.clone(), Arc::new)
 }
 
 /// Whether two versions of a layer hold the same, but for what changes no outline.

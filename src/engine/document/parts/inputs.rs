@@ -26,9 +26,13 @@ pub struct SurfaceInputs {
 }
 
 impl Document {
-    /// Whether its surface is what its parts, its layers and its maps make. If not,
-    /// [`Document::reshaped`] makes it.
+    /// Whether its surface is what its parts, its layers and its maps make, and its ink layers show
+    /// the ink of their drawings. If not, [`Document::reshaped`] makes it.
     pub fn is_shaped(&self) -> bool {
+        self.is_ink_lifted() && self.has_its_surface()
+    }
+
+    fn has_its_surface(&self) -> bool {
         let Some(made) = &self.parts.made_of else { return self.parts.is_empty() };
         let of = made.made.as_ref().map(Weak::as_ptr);
         self.parts.is_empty()
@@ -51,7 +55,7 @@ impl Document {
 
     /// The same, a step for each part; `None` if cancelled.
     pub fn reshaped_with_progress(&self, progress: &Progress) -> Option<Document> {
-        let placed = self.with_homes_placed();
+        let placed = self.with_homes_placed().with_ink_lifted();
         if placed.is_shaped() {
             return Some(placed.with_selections_found());
         }

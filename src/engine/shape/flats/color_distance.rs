@@ -26,3 +26,20 @@ pub fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
     let off: [f32; 4] = std::array::from_fn(|c| gone[c] - t * way[c]);
     if dot(&off, &off) > (4 * NEAR * NEAR) as f32 { 0 } else { (t * 255.0).round() as u8 }
 }
+
+/// A channel of what is added may be off by this much from what it must add to what lies behind,
+/// of 255.
+const ROUNDING: i32 = 1;
+
+/// What has to lie with some alpha over an opaque colour, so that a given one is seen. `None` if
+/// nothing can.
+pub fn added(seen: [u8; 4], alpha: u8, over: [u8; 4]) -> Option<[u8; 4]> {
+    let left = |c: usize| (i32::from(over[c]) * (255 - i32::from(alpha)) + 127) / 255;
+    let own = |c: usize| i32::from(seen[c]) - left(c);
+    let alpha_range = -ROUNDING..=i32::from(alpha) + ROUNDING;
+    (0..3).all(|c| alpha_range.contains(&own(c))).then(|| {
+        let channel =
+            |c: usize| if c == 3 { alpha } else { own(c).clamp(0, i32::from(alpha)) as u8 };
+        std::array::from_fn(channel)
+    })
+}

@@ -3,9 +3,9 @@
 //!
 //! `shares` says what each pixel is of: `picture` reads areas and mixed pixels, `palette` finds the
 //! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it.
-//! `places` tells the areas of one colour apart, `beneath` continues them under nearer ones, and
-//! `area_names` names them; `areas` has walks over pixels, and `color_distance` says which colours
-//! are one.
+//! `lifted_ink` takes the lines off the picture, `area_names` gives areas names. `places` tells the
+//! areas of one colour apart, `beneath` continues them under nearer ones;
+//! `areas` has walks over pixels, and `color_distance` says which colours are one.
 
 pub mod area_names;
 pub mod areas;
@@ -13,7 +13,9 @@ pub mod beneath;
 pub mod color_distance;
 mod complete;
 pub mod ink;
+pub mod lifted_ink;
 pub mod palette;
 pub mod picture;
 pub mod places;
 pub mod shares;
+mod thin_ink;

@@ -4,6 +4,7 @@
 //! (`flats`).
 
 use super::areas::{LEAST_SEEN, beside, least_area, pixels, walk};
+use super::color_distance::is_near;
 use super::complete::{Given, complete};
 use super::ink::{color_pixels, lines};
 use super::palette::{NONE, NOTHING, Palette, PaletteColor, nearest};
@@ -57,21 +58,12 @@ impl Flats {
         if rect.is_empty() {
             return None;
         }
-        let picture = FlatPicture::of(tiles, rect);
-        let asked: Vec<Pixel> = asked.iter().copied().map(bytes).collect();
-        let Palette { mut colors, of: mut owner } = Palette::of(&picture, &asked);
-        let between = picture.between_areas();
-        for index in picture.of_thin_lines(&between) {
-            let here = picture.pixels.values()[index];
-            if let Some(number) = nearest(colors.iter().map(|color| color.color), here) {
-                owner.values_mut()[index] = number as u16;
-            }
-        }
+        let WithoutLines { picture, mut colors, mut owner, between, is_line, lines } =
+            WithoutLines::of(tiles, rect, asked);
         let in_areas =
             |owner: &Plane<u16>| owner.values().iter().filter(|of| **of < NOTHING).count();
-        let with_lines = in_areas(&owner);
-        let is_line = take_out_lines(&mut owner, &between, &mut colors);
-        let of_lines = with_lines - in_areas(&owner);
+        let of_lines = lines.values().iter().zip(owner.values());
+        let of_lines = of_lines.filter(|(line, of)| **line < NOTHING && **of == NONE).count();
         if !picture.is_pixel_art {
             take_out_specks(&mut owner, &mut colors);
         }
@@ -199,36 +191,74 @@ impl Flats {
     }
 }
 
-/// Takes lines out of each colour; which colours were mostly that. One that was asked for keeps
-/// them if it is nothing else.
-fn take_out_lines(
-    owner: &mut Plane<u16>,
-    between: &[Between],
-    colors: &mut [PaletteColor],
-) -> Vec<bool> {
-    let mut mostly = owner.clone();
-    for Between { index, sides, share } in between {
-        let side = sides[usize::from(*share >= MOSTLY)];
-        mostly.values_mut()[*index] = side.map_or(NOTHING, |side| owner.values()[side]);
-    }
-    let least = least_area(owner.size());
-    let counts = color_pixels(&mostly, colors.len());
-    let take_out = |(i, color): (usize, &mut PaletteColor)| {
-        let Some(lines) = lines(&mostly, i as u16, counts[i]) else { return false };
-        let is_own = |(x, y): &(usize, usize)| owner.at(*x, *y) == i as u16;
-        let left = color.pixels.saturating_sub(lines.iter().filter(|at| is_own(at)).count());
-        if color.is_asked && left < least {
-            return false;
-        }
-        color.pixels = left;
-        for (x, y) in lines {
-            if owner.at(x, y) == i as u16 {
-                owner.set(x, y, NONE);
+/// A picture of flats whose lines are told from its areas.
+pub struct WithoutLines {
+    pub picture: FlatPicture,
+    /// Those that were asked for, then the most frequent first.
+    pub colors: Vec<PaletteColor>,
+    /// The number of the colour of each pixel in a flat area, as in [`Palette`]; [`NONE`] in lines.
+    pub owner: Plane<u16>,
+    pub between: Vec<Between>,
+    /// Which colours are mostly lines.
+    pub is_line: Vec<bool>,
+    /// The number of the colour of each pixel that is mostly of a line; else [`NONE`].
+    pub lines: Plane<u16>,
+}
+
+impl WithoutLines {
+    /// The pixels of a rectangle; `asked`: as for [`Flats::of`].
+    pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Self {
+        let picture = FlatPicture::of(tiles, rect);
+        let asked: Vec<Pixel> = asked.iter().copied().map(bytes).collect();
+        let Palette { colors, of: mut owner } = Palette::of(&picture, &asked);
+        let between = picture.between_areas();
+        for index in picture.of_thin_lines(&between) {
+            let here = picture.pixels.values()[index];
+            if let Some(number) = nearest(colors.iter().map(|color| color.color), here) {
+                owner.values_mut()[index] = number as u16;
             }
         }
-        true
-    };
-    colors.iter_mut().enumerate().map(take_out).collect()
+        let lines = Plane::filled(owner.size(), NONE);
+        let mut read = Self { picture, colors, owner, between, is_line: Vec::new(), lines };
+        read.take_out_lines();
+        read
+    }
+
+    /// The colour of a pixel in a flat area: without the little of others that it may hold.
+    pub fn flat_color(&self, index: usize) -> Pixel {
+        let pixel = self.picture.pixels.values()[index];
+        let color = self.colors.get(usize::from(self.owner.values()[index]));
+        color.map(|color| color.color).filter(|color| is_near(pixel, *color)).unwrap_or(pixel)
+    }
+
+    /// Takes lines out of each colour. One that was asked for keeps them if it is nothing else.
+    fn take_out_lines(&mut self) {
+        let mut mostly = self.owner.clone();
+        for Between { index, sides, share } in &self.between {
+            let side = sides[usize::from(*share >= MOSTLY)];
+            mostly.values_mut()[*index] = side.map_or(NOTHING, |side| self.owner.values()[side]);
+        }
+        let least = least_area(self.owner.size());
+        let counts = color_pixels(&mostly, self.colors.len());
+        let (owner, all_lines) = (&mut self.owner, &mut self.lines);
+        let take_out = |(i, color): (usize, &mut PaletteColor)| {
+            let Some(lines) = lines(&mostly, i as u16, counts[i]) else { return false };
+            let is_own = |(x, y): &(usize, usize)| owner.at(*x, *y) == i as u16;
+            let left = color.pixels.saturating_sub(lines.iter().filter(|at| is_own(at)).count());
+            if color.is_asked && left < least {
+                return false;
+            }
+            color.pixels = left;
+            for (x, y) in lines {
+                all_lines.set(x, y, i as u16);
+                if owner.at(x, y) == i as u16 {
+                    owner.set(x, y, NONE);
+                }
+            }
+            true
+        };
+        self.is_line = self.colors.iter_mut().enumerate().map(take_out).collect();
+    }
 }
 
 /// Takes out areas too small to be seen: compression leaves such specks. The pixels of each colour

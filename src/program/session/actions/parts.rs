@@ -91,6 +91,8 @@ actions! {
         /// A drawing becomes a layer for each part that has its outline from it, which goes with
         /// the part.
         "cut" Cut { layer: LayerPath }
+        /// The ink of a drawing becomes a layer of lines on top, which no light falls on.
+        "ink" Ink { layer: LayerPath }
         "select" Select { part: String }
         /// The whole shape moved by a map of the canvas (a, b, c, d, e, f), with what is painted on
         /// it; shown only, until it is `done`.
@@ -189,6 +191,17 @@ impl PartAction {
             PartAction::Split { part } => {
                 let part = of(part)?;
                 ("Split by place", split::by_place(document, &part)?, Some(part.id.clone()))
+            }
+            PartAction::Ink { layer } => {
+                let layer =
+                    layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
+                let (next, lines) = document
+                    .with_lines_on_top(layer)
+                    .ok_or("No ink was found in this layer: lines between its colours.")?;
+                if open.commit("Lines on top", next) {
+                    open.selected = Some(lines);
+                }
+                return Ok(());
             }
             PartAction::Cut { layer } => {
                 let layer =

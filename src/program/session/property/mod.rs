@@ -227,7 +227,7 @@ impl Property {
                     *live = LiveAdjustment::new(to.clone());
                 }
             }
-            Content::Pixels(_) | Content::Strokes(_) => {}
+            Content::Pixels(_) | Content::Strokes(_) | Content::Ink(_) => {}
         }
     }
 

@@ -4,7 +4,9 @@
 mod edits;
 
 use super::*;
-use crate::document::{Content, DetailSource, Group, Layer, Live, NormalLayer, StrokeList};
+use crate::document::{
+    Content, DetailSource, Group, InkLayer, Layer, Live, NormalLayer, StrokeList,
+};
 use crate::io::{Budget, project};
 use crate::math::{Size, vec2};
 use crate::paint::{
@@ -75,6 +77,7 @@ pub(super) fn everything() -> Document {
             tiles: Default::default(),
         }),
         Content::Group(Group::default()),
+        Content::Ink(InkLayer::of("pixels")),
     ];
     let layers = contents
         .into_iter()
@@ -87,7 +90,7 @@ pub(super) fn everything() -> Document {
 fn edit() -> impl Strategy<Value = String> {
     let numbers = prop::collection::vec(prop::sample::select(NUMBERS.to_vec()), 8);
     let all: Vec<&str> = PROPERTIES.iter().chain(OTHERS).copied().collect();
-    (prop::sample::select(all), 0..10usize, numbers).prop_map(|(template, layer, numbers)| {
+    (prop::sample::select(all), 0..11usize, numbers).prop_map(|(template, layer, numbers)| {
         let mut numbers = numbers.into_iter().cycle();
         let template = match template.starts_with("{\"in\"") {
             true => template.to_owned(),

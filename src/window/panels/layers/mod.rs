@@ -30,6 +30,7 @@ pub fn kind_icon(content: &Content) -> Icon {
         Content::RadianceScaling(_) => Icon::Scaling,
         Content::Adjustment(_) => Icon::Adjustment,
         Content::Normals(_) => Icon::Normals,
+        Content::Ink(_) => Icon::Ink,
         Content::Group(_) => Icon::Group,
     }
 }

@@ -4,7 +4,7 @@
 use super::owners::{Cut, NO_PART};
 use crate::raster::{Plane, distance};
 use crate::shape::flats::areas::pixels;
-use crate::shape::flats::color_distance::{color_distance, share_on_the_way};
+use crate::shape::flats::color_distance::{added, color_distance, share_on_the_way};
 use crate::shape::flats::ink::half_width;
 use crate::shape::flats::picture::Pixel;
 use std::collections::VecDeque;
@@ -14,10 +14,6 @@ use std::collections::VecDeque;
 const LINE: u8 = 48;
 /// How far beyond such pixels a line fades, px.
 const SOFT: i32 = 2;
-
-/// A channel of the piece in front may be off by this much from what it must add to the one behind,
-/// of 255.
-const ROUNDING: i32 = 1;
 
 /// The lines of a drawing that are drawn on one part and go with another.
 pub struct CutLines {
@@ -188,17 +184,4 @@ fn soft_border(cut: &Cut, taker: &Plane<u16>) -> Vec<(usize, usize, u16)> {
 fn around(x: usize, y: usize, reach: i32) -> impl Iterator<Item = (i32, i32)> {
     let (x, y) = (x as i32, y as i32);
     (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)))
-}
-
-/// What has to lie with some alpha over an opaque colour, so that a given one is seen. `None` if
-/// nothing can.
-pub fn added(seen: Pixel, alpha: u8, over: Pixel) -> Option<Pixel> {
-    let left = |c: usize| (i32::from(over[c]) * (255 - i32::from(alpha)) + 127) / 255;
-    let own = |c: usize| i32::from(seen[c]) - left(c);
-    let alpha_range = -ROUNDING..=i32::from(alpha) + ROUNDING;
-    (0..3).all(|c| alpha_range.contains(&own(c))).then(|| {
-        let channel =
-            |c: usize| if c == 3 { alpha } else { own(c).clamp(0, i32::from(alpha)) as u8 };
-        std::array::from_fn(channel)
-    })
 }

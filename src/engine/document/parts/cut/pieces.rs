@@ -1,10 +1,11 @@
 //! What each part carries of a drawing. Floor 4.
 
-use super::lines::{CutLines, added};
+use super::lines::CutLines;
 use super::owners::{Cut, NO_PART, PieceOutline};
 use crate::math::Rect;
 use crate::raster::{Plane, Tile, TileAt, TileGrid};
 use crate::shape::flats::areas::{over, spread};
+use crate::shape::flats::color_distance::added;
 use crate::shape::flats::picture::Pixel;
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
-//! The first shape of a drawing: a part from its outline, or one from each of its flat colours or
-//! places, and a lit Base, so that the form is seen at once. Floor 6. Not here: what a drawing is
-//! (`document::parts::drawing`).
+//! The first shape of a drawing: a part from its outline, or one from each of its flat colors or
+//! places, a lit Base, so that the form is seen at once, and its ink on top of that. Floor 6. Not
+//! here: what a drawing is (`document::parts::drawing`).
 
 use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
@@ -98,6 +98,9 @@ pub fn shaped(
         .place_of(layer)
         .map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
     let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
+    let lined = || as_paint(&next, layer, &tiles)?.with_lines_on_top(layer);
+    let lined = if traits.has_flats() { lined() } else { None };
+    let next = lined.map_or(next, |(lined, _)| lined);
     let next = next.with_parts_with_progress(list, progress).ok_or("It was canceled.")?;
     // A drawing that is one part moves with the part; of several parts, each would take a piece of
     // it.
@@ -132,13 +135,7 @@ fn without_flat_background(
     color: Color,
 ) -> Option<(Document, TileGrid)> {
     let bare = without_background(tiles, document.size, color);
-    let paint =
-        Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles: bare.clone() });
-    let next = document.with_layer(layer, |layer| {
-        // The mask and the transform are in the pixels now.
-        (layer.content, layer.mask, layer.transform) = (paint, None, None);
-        layer.liquify = None;
-    })?;
+    let next = with_paint(document, layer, &bare)?;
     let drawing = next.layer(layer)?;
     let background = Layer {
         clip_to_surface: false,
@@ -148,6 +145,24 @@ fn without_flat_background(
     };
     let place = next.place_of(layer)?;
     Some((next.with_inserted(background, place)?, bare))
+}
+
+/// With the drawing as paint, of which ink can be lifted; the picture stays the same.
+fn as_paint(document: &Document, layer: LayerId, tiles: &TileGrid) -> Option<Document> {
+    match document.layer(layer)?.content {
+        Content::Pixels(_) => Some(document.clone()),
+        _ => with_paint(document, layer, tiles),
+    }
+}
+
+fn with_paint(document: &Document, layer: LayerId, tiles: &TileGrid) -> Option<Document> {
+    let paint =
+        Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles: tiles.clone() });
+    document.with_layer(layer, |layer| {
+        // The mask and the transform are in the pixels now.
+        (layer.content, layer.mask, layer.transform) = (paint, None, None);
+        layer.liquify = None;
+    })
 }
 
 /// The layer that shows the form: a painter's light on the drawing.

@@ -2,6 +2,7 @@
 
 mod across;
 mod flats;
+mod ink;
 
 use crate::document::parts::PartKind;
 use crate::document::{Content, Document, Progress, flatten};

@@ -110,6 +110,12 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
         Rgb([(x * 2000 + 17) as u16, (y * 2000 + 3) as u16, (x * y * 60) as u16])
     });
     let grey = ImageBuffer::from_fn(48, 36, |x, y| Luma([((x * 5) ^ (y * 7)) as u8]));
+    let inked = ImageBuffer::from_fn(48, 36, |x, y| match (x.min(47 - x).min(y).min(35 - y), x) {
+        (0..4, _) => Rgba([0; 4]),
+        (4..6, _) | (_, 23..25) => Rgba([28, 22, 30, 255]),
+        (_, 0..23) => Rgba([210, 60, 50, 255]),
+        _ => Rgba([60, 160, 90, 255]),
+    });
     let mask = ImageBuffer::from_fn(96, 72, |x, y| Luma([(x * 2 + y) as u8]));
     let all = [
         ("mask.png", DynamicImage::ImageLuma8(mask)),
@@ -117,6 +123,7 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
         ("normal-small.png", normals(0.5)),
         ("depth.png", DynamicImage::ImageLuma16(depth)),
         ("picture.png", DynamicImage::ImageRgba8(picture)),
+        ("inked.png", DynamicImage::ImageRgba8(inked)),
         ("picture-deep.png", DynamicImage::ImageRgb16(deep)),
         ("grey.png", DynamicImage::ImageLuma8(grey)),
     ];
@@ -129,11 +136,13 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
 }
 
 /// A document with most kinds of layers.
-const RECIPE: &str = r##"{ "format": "rilievo", "version": 1,
+const RECIPE: &str = r##"{ "format": "rilievo", "version": 2,
     "surface": { "normal": { "file": "normal.png" }, "depth": { "file": "depth.png" } },
     "layers": [
         { "name": "Ground", "kind": "fill", "color": "#304050", "clip_to_surface": false },
         { "name": "Paint", "kind": "pixels", "file": "picture.png", "x": 20, "y": 9, "opacity": 0.75 },
+        { "name": "Inked", "kind": "pixels", "file": "inked.png", "x": 30, "y": 20 },
+        { "name": "Ink", "kind": "ink", "of": "Inked", "opacity": 0.9 },
         { "name": "Print", "kind": "image", "source": { "file": "picture.png", "blur": 1.5 }, "blend": "multiply",
           "operator": { "kind": "normal", "alpha": 0.4 }, "mask": { "file": "mask.png" } },
         { "name": "Ramp", "kind": "gradient", "blend": "screen", "stops": [[0, "#ff000080"], [1, "#00ff00"]],
@@ -148,9 +157,10 @@ const RECIPE: &str = r##"{ "format": "rilievo", "version": 1,
 
 /// The actions that a story begins with, by one of the ways in.
 pub fn way_in(dice: &mut Dice) -> Vec<Action> {
-    const WAYS: [fn(&mut Dice) -> Vec<Action>; 7] = [
+    const WAYS: [fn(&mut Dice) -> Vec<Action>; 8] = [
         blank,
         drawing,
+        inked,
         |d| drawing_with(d, "false"),
         |d| drawing_with(d, "true"),
         maps,
@@ -196,7 +206,14 @@ fn drawing(dice: &mut Dice) -> Vec<Action> {
     actions
 }
 
-/// The same with a shape.
+/// A drawing with ink, which gets a layer of its own.
+fn inked(_: &mut Dice) -> Vec<Action> {
+    let layer = ReplayValue::read(&"0".into()).unwrap();
+    let open = Action::File(FileAction::Open { file: "inked.png".into() });
+    vec![open, Action::Part(PartAction::Ink { layer })]
+}
+
+/// Ellipses of two colors with a shape.
 fn drawing_with(dice: &mut Dice, flats: &str) -> Vec<Action> {
     let mut actions = drawing(dice);
     let layer = ReplayValue::read(&"1".into()).unwrap();

@@ -1,0 +1,100 @@
+use super::*;
+use crate::shape::flats::color_distance::NEAR;
+
+/// A red disc with a dark ring around it and a dark line through its middle, on nothing, and a
+/// green half; all of it smooth.
+fn drawn(ink: [f32; 3]) -> TileGrid {
+    let (red, green) = ([200.0f32, 60.0, 40.0], [60.0f32, 170.0, 90.0]);
+    let pixel = |i: usize| {
+        let (x, y) = ((i % 120) as f32 + 0.5, (i / 120) as f32 + 0.5);
+        let away = ((x - 60.0).powi(2) + (y - 60.0).powi(2)).sqrt();
+        let whole = (50.5 - away).max(0.0).min(1.0);
+        let on_ring = (away - 48.3).max(0.0).min(1.0);
+        let through = (1.2 - (x - 60.3 + 0.2 * (y - 60.0)).abs()).max(0.0).min(1.0);
+        let c = on_ring.max(through);
+        let flat = if x + 0.2 * (y - 60.0) < 60.3 { red } else { green };
+        let mixed = |k: usize| (flat[k] * (1.0 - c) + ink[k] * c).round() as u8;
+        [mixed(0), mixed(1), mixed(2), (255.0 * whole).round() as u8]
+    };
+    let rgba: Vec<u8> = (0..120 * 120).flat_map(pixel).collect();
+    TileGrid::from_straight_rgba(&rgba, 120, 120, 0, 0)
+}
+
+fn together(lifted: &LiftedInk, x: i32, y: i32) -> [i32; 4] {
+    let (flat, line) = (lifted.flats.pixel(x, y), lifted.lines.pixel(x, y));
+    std::array::from_fn(|k| {
+        i32::from(line[k]) + (i32::from(flat[k]) * (255 - i32::from(line[3])) + 127) / 255
+    })
+}
+
+#[test]
+fn lines_over_what_is_left_are_the_drawing() {
+    for ink in [[30.0, 22.0, 28.0], [20.0, 40.0, 150.0]] {
+        let drawing = drawn(ink);
+        let lifted = LiftedInk::of(&drawing);
+        assert!(!lifted.is_empty());
+        for (x, y) in pixels((120, 120)) {
+            let (x, y) = (x as i32, y as i32);
+            let (was, is) = (drawing.pixel(x, y), together(&lifted, x, y));
+            let off = (0..4).map(|k| (is[k] - i32::from(was[k])).abs()).max().unwrap();
+            assert!(off <= 1, "{x} {y}: {is:?} for {was:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_of_the_ink_is_left_in_the_flats_and_its_borders_have_one_tone() {
+    for ink in [[30.0f32, 22.0, 28.0], [20.0, 40.0, 150.0]] {
+        let lifted = LiftedInk::of(&drawn(ink));
+        let (red, green) = ([200, 60, 40], [60, 170, 90]);
+        let mut soft = 0;
+        for (x, y) in pixels((120, 120)) {
+            let flat = lifted.flats.pixel(x as i32, y as i32);
+            let away =
+                |color: [i32; 3]| (0..3).map(|k| (i32::from(flat[k]) - color[k]).abs()).max();
+            let least = away(red).min(away(green)).unwrap();
+            // Pixels nearer than this to a flat are of it.
+            assert!(flat[3] == 0 || least <= NEAR, "{x} {y}: {flat:?}");
+            let line = lifted.lines.pixel(x as i32, y as i32);
+            if (30..255).contains(&line[3]) {
+                soft += 1;
+                for k in 0..3 {
+                    let tone = f32::from(line[k]) * 255.0 / f32::from(line[3]);
+                    assert!((tone - ink[k]).abs() < 14.0, "{x} {y} {k}: {line:?}");
+                }
+            }
+        }
+        assert!(soft > 300, "the borders are soft: {soft}");
+    }
+}
+
+#[test]
+fn a_drawing_without_lines_keeps_all_of_it() {
+    let flat: Vec<u8> = (0..64 * 64)
+        .flat_map(|i| if i % 64 < 30 { [9, 9, 9, 255] } else { [200, 90, 9, 255] })
+        .collect();
+    let drawing = TileGrid::from_straight_rgba(&flat, 64, 64, 0, 0);
+    let lifted = LiftedInk::of(&drawing);
+    assert!(lifted.is_empty() && lifted.flats.ptr_eq(&drawing));
+}
+
+/// Two dark lines with red and green beyond them, and a narrow gap between the lines.
+fn with_a_gap() -> TileGrid {
+    let pixel = |i: usize| match i % 80 {
+        0..30 => [200, 60, 40, 255],
+        30..34 | 36..40 => [30, 22, 28, 255],
+        34..36 => [0; 4],
+        _ => [60, 170, 90, 255],
+    };
+    let rgba: Vec<u8> = (0..80 * 300).flat_map(pixel).collect();
+    TileGrid::from_straight_rgba(&rgba, 80, 300, 0, 0)
+}
+
+#[test]
+fn a_gap_between_two_lines_stays_open() {
+    let lifted = LiftedInk::of(&with_a_gap());
+    assert_eq!(lifted.lines.pixel(32, 60), [30, 22, 28, 255]);
+    for x in [34, 35] {
+        assert_eq!(together(&lifted, x, 60), [0; 4], "{x}");
+    }
+}
