@@ -99,7 +99,7 @@ fn every_kind_of_colours_opens_from_the_file_s_picture() {
     let said = super::read(std::path::Path::new("a.psd"), &odd.bytes(), &crate::Budget::default())
         .err()
         .unwrap();
-    assert!(said.to_string().contains("unknown kind 5"), "{said}");
+    assert!(said.to_string().contains("color mode 5 is unknown"), "{said}");
 }
 
 #[test]
