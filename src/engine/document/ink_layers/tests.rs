@@ -50,7 +50,7 @@ fn ink_is_as_it_was_drawn_and_the_flats_beneath_are_lit() {
     assert!(shown[0].abs_diff(105) <= 1 && shown[1].abs_diff(30) <= 1, "{shown:?}");
     let hidden = document.with_layer(document.layers[2].id, |layer| layer.visible = false);
     let beneath = pixel(&hidden.unwrap().reshaped(), 39, 30);
-    assert!(beneath[0] > 90 || beneath[1] > 70, "the colours continue beneath: {beneath:?}");
+    assert!(beneath[0] > 90 || beneath[1] > 70, "the colors continue beneath: {beneath:?}");
 }
 
 #[test]

@@ -195,9 +195,9 @@ impl PartAction {
             PartAction::Ink { layer } => {
                 let layer =
                     layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
-                let (next, lines) = document
-                    .with_lines_on_top(layer)
-                    .ok_or("No ink was found in this layer: lines between its colours.")?;
+                let (next, lines) = document.with_lines_on_top(layer).ok_or(
+                    "No ink was found in this layer: there are no lines between its colors.",
+                )?;
                 if open.commit("Lines on top", next) {
                     open.selected = Some(lines);
                 }
