@@ -29,6 +29,7 @@ pub mod recovery;
 pub mod replace;
 pub mod save;
 pub mod srgb_profile;
+pub mod svg;
 pub mod thumbnail;
 
 // The floors beneath, under their own names.

@@ -13,7 +13,7 @@ pub use passes::{LightLayer, layers};
 
 use super::bitmap::Bitmap;
 use super::exr::{self, ExrFile};
-use super::{Budget, bitmap, pixels};
+use super::{Budget, bitmap, pixels, svg};
 use crate::math::{Size, srgb};
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane, TileGrid, tile};
@@ -22,7 +22,7 @@ use image::DynamicImage;
 use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
 use std::path::Path;
 
-/// Decodes any format of `bitmap`, or EXR, distinguished by their first bytes.
+/// Decodes any format of `bitmap`, EXR or SVG, distinguished by their first bytes.
 ///
 /// * `file`: for messages (and for TGA, which only its name identifies).
 ///
@@ -31,6 +31,9 @@ use std::path::Path;
 /// along with the bytes. Fails with a sentence on anything damaged, unknown or beyond `budget`. The
 /// picture keeps `bytes`, so that a project can store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
+    if svg::is_svg(bytes) {
+        return svg::decode(file, bytes, budget);
+    }
     let is_exr = ExrFile::is_exr(bytes);
     let picture = if is_exr {
         light::decode(file, bytes, budget)

@@ -8,7 +8,7 @@ use crate::exr::{ExrFile, ExrPass};
 use crate::math::Size;
 use crate::pixels::{self, Painted};
 use crate::raster::TileGrid;
-use crate::{Budget, Result};
+use crate::{Budget, Result, svg};
 use std::path::Path;
 
 /// Decodes a picture as [`decode`](super::decode) does, its corner at a canvas pixel: paint of 16
@@ -17,6 +17,9 @@ pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Re
     if ExrFile::is_exr(bytes) {
         let exr = ExrFile::open(file, bytes, budget)?;
         return of_light(file, &exr, light::chosen(file, &exr)?, x, y, budget);
+    }
+    if svg::is_svg(bytes) {
+        return svg::painted(file, bytes, x, y, budget);
     }
     if let Some(painted) = pixels::decode_tiles(bytes, x, y, budget) {
         return Ok(painted);

@@ -9,9 +9,9 @@ pub const DOCUMENTS: [&str; 10] =
 /// Extensions of the files that documents are saved to, the first being this program's own.
 pub const SAVED: [&str; 2] = ["ora", "psd"];
 /// Extensions of the files that hold pictures.
-pub const PICTURES: [&str; 18] = [
+pub const PICTURES: [&str; 19] = [
     "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr", "gif", "qoi", "pnm",
-    "pbm", "pgm", "ppm", "pam", "pfm",
+    "pbm", "pgm", "ppm", "pam", "pfm", "svg",
 ];
 
 /// Whether a file is a document by the ending of its name.
