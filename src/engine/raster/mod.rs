@@ -13,6 +13,7 @@ pub mod gaps;
 pub mod grid;
 pub mod lattice;
 pub mod line_integral;
+pub mod paper;
 pub mod picture;
 pub mod planar;
 pub mod plane;

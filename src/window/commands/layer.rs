@@ -167,6 +167,16 @@ pub const COMMANDS: &[MenuCommand] = &[
         },
     ),
     row(
+        "Make paper transparent",
+        &[],
+        "The paper of a scan becomes transparent, and its pencil or ink lines stand on top of all layers",
+        has_layer,
+        |session, requests| {
+            let bare = session.layer_path().map(|layer| Action::Part(PartAction::Paper { layer }));
+            requests.actions.extend(bare);
+        },
+    ),
+    row(
         "Cut drawing by parts",
         &[],
         "Divides the selected layer into a layer for each part, so that a part moves with its \

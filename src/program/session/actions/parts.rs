@@ -1,10 +1,11 @@
 //! Actions on the shape of the document in front: its parts, the farthest first. What cannot be
 //! done says why. Floor 6. `new` makes parts, `greys` the pictures for them from layers; `first`
-//! gives a drawing its first shape, `list` orders them, `split` divides them. Not here: parts that
-//! the pen changes on the canvas (`tools::shape`).
+//! gives a drawing its first shape, `ink` puts its lines on top, `list` orders parts, `split` divides
+//! them. Not here: parts that the pen changes on the canvas (`tools::shape`).
 
 pub mod first;
 mod greys;
+mod ink;
 mod list;
 pub mod new;
 mod split;
@@ -93,6 +94,8 @@ actions! {
         "cut" Cut { layer: LayerPath }
         /// The ink of a drawing becomes a layer of lines on top, which no light falls on.
         "ink" Ink { layer: LayerPath }
+        /// The paper of a scan becomes transparent; its lines stand on top.
+        "paper" Paper { layer: LayerPath }
         "select" Select { part: String }
         /// The whole shape moved by a map of the canvas (a, b, c, d, e, f), with what is painted on
         /// it; shown only, until it is `done`.
@@ -193,12 +196,15 @@ impl PartAction {
                 ("Split by place", split::by_place(document, &part)?, Some(part.id.clone()))
             }
             PartAction::Ink { layer } => {
-                let layer =
-                    layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
-                let (next, lines) = document.with_lines_on_top(layer).ok_or(
-                    "No ink was found in this layer: there are no lines between its colors.",
-                )?;
+                let (next, lines) = ink::on_top(document, layer)?;
                 if open.commit("Lines on top", next) {
+                    open.selected = Some(lines);
+                }
+                return Ok(());
+            }
+            PartAction::Paper { layer } => {
+                let (next, lines) = ink::without_paper(document, layer)?;
+                if open.commit("Make paper transparent", next) {
                     open.selected = Some(lines);
                 }
                 return Ok(());

@@ -155,7 +155,12 @@ fn as_paint(document: &Document, layer: LayerId, tiles: &TileGrid) -> Option<Doc
     }
 }
 
-fn with_paint(document: &Document, layer: LayerId, tiles: &TileGrid) -> Option<Document> {
+/// With a layer as paint alone.
+pub(super) fn with_paint(
+    document: &Document,
+    layer: LayerId,
+    tiles: &TileGrid,
+) -> Option<Document> {
     let paint =
         Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles: tiles.clone() });
     document.with_layer(layer, |layer| {

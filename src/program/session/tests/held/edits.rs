@@ -147,6 +147,7 @@ pub const OTHERS: &[&str] = &[
     r#"{"in":"part","do":"shape","layer":"2","preset":"coin","flats":false}"#,
     r#"{"in":"part","do":"shape","layer":"3","preset":"relief","flats":true}"#,
     r#"{"in":"part","do":"ink","layer":"7"}"#,
+    r#"{"in":"part","do":"paper","layer":"1"}"#,
     r#"{"in":"part","do":"add","kind":"torus"}"#,
     r#"{"in":"part","do":"add","kind":"box"}"#,
     r#"{"in":"part","do":"add","kind":"bevel"}"#,

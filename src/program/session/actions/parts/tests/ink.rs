@@ -72,3 +72,24 @@ fn lines_of_a_drawing_without_ink_are_refused() {
     assert!(session.notes[0].starts_with("No ink"), "{:?}", session.notes);
     assert_eq!(shown(&session).layers.len(), 1);
 }
+
+#[test]
+fn a_scan_becomes_lines_on_top_of_all_layers() {
+    let texel = |i: usize| {
+        let gray = if (i / 320) % 60 < 4 { 50 } else { 214 + (i * 7919 % 5) as u8 };
+        [gray, gray, gray, 255]
+    };
+    let scan = Picture::srgb8(SIZE, (0..SIZE.area()).map(texel).collect()).unwrap();
+    let mut session = opened(of_picture("scan.png", scan));
+    tell(&mut session, r#"{"in":"layer","do":"add","kind":"paint"}"#);
+    tell(&mut session, r#"{"in":"part","do":"paper","layer":"0"}"#);
+    assert_eq!(session.notes, Vec::<String>::new());
+    let names: Vec<&str> = shown(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
+    assert_eq!(names.last(), Some(&"scan"));
+    let seen = seen(&session);
+    assert!(
+        seen.pixel(100, 30)[3] == 0 && seen.pixel(100, 62)[3] > 180,
+        "{:?}",
+        seen.pixel(100, 62)
+    );
+}
