@@ -6,7 +6,7 @@
 //! flattened tiles, as the stroke grows; and moving one of a thousand strokes.
 //!
 //! The cost of a stroke includes finding its dabs and their reach, computing coverage, painting the
-//! tiles and quantising. The peer (benches/peers/libmypaint_dabs.c) is built with `cc` if
+//! tiles and quantizing. The peer (benches/peers/libmypaint_dabs.c) is built with `cc` if
 //! libmypaint's headers are installed; otherwise a message says that it is skipped.
 
 use rilievo::document::{Live, PixelLayer, PreparedDocument, StrokeList, diff};

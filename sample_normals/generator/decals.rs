@@ -43,7 +43,7 @@ pub fn star() -> RgbaImage {
     })
 }
 
-/// A maple-like leaf in autumn colours, on a transparent ground.
+/// A maple-like leaf in autumn colors, on a transparent ground.
 pub fn leaf() -> RgbaImage {
     const SIDE: u32 = 352;
     const LOBES: [[f64; 3]; 5] = [

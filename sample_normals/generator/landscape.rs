@@ -216,7 +216,7 @@ fn tree_shadow(q: DVec2) -> f64 {
     smooth_step(1.15, 0.55, d.length() + ragged)
 }
 
-/// A tree painted into a buffer: colour and cover per point.
+/// A tree painted into a buffer: color and cover per point.
 struct Tree {
     width: usize,
     points: Vec<(DVec3, f64)>,
@@ -328,7 +328,7 @@ impl Tree {
         });
     }
 
-    /// Lays colour over the points within `reach` of `at`.
+    /// Lays color over the points within `reach` of `at`.
     fn stamp(&mut self, at: DVec2, reach: f64, paint: impl Fn(DVec2) -> (DVec3, f64)) {
         const SCALE: f64 = 1680.0;
         let (cx, cy, r) = (1260.0 + at.x * SCALE, 975.0 - at.y * SCALE, reach * SCALE + 1.0);
@@ -350,7 +350,7 @@ impl Tree {
         }
     }
 
-    /// Colour and cover at a point of the buffer.
+    /// Color and cover at a point of the buffer.
     fn at(&self, p: DVec2) -> (DVec3, f64) {
         self.points[p.y as usize * self.width + p.x as usize]
     }

@@ -111,7 +111,7 @@ pub struct Cell {
 ///
 /// * `p`: position, in lattice cells.
 /// * `period`: repeats after this many cells; 0 never repeats.
-/// * `jitter`: how far seeds leave their cell's centre, in `[0, 1]`.
+/// * `jitter`: how far seeds leave their cell's center, in `[0, 1]`.
 pub fn cells(p: DVec2, period: i64, jitter: f64, seed: u64) -> Cell {
     let base = p.floor();
     let wrap = |i: i64| if period > 0 { i.rem_euclid(period) } else { i };

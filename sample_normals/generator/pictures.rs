@@ -1,5 +1,5 @@
 //! The sample pictures that are not landscapes: all of them listed, and a studio, a weave and lit
-//! spheres. Not here: textures (`textures`, `patterns`), decals (`decals`). Colours are linear
+//! spheres. Not here: textures (`textures`, `patterns`), decals (`decals`). Colors are linear
 //! light until [`encoded`]; textures whose doc says seamless repeat without a seam.
 
 use std::f64::consts::{PI, TAU};
@@ -42,7 +42,7 @@ fn encoded(linear: f64) -> u8 {
     (srgb * 255.0).round() as u8
 }
 
-/// The linear colour of an sRGB one written as `0xRRGGBB`.
+/// The linear color of an sRGB one written as `0xRRGGBB`.
 pub fn srgb(hex: u32) -> DVec3 {
     let channel = |shift: u32| {
         let c = f64::from(hex >> shift & 255) / 255.0;
@@ -56,7 +56,7 @@ pub fn rolled_off(c: DVec3) -> DVec3 {
     DVec3::ONE - (-c).exp()
 }
 
-/// A picture from straight (not premultiplied) linear colour and alpha, averaged over `fine` ×
+/// A picture from straight (not premultiplied) linear color and alpha, averaged over `fine` ×
 /// `fine` points per pixel.
 pub fn painted(
     (width, height): (u32, u32),
@@ -115,7 +115,7 @@ impl SoftBox {
     }
 }
 
-/// An angular map of the studio. The centre is straight behind the viewer, the circle that touches
+/// An angular map of the studio. The center is straight behind the viewer, the circle that touches
 /// the sides straight ahead.
 fn studio() -> RgbaImage {
     let side = f64::from(TEXTURE);
@@ -250,13 +250,13 @@ fn sphere_ink() -> RgbaImage {
     })
 }
 
-/// A sphere seen from the front, its colour from its normal (y up).
+/// A sphere seen from the front, its color from its normal (y up).
 fn lit_sphere(colour: impl Fn(DVec3) -> DVec3 + Sync) -> RgbaImage {
     const SIDE: f64 = 192.0;
     painted((SIDE as u32, SIDE as u32), 3, |q| {
         let (x, y) = (q.x / SIDE * 2.0 - 1.0, 1.0 - q.y / SIDE * 2.0);
         let r = x.hypot(y);
-        // The contour's colour continues beyond it, under a soft edge.
+        // The contour's color continues beyond it, under a soft edge.
         let (x, y) = if r > 0.999 { (x / r * 0.999, y / r * 0.999) } else { (x, y) };
         let n = v(x, y, (1.0 - x * x - y * y).max(0.0).sqrt());
         colour(n).extend(1.0 - smooth_step(1.0, 1.01, r))

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// Sub-samples per side of a pixel on silhouettes and creases.
 pub const SUB: usize = 4;
-/// Neighbours whose normals agree less than this (cosine) are sub-sampled.
+/// Neighbors whose normals agree less than this (cosine) are sub-sampled.
 const CREASE_COS: f64 = 0.94;
 /// A ray is on the surface closer than this; about a hundredth of a pixel.
 const HIT: f64 = 3e-5;
@@ -147,7 +147,7 @@ pub fn facing(n: DVec3) -> DVec3 {
 pub struct View {
     pub width: usize,
     pub height: usize,
-    /// The model point at the picture's centre.
+    /// The model point at the picture's center.
     pub centre: DVec2,
     /// Half the picture's width, in model units.
     pub half_width: f64,
@@ -173,7 +173,7 @@ pub struct Maps {
     pub coverage: Vec<f64>,
 }
 
-/// One pixel before normalisation; `z` and `normal` mean nothing at zero coverage.
+/// One pixel before normalization; `z` and `normal` mean nothing at zero coverage.
 #[derive(Clone, Copy)]
 struct Pixel {
     coverage: f64,
@@ -238,7 +238,7 @@ pub fn render(surface: &dyn Surface, view: &View) -> Maps {
 
 const EMPTY: Pixel = Pixel { coverage: 0.0, z: 0.0, normal: DVec3::Z };
 
-/// Whether pixel `i` and its eight neighbours see one smooth piece of surface, or nothing.
+/// Whether pixel `i` and its eight neighbors see one smooth piece of surface, or nothing.
 fn is_smooth(hits: &[Option<Hit>], w: usize, h: usize, i: usize, jump: f64) -> bool {
     let (x, y) = (i % w, i / w);
     let rows = y.saturating_sub(1)..=(y + 1).min(h - 1);
@@ -310,7 +310,7 @@ fn is_one_piece(a: Hit, b: Hit, step: f64) -> bool {
     (a.z - b.z).abs() < (2.0 * slope(a).min(slope(b)) + 4.0) * step
 }
 
-/// Normalises depth over the surface and grows the surface's values outward.
+/// Normalizes depth over the surface and grows the surface's values outward.
 fn finish(mut pixels: Vec<Pixel>, width: usize, height: usize) -> Maps {
     let covered = pixels.iter().filter(|p| p.coverage > 0.0).map(|p| p.z);
     let (far, near) =
@@ -331,7 +331,7 @@ fn finish(mut pixels: Vec<Pixel>, width: usize, height: usize) -> Maps {
     }
 }
 
-/// Empty pixels next to the surface take the mean of their neighbours on it.
+/// Empty pixels next to the surface take the mean of their neighbors on it.
 fn grown(pixels: &[Pixel], w: usize, h: usize) -> Vec<Pixel> {
     let value = |i: usize| {
         if pixels[i].coverage > 0.0 {

@@ -21,7 +21,7 @@ pub struct Sample {
     pub view: View,
 }
 
-/// Frames `surface`: a picture of `width` × `height` whose centre and half width are in model
+/// Frames `surface`: a picture of `width` × `height` whose center and half width are in model
 /// units.
 pub fn framed(
     name: &'static str,

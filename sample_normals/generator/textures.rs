@@ -140,7 +140,7 @@ pub fn bricks() -> RgbaImage {
     })
 }
 
-/// Soft grey noise for deforming. Seamless.
+/// Soft gray noise for deforming. Seamless.
 pub fn soft_noise() -> RgbaImage {
     painted((TEXTURE, TEXTURE), 3, |p| {
         let q = p / f64::from(TEXTURE) * 16.0;

@@ -8,14 +8,14 @@ const SAMPLES_PER_SPAN: usize = 6;
 /// Newton steps from the coarse minimum; four already reach 1e-10 on the sample objects.
 const NEWTON_STEPS: usize = 5;
 /// Beyond this a lower bound replaces the distance. Wider than any blend between a tube and its
-/// neighbours.
+/// neighbors.
 const FAR: f64 = 0.16;
 
 /// A tube of varying radius along a cubic B-spline.
 pub struct Tube {
     /// Control points (x, y, z, radius) with the ends repeated (open) or wrapped (closed).
     control: Vec<DVec4>,
-    /// Per span: a bounding sphere (centre, radius with the tube's own).
+    /// Per span: a bounding sphere (center, radius with the tube's own).
     bounds: Vec<(DVec3, f64)>,
     /// Per span: the coarse samples, `SAMPLES_PER_SPAN + 1` each.
     samples: Vec<DVec4>,

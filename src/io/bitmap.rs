@@ -23,11 +23,11 @@ use std::{
     path::Path,
 };
 
-/// A decoded file, with its colour profile and orientation, both not yet applied.
+/// A decoded file, with its color profile and orientation, both not yet applied.
 pub struct Bitmap {
     /// The pixels, as they are stored.
     pub image: DynamicImage,
-    /// The colour profile, if the file has one.
+    /// The color profile, if the file has one.
     pub icc: Option<Vec<u8>>,
     /// How the picture is to be turned to be seen upright.
     pub orientation: Orientation,
@@ -178,7 +178,7 @@ pub fn beside_pixels(bytes: &[u8]) -> u64 {
     PROFILE_BYTES + bytes.len() as u64
 }
 
-/// What a colour profile may unpack to. Those of printing presses have some 4 MB.
+/// What a color profile may unpack to. Those of printing presses have some 4 MB.
 const PROFILE_BYTES: u64 = 16 << 20;
 
 /// Reserves memory for decoded pixels, once as the decoder gives them and once as they are passed

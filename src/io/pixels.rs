@@ -88,12 +88,12 @@ pub fn strips(rect: Rect) -> impl Iterator<Item = Rect> {
     })
 }
 
-/// A mask as a grey PNG.
+/// A mask as a gray PNG.
 pub fn encode_coverage(file: &Path, plane: &Plane<u8>) -> Result<Asset> {
     checked(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), PngKind::GREY8)
 }
 
-/// Straight RGBA texels as a PNG, the colours of transparent ones kept.
+/// Straight RGBA texels as a PNG, the colors of transparent ones kept.
 pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asset> {
     checked(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, PngKind::RGBA8)
 }
@@ -265,7 +265,7 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     Some(Painted { size, tiles, warning: None })
 }
 
-/// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colours. `whole`:
+/// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colors. `whole`:
 /// the greatest sample.
 fn to_rgba<T: Copy>(
     stored: &[T],
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn premultiplied_pixels_come_back_as_they_were() {
-        // Every alpha with every colour it allows.
+        // Every alpha with every color it allows.
         let premultiplied: Vec<u8> =
             (0..=255u8).flat_map(|a| (0..=a).flat_map(move |c| [c, a - c, 0, a])).collect();
         let mut tiles = TileGrid::default();

@@ -15,7 +15,7 @@ enum IconPart {
     Line(&'static [IconPoint]),
     Closed(&'static [IconPoint]),
     Filled(&'static [IconPoint]),
-    /// Centre and radius.
+    /// Center and radius.
     Circle(IconPoint, f32),
     Dot(IconPoint, f32),
 }

@@ -259,7 +259,7 @@ impl Composer<'_> {
             onto.mix_toward(&after, coverage);
             return ComposeFlow::Continue(());
         }
-        // The changed colours are blended with those before, wherever these are; alpha stays.
+        // The changed colors are blended with those before, wherever these are; alpha stays.
         after.make_opaque();
         let mix = Mix { mode: blend, linear, atop: true, ..Mix::default() }.on(self.at);
         self.blend(onto, mix, TilePaint::Planar(&after), coverage);

@@ -135,7 +135,7 @@ impl DeepTiles {
         TileContent::Group(found)
     }
 
-    /// The straight encoded colour above which light is clipped.
+    /// The straight encoded color above which light is clipped.
     pub fn brightest(&self) -> f32 {
         match self.highlights {
             Highlights::Clipped => 1.0,

@@ -156,9 +156,9 @@ impl<'c> FarTile<'c> {
     }
 
     /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10). Where one
-    /// of them sees no surface, the share is an opacity, wherever the pixel's centre lies.
+    /// of them sees no surface, the share is an opacity, wherever the pixel's center lies.
     ///
-    /// * `brightest`: the straight encoded colour above which light is clipped; 1 is white.
+    /// * `brightest`: the straight encoded color above which light is clipped; 1 is white.
     pub fn mix_into(&self, other: &PlanarTile, own: &mut PlanarTile, brightest: f32) {
         let corner = self.at.rect();
         for (place, pixel) in self.places() {

@@ -59,7 +59,7 @@ pub struct Layer {
     pub visible: bool,
     /// `[0, 1]`.
     pub opacity: f32,
-    /// How its colour is blended with what lies beneath.
+    /// How its color is blended with what lies beneath.
     pub blend: BlendMode,
     /// Blend linear light instead of encoded values.
     pub blend_linear: bool,
@@ -69,7 +69,7 @@ pub struct Layer {
     pub lock: LayerLock,
     /// What its coverage is multiplied by; absent: nothing.
     pub mask: Option<LayerMask>,
-    /// A colour by which it is found in the list.
+    /// A color by which it is found in the list.
     pub label: LayerLabel,
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
@@ -145,7 +145,7 @@ crate::named! {
 }
 
 crate::named! {
-    /// The colour of a layer's label.
+    /// The color of a layer's label.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum LayerLabel {
         #[default]

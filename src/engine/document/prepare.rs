@@ -59,7 +59,7 @@ pub(super) struct AdjustmentLayer {
 }
 
 impl PreparedDocument {
-    /// Resolves the layers and measures what adjustments refer to; `None` if cancelled meanwhile.
+    /// Resolves the layers and measures what adjustments refer to; `None` if canceled meanwhile.
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
         let mut builder = StackBuilder { adjustments: Vec::new(), progress };
         let scope = Scope { beneath: Beneath::NOTHING, map: LayerMap::none(document.size) };
@@ -218,7 +218,7 @@ impl StackBuilder<'_> {
 }
 
 /// Whether a displaced layer is composed undisplaced and then sampled: paint is sampled directly,
-/// and one colour is the same everywhere.
+/// and one color is the same everywhere.
 fn is_composed_first(layer: &Layer) -> bool {
     layer.content.can_be_warped() && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_))
 }

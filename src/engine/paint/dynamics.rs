@@ -28,7 +28,7 @@ crate::named! {
         Rotation = "rotation",
         Scatter = "scatter",
         Softness = "softness",
-        /// A curve's 1 is a full turn of the colour wheel.
+        /// A curve's 1 is a full turn of the color wheel.
         Hue = "hue",
         Saturation = "saturation",
         Value = "value",
@@ -40,7 +40,7 @@ crate::named! {
         Detail = "detail",
         /// Of a round, elliptic or square tip: the longer side over the shorter one.
         Elongation = "elongation",
-        /// HSL lightness of the colour.
+        /// HSL lightness of the color.
         Lightness = "lightness",
         /// How far sizes vary, see [`super::Brush::size_jitter`].
         SizeJitter = "size-jitter",

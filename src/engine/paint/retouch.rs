@@ -1,7 +1,7 @@
 //! Smudge, blur, clone, and brushes that pick up paint: they work on existing paint. Dab by dab
 //! through the same bent footprint as paint, each on the result of the last one, in f32, rounded
-//! when it is shown. Floor 3. `drag` says where smudge and clone take a pixel's colour from,
-//! `soften` how blur changes it, `pickup` which colour a dab paints, `pixels` holds the pixels. Not
+//! when it is shown. Floor 3. `drag` says where smudge and clone take a pixel's color from,
+//! `soften` how blur changes it, `pickup` which color a dab paints, `pixels` holds the pixels. Not
 //! here: what the pen did (`tools`).
 
 mod drag;
@@ -234,7 +234,7 @@ impl RetouchStroke {
         changed
     }
 
-    /// The brush's own colour, which varies only after mixing.
+    /// The brush's own color, which varies only after mixing.
     fn brush_color(&self, dab: &Dab) -> Color {
         if tint::has_varied_color(&self.brush) { self.color } else { dab.color }
     }
@@ -288,7 +288,7 @@ impl TileDab {
     }
 }
 
-/// Moves the covered pixels of a tile toward new colours, one for each pixel of the touched area,
+/// Moves the covered pixels of a tile toward new colors, one for each pixel of the touched area,
 /// row by row.
 fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha: bool) {
     let (corner, area) = (touch.at.rect(), touch.area);
@@ -302,7 +302,7 @@ fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha:
     }
 }
 
-/// A premultiplied pixel moved by a ratio toward a colour; if it keeps its alpha, only hue and
+/// A premultiplied pixel moved by a ratio toward a color; if it keeps its alpha, only hue and
 /// brightness change.
 fn toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f32; 4] {
     let mixed: [f32; 4] = std::array::from_fn(|c| pixel[c] + (color[c] - pixel[c]) * share);
@@ -310,7 +310,7 @@ fn toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f
         return mixed;
     }
     let scale = if mixed[3] > 0.0 { pixel[3] / mixed[3] } else { 0.0 };
-    // Paint of another alpha is weighted by its alpha; colours stay within the pixel's alpha.
+    // Paint of another alpha is weighted by its alpha; colors stay within the pixel's alpha.
     [0, 1, 2, 3].map(|c| if c == 3 { pixel[3] } else { (mixed[c] * scale).min(pixel[3]) })
 }
 

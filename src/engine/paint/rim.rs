@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex};
 /// Where a stroke of such dabs ends, in radii of the dab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rim {
-    /// Distance from the dab's centre at which the stroke's coverage has risen halfway.
+    /// Distance from the dab's center at which the stroke's coverage has risen halfway.
     pub edge: f32,
     /// The width over which it rises.
     pub width: f32,
@@ -35,7 +35,7 @@ impl Rim {
     /// without shares 170 and 99).
     const SHARP: f32 = 1.2;
 
-    /// The share of a pixel that the stroke may reach, in `[0, 1]`. `r`: distance from the centre,
+    /// The share of a pixel that the stroke may reach, in `[0, 1]`. `r`: distance from the center,
     /// `width`: the pixel's along the radius; in radii.
     #[inline(always)]
     pub fn share(self, r: f32, width: f32) -> f32 {

@@ -1,4 +1,4 @@
-//! The brush tool: a stroke is a list of dabs, each a footprint bent around its own centre (SF sec.
+//! The brush tool: a stroke is a list of dabs, each a footprint bent around its own center (SF sec.
 //! 5.2, fig. 7). Floor 3. Not here: dabs from samples (`dab_walker`), one dab on a tile (`dab`).
 
 mod active;
@@ -53,7 +53,7 @@ impl Stroke {
     pub const MOST_SAMPLES: usize = 1_000_000;
 
     /// The stroke of a brush along the samples of a pen, each dab bent by an operator around its
-    /// own centre.
+    /// own center.
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
         Self { brush, operator, color, samples, selection: None, home: None, found: Arc::default() }
     }
@@ -88,7 +88,7 @@ impl Stroke {
         self.operator
     }
 
-    /// The colour of one-colour tips; for a stamp only its alpha counts.
+    /// The color of one-color tips; for a stamp only its alpha counts.
     pub fn color(&self) -> Color {
         self.color
     }
@@ -244,12 +244,12 @@ impl Stroke {
 
 /// One tile of a stroke layer, the first stroke lowest. `None` if it is transparent.
 ///
-/// Each stroke accumulates in f32; the tile is quantised once.
+/// Each stroke accumulates in f32; the tile is quantized once.
 pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<Tile> {
     render_pixels(strokes, scene, at)?.quantised()
 }
 
-/// The same before it is quantised; `None` if no stroke touches the tile.
+/// The same before it is quantized; `None` if no stroke touches the tile.
 pub fn render_pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<PlanarTile> {
     let front = scene.front();
     let mut here = strokes.iter().filter(|s| s.can_touch(&front, at)).peekable();

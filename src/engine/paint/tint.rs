@@ -1,4 +1,4 @@
-//! The colour of one dab: the stroke's, turned round the wheel and jittered (HSV of the encoded
+//! The color of one dab: the stroke's, turned round the wheel and jittered (HSV of the encoded
 //! values). Floor 3.
 
 use super::brush::Brush;
@@ -8,7 +8,7 @@ use crate::math::{
     srgb::{Color, quantise},
 };
 
-/// Whether dabs of this brush differ in colour.
+/// Whether dabs of this brush differ in color.
 pub fn has_varied_color(brush: &Brush) -> bool {
     let jitter = brush.jitter;
     let jitters = [jitter.hue_degrees, jitter.saturation, jitter.value].iter().any(|&v| v > 0.0);
@@ -16,7 +16,7 @@ pub fn has_varied_color(brush: &Brush) -> bool {
     jitters || driven.iter().any(|&property| brush.dynamics.is_driven(property))
 }
 
-/// The colour of a dab; alpha stays the stroke's.
+/// The color of a dab; alpha stays the stroke's.
 pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     let unit = |v: f32| v.max(0.0).min(1.0);
     let either_way = |channel: u32| 2.0 * hash::unit(inputs.seed, channel, 2) - 1.0;
@@ -37,7 +37,7 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     Color { r, g, b, ..color }
 }
 
-/// The same colour at the driven lightness (HSL), with the same HSL saturation.
+/// The same color at the driven lightness (HSL), with the same HSL saturation.
 fn lightened([h, s, v]: [f32; 3], dynamics: &Dynamics, inputs: &DabInputs) -> [f32; 3] {
     let share = |part: f32, whole: f32| if whole > 0.0 { part / whole } else { 0.0 };
     let lightness = v * (1.0 - 0.5 * s);

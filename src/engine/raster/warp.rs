@@ -52,7 +52,7 @@ pub trait PixelMap: Sync {
     /// The point of the source that a point of the canvas shows, and how it moves with that point;
     /// `None` if there is none.
     fn source_of(&self, q: Vec2) -> Option<(Vec2, Mat2)>;
-    /// The same for the centres of `count` pixels from `(x, y)` on, at most a tile's side.
+    /// The same for the centers of `count` pixels from `(x, y)` on, at most a tile's side.
     fn source_row(&self, x: i32, y: i32, count: usize, row: &mut PointRow) {
         row.fill_by_points(self, x, y, count);
     }
@@ -131,7 +131,7 @@ fn deep_rows(pixels: &TileF32) -> Box<[DeepRow]> {
 }
 
 crate::widest! {
-    /// Premultiplied colours limited to their alpha, which rings of a cubic may exceed.
+    /// Premultiplied colors limited to their alpha, which rings of a cubic may exceed.
     fn within_range(row: &[[f32; 4]], out: &mut [[f32; 4]]) {
         for (out, value) in out.iter_mut().zip(row) {
             let alpha = min(max(value[3], 0.0), 1.0);

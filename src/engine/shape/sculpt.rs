@@ -190,7 +190,7 @@ impl SculptPlane {
     }
 }
 
-/// The covered pixels under a dab: their centres in px of the planes, column and row.
+/// The covered pixels under a dab: their centers in px of the planes, column and row.
 fn pixels_of(
     form: &Form,
     center: Vec2,

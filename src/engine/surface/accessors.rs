@@ -88,7 +88,7 @@ impl Surface {
             && self.coverage_plane() == other.coverage_plane()
     }
 
-    /// For each pixel, which of its four neighbours continue the same surface: bits of [`links`].
+    /// For each pixel, which of its four neighbors continue the same surface: bits of [`links`].
     pub fn links_plane(&self) -> &Plane<u8> {
         &self.links
     }

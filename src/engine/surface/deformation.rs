@@ -73,7 +73,7 @@ impl<'a> Deformation<'a> {
         })
     }
 
-    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the
+    /// D of a dab, its one anchor at the center `at` with weight 1. Off the surface it reads the
     /// nearest surface values, so that a stroke continues over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         // The many dabs that nothing bends allocate no memory.
@@ -164,7 +164,7 @@ impl<'a> Deformation<'a> {
         self.origin
     }
 
-    /// The centre of a pixel of the canvas.
+    /// The center of a pixel of the canvas.
     fn centre(&self, x: i32, y: i32) -> Vec2 {
         vec2(x.wrapping_sub(self.origin.0) as f32, y.wrapping_sub(self.origin.1) as f32) + 0.5
     }
@@ -182,7 +182,7 @@ impl<'a> Deformation<'a> {
                 || !bends && self.pins.iter().all(|p| p.anchor.source == p.anchor.at))
     }
 
-    /// D(q) at the centre of a pixel: the reference that reads like the paper.
+    /// D(q) at the center of a pixel: the reference that reads like the paper.
     ///
     /// MATH 2 (SF eq. 13, 15): `D(q) = q + Σ_i w_i(q) [ offset_i(q) + (s_i − q_i) ]`. Canvas px.
     pub fn at(&self, x: i32, y: i32) -> Vec2 {
@@ -204,7 +204,7 @@ impl<'a> Deformation<'a> {
         self.reach.map_or(d, |reach| reach.limit(q, d))
     }
 
-    /// ∂D/∂q at the centre of a pixel, columns along x and y; a plain ratio. The maps are
+    /// ∂D/∂q at the center of a pixel, columns along x and y; a plain ratio. The maps are
     /// differenced within the piece of surface that holds the pixel, the weights analytically.
     ///
     /// `J = I + Σ_i [ w_i ∂offset_i/∂q + (offset_i + s_i − q_i) ∇w_iᵀ ]`.
@@ -226,7 +226,7 @@ impl<'a> Deformation<'a> {
         jacobian
     }
 
-    /// D at every pixel centre of `rect`, which may reach beyond the canvas; within 10⁻⁴ px of
+    /// D at every pixel center of `rect`, which may reach beyond the canvas; within 10⁻⁴ px of
     /// [`Deformation::at`] on canvases up to 1024 px, and to f32's precision beyond.
     pub fn fill(&self, rect: Rect, out: &mut DeformedRect) {
         self.fill_rows(rect, |_| rect.x0..rect.x1, false, out);
@@ -290,7 +290,7 @@ impl<'a> Deformation<'a> {
         self.surface.is_some_and(|surface| surface.as_far_side().is_some())
     }
 
-    /// The centres q of a row's pixels from column `x` on, canvas px; for a far side, of its readings.
+    /// The centers q of a row's pixels from column `x` on, canvas px; for a far side, of its readings.
     fn place(&self, x: i32, y: i32, q_x: &mut [f32], q_y: &mut [f32]) {
         match self.surface.filter(|_| self.is_on_far_side()) {
             Some(far) if y >= 0 => {

@@ -1,5 +1,5 @@
 //! Krita's presets: a PNG whose text holds the settings as XML, and within them the tip as XML
-//! again. Floor 5. Reads presets of the pixel, colour smudge and clone brushes with generated tips;
+//! again. Floor 5. Reads presets of the pixel, color smudge and clone brushes with generated tips;
 //! a tip that is one of Krita's own files is not in the preset, and becomes a round one with a
 //! note.
 
@@ -214,7 +214,7 @@ fn tip(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     Brush { spacing: spacing.max(0.01).min(10.0), ..brush }
 }
 
-/// A colour smudge preset: what is not its own colour was picked up.
+/// A color smudge preset: what is not its own color was picked up.
 fn pickup(preset: &KppPreset) -> Pickup {
     if preset.engine != "colorsmudge" {
         return Pickup::default();

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::io::Cursor;
 use std::path::Path;
 
-/// The bytes of the EXR; `None` if cancelled. The whole picture is in R, G, B and A; colours are
+/// The bytes of the EXR; `None` if canceled. The whole picture is in R, G, B and A; colors are
 /// linear floats of 16 or 32 `bits`, multiplied by alpha, each layer with its own opacity and mask;
 /// normals and depth have 32 bits.
 pub fn encode(

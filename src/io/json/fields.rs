@@ -191,7 +191,7 @@ impl<'a> JsonNode<'a> {
         self.numbers(3, 3, range).map(|v| vec3(v[0], v[1], v[2]))
     }
 
-    /// A colour such as `#c08060`.
+    /// A color such as `#c08060`.
     pub fn color(&self) -> Result<Color> {
         let text = self.text()?;
         Color::parse(text).ok_or_else(|| {
@@ -255,7 +255,7 @@ impl<'a> Fields<'a> {
         self.get(name).map_or(Ok(default), |node| node.boolean())
     }
 
-    /// A colour, or the default where it is absent.
+    /// A color, or the default where it is absent.
     pub fn color(&mut self, name: &'static str, default: Color) -> Result<Color> {
         self.get(name).map_or(Ok(default), |node| node.color())
     }

@@ -258,7 +258,7 @@ pub struct NormalizedDepth {
     pub far: f32,
 }
 
-/// Normalises planar depth over the surface, near 0, far 1. If stray pixels would flatten the rest
+/// Normalizes planar depth over the surface, near 0, far 1. If stray pixels would flatten the rest
 /// (the range from the 0.1th to the 99.9th percentile is under half of the full one), that range is
 /// used, with a note.
 ///

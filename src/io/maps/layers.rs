@@ -72,7 +72,7 @@ pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
 const MOST_BANDS: usize = 8;
 const MOST_LENGTH_ERROR: f64 = 0.1;
 
-/// Colours whose name does not mention normals may be anything, such as the finished picture:
+/// Colors whose name does not mention normals may be anything, such as the finished picture:
 /// whether they are vectors of length 1, as stored or about ½. Other layers are judged by their
 /// names.
 fn can_be_normals(exr: &ExrFile, pass: &ExrPass) -> bool {

@@ -210,7 +210,7 @@ fn find_depth_polarity(overrides: Option<bool>, leaning: f32, findings: &mut Fin
 }
 
 impl UnderstoodMaps {
-    /// Normalises depth and derives the map that is missing. If cancelled meanwhile, the result is
+    /// Normalizes depth and derives the map that is missing. If canceled meanwhile, the result is
     /// of no use.
     pub fn completed(
         self,

@@ -28,7 +28,7 @@ pub const KEYS: [[u8; 4]; 17] = [
 ];
 /// The newer numbers of brightness and contrast; elsewhere only the name of a preset.
 pub const NEWER: [u8; 4] = *b"CgEd";
-/// The most colours of a gradient map.
+/// The most colors of a gradient map.
 const MOST_STOPS: u16 = 1000;
 
 /// Reads a block; `None` where it holds what is not understood.
@@ -108,7 +108,7 @@ fn float(data: &mut ByteCursor) -> Option<f32> {
     data.u32().map(f32::from_bits).filter(|value| value.is_finite())
 }
 
-/// All channels, then each; what follows is for more channels than colours have here.
+/// All channels, then each; what follows is for more channels than colors have here.
 fn levels(data: &mut ByteCursor) -> Option<Levels> {
     data.u16().filter(|version| *version == 2)?;
     let mut range = || {
@@ -205,7 +205,7 @@ fn black_white(data: &mut ByteCursor, colours: &Colours) -> Option<BlackWhite> {
     })
 }
 
-/// A colour in one of the ways of older blocks: what its numbers mean, then four of them.
+/// A color in one of the ways of older blocks: what its numbers mean, then four of them.
 fn colour(data: &mut ByteCursor, colours: &Colours) -> Option<Color> {
     let space = data.u16()?;
     let [a, b, c, _] = [data.u16()?, data.u16()?, data.u16()?, data.u16()?];
@@ -224,7 +224,7 @@ fn colour(data: &mut ByteCursor, colours: &Colours) -> Option<Color> {
     }
 }
 
-/// Density in percent. Version 3 says its colour in XYZ, D50, of 65536ths.
+/// Density in percent. Version 3 says its color in XYZ, D50, of 65536ths.
 fn photo_filter(data: &mut ByteCursor, colours: &Colours) -> Option<PhotoFilter> {
     let color = match data.u16()? {
         2 => colour(data, colours)?,
@@ -288,7 +288,7 @@ fn gradient_map(data: &mut ByteCursor, colours: &Colours) -> Option<GradientMap>
     let reverse = data.u8()? != 0;
     data.u8()?;
     if version == 3 {
-        // How colours between stops are found: here always straight.
+        // How colors between stops are found: here always straight.
         data.key()?;
     }
     data.unicode()?;

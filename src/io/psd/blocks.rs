@@ -149,7 +149,7 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
     }
 }
 
-/// An artboard's rectangle and colour.
+/// An artboard's rectangle and color.
 fn ground(mut data: ByteCursor, colours: &Colours) -> Option<ArtboardBackground> {
     let board = descriptor::read(&mut data)?;
     let rect = board.object("artboardRect")?;

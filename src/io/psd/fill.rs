@@ -1,4 +1,4 @@
-//! Fill layers: one colour, a gradient or a pattern, read from descriptors. Floor 5. Not here: the
+//! Fill layers: one color, a gradient or a pattern, read from descriptors. Floor 5. Not here: the
 //! pictures of patterns (`pattern`).
 
 use super::colours::{Colours, Mode};
@@ -50,7 +50,7 @@ pub struct PatternFill {
     pub phase: Vec2,
 }
 
-/// Stops from one that the file names to the next: colours and opacities have middles of their own,
+/// Stops from one that the file names to the next: colors and opacities have middles of their own,
 /// where ramps bend.
 const BETWEEN: usize = 8;
 /// No real gradient has more stops.
@@ -79,7 +79,7 @@ fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
     object.number(name).map_or(absent, |percent| percent / 100.0)
 }
 
-/// A colour in any of the ways that descriptors say one.
+/// A color in any of the ways that descriptors say one.
 pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
     let byte = |v: f32, full: f32| srgb::quantise(v / full);
     let all = |names: [&str; 3]| {
@@ -105,7 +105,7 @@ pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
     Some(in_mode(Mode::Grey, [grey, 0, 0, 0]))
 }
 
-/// A colour of one mode, of a file in perhaps another.
+/// A color of one mode, of a file in perhaps another.
 fn in_mode(mode: Mode, values: [u8; 4], colours: &Colours) -> Color {
     let channels = usize::from(mode.channels());
     let icc = colours.icc.filter(|_| colours.mode == mode);
@@ -115,14 +115,14 @@ fn in_mode(mode: Mode, values: [u8; 4], colours: &Colours) -> Color {
     Color { r: rgba[0], g: rgba[1], b: rgba[2], a: 255 }
 }
 
-/// A colour of Lab, L to 100.
+/// A color of Lab, L to 100.
 pub fn lab_colour([l, a, b]: [f32; 3], colours: &Colours) -> Color {
     let byte = |v: f32, full: f32| srgb::quantise(v / full);
     let values = [byte(l, 100.0), byte(a + 128.0, 255.0), byte(b + 128.0, 255.0), 0];
     in_mode(Mode::Lab, values, colours)
 }
 
-/// A colour of CIE XYZ relative to D50.
+/// A color of CIE XYZ relative to D50.
 pub fn xyz_colour([x, y, z]: [f32; 3], colours: &Colours) -> Color {
     // The white point of D50, and CIE's curve of lightness.
     let f = |v: f32| if v > 0.008_856 { v.cbrt() } else { 7.787 * v + 16.0 / 116.0 };
@@ -171,7 +171,7 @@ pub struct Mark<T> {
     pub value: T,
 }
 
-/// The ramp's colours and opacities as stops of colours with alpha; `None` of noise.
+/// The ramp's colors and opacities as stops of colors with alpha; `None` of noise.
 fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>> {
     let place = |object: &DescriptorObject| {
         let t = object.number("Lctn")? / 4096.0;
@@ -191,7 +191,7 @@ fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>
     self::ramp(inks, opacities)
 }
 
-/// Colours and opacities as stops of colours with alpha; `None` without a colour.
+/// Colors and opacities as stops of colors with alpha; `None` without a color.
 pub fn ramp(
     mut inks: Vec<Mark<[f32; 3]>>,
     mut opacities: Vec<Mark<[f32; 1]>>,
@@ -275,7 +275,7 @@ impl GradientFill {
         out
     }
 
-    /// The colour of a pixel.
+    /// The color of a pixel.
     pub fn colour_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
         let [r, g, b, a] =
             self.at(self.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));

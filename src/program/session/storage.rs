@@ -1,5 +1,5 @@
 //! Opens and saves documents: projects, recipes, pictures, maps. Floor 6. Here a file's format and
-//! use are recognised. Not here: the formats (`io`).
+//! use are recognized. Not here: the formats (`io`).
 
 mod endings;
 mod maps;
@@ -41,7 +41,7 @@ pub enum FileUse {
     Picture,
     /// A map of normals, alone or with depth.
     Normals,
-    /// Perhaps a depth map: grey, and named like one.
+    /// Perhaps a depth map: gray, and named like one.
     Depth,
 }
 
@@ -55,7 +55,7 @@ pub struct OpenedFile {
     pub drawing: Option<DrawingTraits>,
 }
 
-/// Recognises a dropped or opened file by its extension, its contents and its name.
+/// Recognizes a dropped or opened file by its extension, its contents and its name.
 pub fn kind_of(file: &Path) -> Result<FileUse> {
     if is_document(file) {
         return Ok(FileUse::Document);
@@ -184,7 +184,7 @@ fn clay(size: Size) -> Gradient {
     }
 }
 
-/// Saves a document; `None` if cancelled.
+/// Saves a document; `None` if canceled.
 pub fn save(
     file: &Path,
     document: &Document,

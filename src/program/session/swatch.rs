@@ -101,7 +101,7 @@ fn is_dark(color: Color) -> bool {
 }
 
 /// A brush at the scale of a small picture: its sizes shrink with it, as far as they stay
-/// recognisable.
+/// recognizable.
 pub fn scaled(brush: &Brush, scale: f32, side: f32) -> Brush {
     let size = (brush.size * scale).max(SIZES[0] * side).min(SIZES[1] * side);
     let shrunk = size / brush.size;

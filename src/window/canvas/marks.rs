@@ -114,7 +114,7 @@ pub fn draw_unwrapped(
     }
 }
 
-/// The outline of a dab and its centre.
+/// The outline of a dab and its center.
 fn footprint(
     painter: &Painter,
     lines: Vec<[Vec2; 2]>,
@@ -134,7 +134,7 @@ fn footprint(
     painter.circle_filled(center, 1.2, Color32::WHITE);
 }
 
-/// The current colour, around the point where another is picked.
+/// The current color, around the point where another is picked.
 fn picked(painter: &Painter, session: &Session, at: Pos2) {
     painter.circle_stroke(at, 14.0, Stroke::new(4.0, color32(session.tools.color)));
     painter.circle_stroke(at, 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
@@ -277,7 +277,7 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
     }
 }
 
-/// The colours that distinguish anchors, here and in their insets (SF fig. 9).
+/// The colors that distinguish anchors, here and in their insets (SF fig. 9).
 pub fn anchor_color(index: usize) -> Color32 {
     let [r, g, b] =
         crate::document::view::anchor_color(index).to_array().map(crate::math::srgb::quantise);

@@ -1,4 +1,4 @@
-//! Gives a drawing its first shape: one part, or one per colour or place, as a pillow, tube, relief
+//! Gives a drawing its first shape: one part, or one per color or place, as a pillow, tube, relief
 //! or coin. Floor 7. Not here: what becomes of it (`session::actions::parts::first`).
 
 use super::{DialogAnswer, answers};

@@ -119,7 +119,7 @@ impl CurveSquare<'_> {
             .flatten()
             .filter(|i| moves && *i < points.len())?;
         let to = in_square(at?);
-        // A point stays between its neighbours.
+        // A point stays between its neighbors.
         let least = i.checked_sub(1).map_or(0.0, |before| points[before].x + self.least_distance());
         let most = points.get(i + 1).map_or(1.0, |after| after.x - self.least_distance());
         points[i] = vec2(to.x.min(most).max(least), to.y);

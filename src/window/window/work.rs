@@ -250,7 +250,7 @@ impl MainWindow {
                 Action::Canvas(action) => action.long_step(&from, progress),
                 _ => None,
             };
-            // What follows from it is made here, where it can be cancelled, and not when the edit
+            // What follows from it is made here, where it can be canceled, and not when the edit
             // is kept.
             let shaped = |edit: Edit| {
                 Some(Edit { document: edit.document.reshaped_with_progress(progress)?, ..edit })
@@ -370,7 +370,7 @@ impl MainWindow {
     }
 }
 
-/// Whether a picture is the one put there. Clipboards may lose the colours of transparent pixels.
+/// Whether a picture is the one put there. Clipboards may lose the colors of transparent pixels.
 fn is_own(picture: &Picture, rgba: &[u8]) -> bool {
     let Texels::Srgb8(texels) = &picture.texels else { return false };
     let same = |(a, b): (&[u8; 4], &[u8; 4])| a == b || (a[3] == 0 && b[3] == 0);

@@ -22,7 +22,7 @@ fn drawing() -> TileGrid {
     TileGrid::from_straight_rgba(&rgba, 80, 64, 0, 0)
 }
 
-/// The drawing, a grey that multiplies it, and its lines on top of that.
+/// The drawing, a gray that multiplies it, and its lines on top of that.
 fn lit() -> Document {
     let base = Layer {
         blend: crate::raster::BlendMode::Multiply,

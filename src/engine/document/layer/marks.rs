@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// What a live layer is rendered from.
 pub(in crate::document) trait Marks {
-    /// One tile, not rounded to bytes; `None` where there is nothing. Colours may be brighter than
+    /// One tile, not rounded to bytes; `None` where there is nothing. Colors may be brighter than
     /// white.
     fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile>;
     /// Where another population of a contour pixel sees no surface the tile's own pixels stay.

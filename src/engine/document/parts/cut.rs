@@ -75,7 +75,7 @@ impl Document {
         Ok((next.with_ink_layers_of(&drawing.name, &lined).reshaped(), id))
     }
 
-    /// The drawing that a part has a colour of, if it can be cut by parts.
+    /// The drawing that a part has a color of, if it can be cut by parts.
     pub fn drawing_to_cut(&self, part: &Part) -> Option<LayerId> {
         let OutlineSource::Layer { layer, color: Some(_) } =
             part.outline().filter(|_| part.on().is_none())?

@@ -1,5 +1,5 @@
-//! What a drawing is before it has a shape: whether its background is transparent or of one colour,
-//! and whether it has flat colours. Floor 4. Not here: which parts are made of it (`flats`).
+//! What a drawing is before it has a shape: whether its background is transparent or of one color,
+//! and whether it has flat colors. Floor 4. Not here: which parts are made of it (`flats`).
 
 use super::from_flats::LEAST_FLAT;
 use crate::math::srgb::Color;
@@ -14,11 +14,11 @@ use crate::shape::flats::shares::{Flats, bytes};
 pub enum FigureBackground {
     /// Nothing: the alpha is the outline.
     Transparent,
-    /// One opaque colour, along the whole border.
+    /// One opaque color, along the whole border.
     Flat(Color),
-    /// One opaque colour, and nothing on it: there is no figure.
+    /// One opaque color, and nothing on it: there is no figure.
     Bare(Color),
-    /// Many colours, as in a photograph: there is no outline.
+    /// Many colors, as in a photograph: there is no outline.
     Painted,
     /// Neither figure nor outline.
     Empty,
@@ -29,7 +29,7 @@ pub enum FigureBackground {
 pub struct DrawingTraits {
     /// What is behind the figure.
     pub background: FigureBackground,
-    /// Flat colours of the figure that are large enough to be parts.
+    /// Flat colors of the figure that are large enough to be parts.
     pub colors: usize,
     /// The share of the figure that lies in their areas, `[0, 1]`.
     pub flat_share: f32,
@@ -37,7 +37,7 @@ pub struct DrawingTraits {
 
 /// A pixel less opaque than this is background.
 const OPAQUE: u8 = 128;
-/// The share of the border that must have the colour of a flat background.
+/// The share of the border that must have the color of a flat background.
 const LEAST_BORDER: f32 = 0.9;
 /// The share of the picture that must be transparent, so that the rest is a figure; and the share
 /// that must be figure.
@@ -64,7 +64,7 @@ impl DrawingTraits {
         let background = FigureBackground::of(tiles, canvas);
         let without_colors = |background| Self { background, colors: 0, flat_share: 0.0 };
         let figure = match background {
-            // A photograph has as many colours as pixels; none of them will be a part.
+            // A photograph has as many colors as pixels; none of them will be a part.
             FigureBackground::Empty | FigureBackground::Bare(_) | FigureBackground::Painted => {
                 return without_colors(background);
             }
@@ -92,7 +92,7 @@ impl DrawingTraits {
         self.flat_share >= LEAST_FLAT
     }
 
-    /// Whether its colours are worth a part each.
+    /// Whether its colors are worth a part each.
     pub fn is_of_flats(&self) -> bool {
         self.colors > 1 && self.has_flats()
     }
@@ -104,13 +104,13 @@ fn opaque(tiles: &TileGrid, canvas: Size) -> usize {
     (y0..y1).map(|y| (x0..x1).filter(|x| tiles.pixel(*x, y)[3] >= OPAQUE).count()).sum()
 }
 
-/// Whether every pixel of the canvas has a colour, as nearly as one can tell.
+/// Whether every pixel of the canvas has a color, as nearly as one can tell.
 fn is_all(tiles: &TileGrid, canvas: Size, color: Color) -> bool {
     let (color, Rect { x0, y0, x1, y1 }) = (bytes(color), canvas.rect());
     (y0..y1).all(|y| (x0..x1).all(|x| is_near(tiles.pixel(x, y), color)))
 }
 
-/// The opaque colour that nearly all of the canvas's border has.
+/// The opaque color that nearly all of the canvas's border has.
 fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
     let (w, h) = (canvas.width as i32, canvas.height as i32);
     let border: Vec<[u8; 4]> = (0..w)
@@ -128,7 +128,7 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
 }
 
 /// A picture without its flat background, as far as that is joined to the border. Over the
-/// background's colour it looks as before: pixels at its edge lose just the background's share in
+/// background's color it looks as before: pixels at its edge lose just the background's share in
 /// them.
 pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
     let color = bytes(background);
@@ -164,7 +164,7 @@ fn squared_difference(a: [u8; 4], b: [u8; 4]) -> i32 {
     a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum()
 }
 
-/// A premultiplied pixel without a share (of 255) of another colour.
+/// A premultiplied pixel without a share (of 255) of another color.
 fn unmixed(pixel: [u8; 4], of: [u8; 4], share: u8) -> [u8; 4] {
     let part = |c: usize| (f32::from(of[c]) * f32::from(share) / 255.0).round() as u8;
     let alpha = pixel[3].saturating_sub(part(3));
@@ -177,7 +177,7 @@ mod tests {
 
     const CANVAS: Size = Size { width: 60, height: 50 };
 
-    /// A disc with a soft edge and a hole of the background's colour, on a background.
+    /// A disc with a soft edge and a hole of the background's color, on a background.
     fn drawn(background: [u8; 4], disc: [f32; 3]) -> TileGrid {
         let pixel = |i: usize| {
             let (x, y) = ((i % 60) as f32 + 0.5, (i / 60) as f32 + 0.5);

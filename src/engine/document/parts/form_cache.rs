@@ -100,7 +100,7 @@ pub struct MadePart {
     /// Its outline, if it is made of one, and the parts in front, at which its rim may be free.
     pub outline: Option<Arc<Outline>>,
     pub met: Vec<PlacedOutline>,
-    /// Its place no longer has its colour.
+    /// Its place no longer has its color.
     pub is_lost: bool,
     /// How far the form was moved from the outline's place, whole px.
     pub moved: (i32, i32),

@@ -106,7 +106,7 @@ fn strong(marks: &Plane<FlowPixel>, covered: impl Fn(usize, usize) -> bool) -> f
     sample.select_nth_unstable_by(at, f32::total_cmp).1.max(1e-4)
 }
 
-/// The colour of a direction; opposite directions have the same. Horizontal is red, and hues run
+/// The color of a direction; opposite directions have the same. Horizontal is red, and hues run
 /// counter-clockwise as seen.
 fn hue(direction: Vec2) -> Vec3 {
     let turn = (-direction.y).atan2(direction.x) / std::f32::consts::PI;

@@ -17,7 +17,7 @@ use crate::surface::{Curvature, Operator};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// The smallest step between dabs. Below it neighbouring dabs of any size do not differ by a byte.
+/// The smallest step between dabs. Below it neighboring dabs of any size do not differ by a byte.
 pub(super) const MIN_STEP_PX: f32 = 0.1;
 /// Dabs are on a grid as fine as f32 resolves positions on canvases of 4096 px.
 const STEPS_PER_PX: f32 = 4096.0;
@@ -178,7 +178,7 @@ impl DabRules {
         }
     }
 
-    /// With the surface's values at a dab's centre, between pixels.
+    /// With the surface's values at a dab's center, between pixels.
     fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
         let flat = DabInputs::default();
         let nowhere =

@@ -1,5 +1,5 @@
-//! Paint that a brush picks up on its way, and the colour of its dabs: its own mixed with what it
-//! holds. Floor 3. Colours are premultiplied, so that transparent pixels add nothing.
+//! Paint that a brush picks up on its way, and the color of its dabs: its own mixed with what it
+//! holds. Floor 3. Colors are premultiplied, so that transparent pixels add nothing.
 
 use super::pixels::RetouchPixels;
 use crate::math::srgb::Color;
@@ -23,11 +23,11 @@ const LOOKS: f32 = 1024.0;
 /// What a brush holds of the paint that it picked up; `None` before its first dab.
 pub(super) type PickedUpPaint = Option<[f32; 4]>;
 
-/// The colour that a dab paints, premultiplied: less than opaque if it picked up transparency. The
+/// The color that a dab paints, premultiplied: less than opaque if it picked up transparency. The
 /// held paint changes.
 ///
 /// With the paint there, c, and the length l: h ← l h + (1 − l) c, at the first dab h ← c. With the
-/// amount a and the brush's own colour b: a h + (1 − a) b.
+/// amount a and the brush's own color b: a h + (1 − a) b.
 pub(super) fn mixed(
     brush: &Brush,
     own: Color,
@@ -56,7 +56,7 @@ pub(super) fn mixed(
     if tint::has_varied_color(brush) { tinted(brush, mixed, dab) } else { mixed }
 }
 
-/// The mixed colour, varied as the brush varies a dab's.
+/// The mixed color, varied as the brush varies a dab's.
 fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
     let alpha = mixed[3];
     let straight =

@@ -56,7 +56,7 @@ pub fn render_tiles(
     })
 }
 
-/// The same before they are quantised.
+/// The same before they are quantized.
 pub fn render_many(
     strokes: &[Arc<Stroke>],
     scene: &Scene,

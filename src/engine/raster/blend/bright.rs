@@ -13,7 +13,7 @@ impl BlendMode {
 }
 
 impl PlanarTile {
-    /// As [`PlanarTile::blend`], where colours may be above their alpha. Formulas that hold only up
+    /// As [`PlanarTile::blend`], where colors may be above their alpha. Formulas that hold only up
     /// to white see both sides clipped; the backdrop's light beyond white then shows through as far
     /// as the paint leaves it.
     pub fn blend_bright(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {

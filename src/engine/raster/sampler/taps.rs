@@ -1,7 +1,7 @@
 //! Many bilinear taps at once: the fast version of `bilinear`. Floor 1. Two passes: positions to
 //! texels and weights, several taps an instruction; then the texels, one tap at a time with its
 //! texels' channels side by side, in AVX2 where the processor has it (`wide`): LLVM does not
-//! vectorise that on its own. Both versions give the same bits.
+//! vectorize that on its own. Both versions give the same bits.
 
 mod find;
 #[cfg(target_arch = "x86_64")]
@@ -45,7 +45,7 @@ pub struct TapRun {
 /// Pixels of a [`TapGroup`].
 pub const GROUP: usize = 8;
 
-/// Neighbouring pixels with as many taps each: the first tap of all, then the second of all, …
+/// Neighboring pixels with as many taps each: the first tap of all, then the second of all, …
 #[derive(Clone, Copy)]
 pub struct TapGroup {
     pub first: u16,
@@ -65,7 +65,7 @@ impl Taps {
         self.range = find(at, &mut self.index, &mut self.across, &mut self.down);
     }
 
-    /// Writes every tap's rounded colour to a pixel of its own.
+    /// Writes every tap's rounded color to a pixel of its own.
     pub fn singles(&self, at: TapPositions, out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
         if wide::can_read(self, at) {

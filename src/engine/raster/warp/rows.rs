@@ -238,7 +238,7 @@ impl WarpPatchRow {
         let count = |i: usize| self.high[i][k] - self.low[i][k] + 1.0;
         let most = MOST_TAPS as f32;
         let [nx, ny] = [count(0), count(1)];
-        // NaN, and positions so far away that neighbours are the same number, are not counted.
+        // NaN, and positions so far away that neighbors are the same number, are not counted.
         let is_near = self.low[0][k].abs() < 1e6 && self.low[1][k].abs() < 1e6;
         (nx >= 0.0 && ny >= 0.0 && nx <= most && ny <= most && is_near)
             .then_some([nx as usize, ny as usize])

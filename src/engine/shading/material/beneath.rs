@@ -1,4 +1,4 @@
-//! The painter's light on the picture beneath a layer: its colours are lit where the surface is,
+//! The painter's light on the picture beneath a layer: its colors are lit where the surface is,
 //! and the page around it is shaded. Floor 3. Not here: the light itself (`painter`).
 
 use super::{Shading, painter::PainterTerms};
@@ -171,7 +171,7 @@ fn encode_exactly(light: &Light3, covered: &[bool; TILE], brightest: f32, row: &
 }
 
 crate::widest! {
-    /// Premultiplied sRGB to the linear light of the colour.
+    /// Premultiplied sRGB to the linear light of the color.
     fn decode_row(row: &PixelRow, albedo: &mut Light3) {
         for (channel, albedo) in row.rgb.iter().zip(albedo) {
             for ((value, a), out) in channel.iter().zip(&row.a).zip(albedo) {

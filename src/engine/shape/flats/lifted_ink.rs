@@ -2,7 +2,7 @@
 //! without them. Floor 3. Not here: which pixels are lines (`ink`), layers that show them
 //! (`document::ink_layers`).
 //!
-//! A pixel d of a line is f (1 − c) + L: the flat colour f that continues under the line, and the
+//! A pixel d of a line is f (1 − c) + L: the flat color f that continues under the line, and the
 //! ink L, which covers c of it. c is the projection of d on the way from f to the tone of the line.
 
 use super::areas::{pixels, spread};
@@ -27,7 +27,7 @@ const NOTHING: Pixel = [0; 4];
 pub struct LiftedInk {
     /// The drawing.
     pub source: TileGrid,
-    /// It without its lines: the colours beside them continue beneath.
+    /// It without its lines: the colors beside them continue beneath.
     pub flats: TileGrid,
     /// The lines alone.
     pub lines: TileGrid,
@@ -122,7 +122,7 @@ struct Lifting<'a> {
     rect: Rect,
     /// Those that are of a line for the most part, or next to one.
     is_near: Plane<bool>,
-    /// The colour of the nearest line, by its number, one more.
+    /// The color of the nearest line, by its number, one more.
     tone: Plane<u32>,
     /// The nearest pixel of a flat area, by its index, one more.
     flat: Plane<u32>,
@@ -180,7 +180,7 @@ impl<'a> Lifting<'a> {
         Some([flat, line.unwrap_or(drawn)])
     }
 
-    /// The flat colour under a pixel of a line, and how much of the pixel the ink takes, of 255:
+    /// The flat color under a pixel of a line, and how much of the pixel the ink takes, of 255:
     /// of the areas around, the one of which it is a mixture with the tone of the line.
     fn beneath(&self, (x, y): (usize, usize), drawn: Pixel, tone: Pixel) -> Option<(Pixel, u8)> {
         let (x, y) = (x as i32, y as i32);

@@ -1,6 +1,6 @@
 //! Lines so thin that hardly a pixel of them has their own tone: no flat area shows it, so it is
 //! sought in the pixels that no mixture of flats explains. Floor 3. Not here: lines whose tone is a
-//! colour of the flats (`ink`).
+//! color of the flats (`ink`).
 
 use super::areas::{LEAST_SEEN, pixels, spread};
 use super::color_distance::share_on_the_way;
@@ -109,7 +109,7 @@ struct Unknown {
     indices: Vec<usize>,
     /// The nearest pixel of a flat area, by its index, one more.
     flat: Plane<u32>,
-    /// The number of the colour that takes the most of each pixel.
+    /// The number of the color that takes the most of each pixel.
     mostly: Plane<u16>,
 }
 

@@ -31,7 +31,7 @@ const WHOLLY: f32 = 0.998;
 /// Partly covered pixels for each pixel of a hard rim, from which on coverage gives the outer
 /// contours.
 const SOFT_SHARE: f32 = 0.25;
-/// Shades below this leave the pixel's centre uncovered, as a rule.
+/// Shades below this leave the pixel's center uncovered, as a rule.
 const HARDLY_COVERED: u8 = 100;
 /// A normal is mixed of both sides' if it is this far from its own side's toward the other's, and
 /// at most this far off the line between them, as ratios of the distance between both; and if that
@@ -39,7 +39,7 @@ const HARDLY_COVERED: u8 = 100;
 const MIXED_FROM: f32 = 0.2;
 const MIXED_BESIDE: f32 = 0.25;
 const MIXED_LEAST: f32 = 0.25;
-/// How far the line of a crease may lie on the wrong side of a pixel's centre, px.
+/// How far the line of a crease may lie on the wrong side of a pixel's center, px.
 const CREASE_TOLERANCE_PX: f32 = 0.1;
 
 /// Finds the contours of a surface. The same whatever the number of threads: tiles are found one by
@@ -75,12 +75,12 @@ pub fn find(maps: &ContourMaps) -> Found {
 struct MaskReading {
     /// It gives the outer contours itself.
     is_soft: bool,
-    /// Partly covered pixels hold means of what is covered, else readings of their centres, if
+    /// Partly covered pixels hold means of what is covered, else readings of their centers, if
     /// these are covered.
     has_means: bool,
 }
 
-/// Whether most pixels that are hardly covered hold values, although their centres are not covered.
+/// Whether most pixels that are hardly covered hold values, although their centers are not covered.
 fn has_means(maps: &ContourMaps) -> bool {
     let Some(valid) = maps.valid else { return true };
     let counts = (0..maps.coverage.height()).into_par_iter().map(|y| {
@@ -149,7 +149,7 @@ struct Across {
 struct Shared {
     /// What its own population sees.
     own: f32,
-    /// The middle of what the other one sees, from the pixel's centre, px.
+    /// The middle of what the other one sees, from the pixel's center, px.
     other_at: Vec2,
 }
 
@@ -232,7 +232,7 @@ impl Examined {
         }
     }
 
-    /// A pixel that continues none of its neighbours, at a depth between theirs: a renderer mixed
+    /// A pixel that continues none of its neighbors, at a depth between theirs: a renderer mixed
     /// both sides in it.
     fn between(window: &PixelWindow, (x, y): (i32, i32)) -> Option<Self> {
         let mut beside: Vec<u32> = BESIDE
@@ -302,7 +302,7 @@ fn contour_pixel(
     (own, others): (u64, u64),
 ) -> Option<ContourPixel> {
     let Shared { own: share, other_at } = shared.filter(|shared| shared.own < WHOLLY)?;
-    // The middles of both, weighed by their shares, are the pixel's centre.
+    // The middles of both, weighed by their shares, are the pixel's center.
     let own_at = other_at * (-(1.0 - share) / share.max(0.25));
     let continued = Continued::from(window, own & !(1 << CENTER));
     let own_turn = continued.map_or(Vec2::ZERO, |own| own.nbar(own_at) - own.nbar(Vec2::ZERO));

@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 /// A contour near a pixel: a straight line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContourLine {
-    /// From the line to the pixel's centre, px; positive where the centre is on the nearer side.
+    /// From the line to the pixel's center, px; positive where the center is on the nearer side.
     pub distance_px: f32,
     /// Unit, image axes: toward the nearer side.
     pub toward_near: Vec2,
@@ -20,7 +20,7 @@ pub struct ContourLine {
 /// over the window, and elsewhere.
 const STRAIGHT_SIGMA: f32 = 2.0;
 const MASK_SIGMA: f32 = 1.2;
-/// How far a line may lie on the wrong side of a pixel's centre that it should explain, px; what is
+/// How far a line may lie on the wrong side of a pixel's center that it should explain, px; what is
 /// added by squared distance, since contours bend: so far a circle of 25 px is from its tangent;
 /// and within what distance of the middle pixel.
 const TOLERANCE_PX: f32 = 0.1;
@@ -65,8 +65,8 @@ impl ContourLine {
         self.distance_px + self.toward_near.dot(from_center)
     }
 
-    /// The centroid of the unit pixel's area on the nearer side, from the pixel's centre, px; the
-    /// centre where there is no such area.
+    /// The centroid of the unit pixel's area on the nearer side, from the pixel's center, px; the
+    /// center where there is no such area.
     pub fn near_middle(self) -> Vec2 {
         let corners = [vec2(-0.5, -0.5), vec2(0.5, -0.5), vec2(0.5, 0.5), vec2(-0.5, 0.5)];
         let mut outline: Vec<Vec2> = Vec::with_capacity(5);
@@ -180,9 +180,9 @@ impl ContourLine {
     }
 
     /// The distance of a place from the line, or from a circle that touches it next to the pixel's
-    /// centre, px; positive on the nearer side.
+    /// center, px; positive on the nearer side.
     ///
-    /// * `place`: from the pixel's centre, px.
+    /// * `place`: from the pixel's center, px.
     /// * `bend`: the circle's curvature, per px; positive where the nearer side is inside.
     pub fn distance_to(self, place: Vec2, bend: f32) -> f32 {
         let (across, along) = (self.height(place), self.along(place));
@@ -195,7 +195,7 @@ impl ContourLine {
         place + (self.distance_to(place, bend) - self.height(place)) * self.toward_near
     }
 
-    /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen
+    /// The same line, moved so far that the middle pixel's center lies on the side that it was seen
     /// on.
     pub fn with_center(self, is_near: bool) -> Self {
         let d = self.distance_px;

@@ -26,7 +26,7 @@ const LEAST_NOISE: f64 = 1e-8;
 /// The rim is farther off than is looked, px; or normals do not turn, per px.
 const OUT_OF_REACH_PX: f32 = 2.0;
 const LEVEL: f64 = 1e-5;
-/// How far the line may lie on the wrong side of a pixel's centre, px, and from the mask's own
+/// How far the line may lie on the wrong side of a pixel's center, px, and from the mask's own
 /// line.
 const TOLERANCE_PX: f32 = 0.05;
 const FARTHEST_PX: f32 = 0.7;
@@ -65,7 +65,7 @@ impl ContourLine {
     }
 }
 
-/// The tangent of the rim next to a pixel's centre, its curvature per px, and the share of the
+/// The tangent of the rim next to a pixel's center, its curvature per px, and the share of the
 /// variance of f that the distance from the rim explains.
 struct FittedRim {
     line: ContourLine,
@@ -89,7 +89,7 @@ struct PieceNormals {
 
 #[derive(Clone, Copy, Default)]
 struct PiecePixel {
-    /// From the middle pixel's centre, px.
+    /// From the middle pixel's center, px.
     place: Vec2,
     /// How much it says about the rim.
     weight: f32,
@@ -277,7 +277,7 @@ mod tests {
         line_of(planes, |x, y| nbar(x, y).length() < 1.0)
     }
 
-    /// Rims of many directions, on either side of the middle pixel's centre.
+    /// Rims of many directions, on either side of the middle pixel's center.
     fn rims() -> impl Iterator<Item = ContourLine> {
         (0..24).flat_map(|turn| {
             let toward_near = Vec2::from_angle(turn as f32 * 0.27);

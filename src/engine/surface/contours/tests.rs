@@ -30,11 +30,11 @@ fn surface(bits: u32) -> Arc<Surface> {
 /// What partly covered pixels hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Told {
-    /// The reading of the centre, or none.
+    /// The reading of the center, or none.
     OfCenters,
     /// The mean of what is covered.
     Means,
-    /// The reading of the centre, or that of nothing: far away, a normal toward the viewer.
+    /// The reading of the center, or that of nothing: far away, a normal toward the viewer.
     OfNothing,
 }
 

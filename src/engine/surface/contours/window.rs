@@ -15,13 +15,13 @@ pub const CENTER: u32 = (SIDE * SIDE / 2) as u32;
 /// Every pixel of a window.
 pub const ALL: u64 = (1 << (SIDE * SIDE)) - 1;
 
-/// A neighbour of the middle pixel.
+/// A neighbor of the middle pixel.
 #[derive(Clone, Copy)]
 pub struct Beside {
-    /// Of the pixel, if the neighbour continues it.
+    /// Of the pixel, if the neighbor continues it.
     pub link: u8,
     pub step: (i32, i32),
-    /// The neighbour's own bit.
+    /// The neighbor's own bit.
     pub bit: u32,
 }
 
@@ -109,7 +109,7 @@ impl<'m> PixelWindow<'m> {
         self.inside & !self.covered
     }
 
-    /// A set and the neighbours that continue it.
+    /// A set and the neighbors that continue it.
     fn grown(&self, set: u64) -> u64 {
         let along = (set & self.rightward) << 1 | (set >> 1) & self.rightward;
         let across = (set & self.downward) << SIDE | (set >> SIDE) & self.downward;
@@ -129,7 +129,7 @@ impl<'m> PixelWindow<'m> {
         }
     }
 
-    /// The piece of the middle pixel; of one that continues no other, that of its neighbour nearest
+    /// The piece of the middle pixel; of one that continues no other, that of its neighbor nearest
     /// in depth.
     pub fn piece_of_center(&self) -> u64 {
         let center = 1 << CENTER;

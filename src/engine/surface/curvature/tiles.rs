@@ -269,7 +269,7 @@ struct ColumnTaps<'a> {
 }
 
 crate::widest! {
-    /// Every pixel continues into its four neighbours.
+    /// Every pixel continues into its four neighbors.
     pub(super) fn are_all_linked(links: &[u8]) -> bool {
         links.iter().fold(15, |all, &l| all & l) == 15
     }
@@ -318,7 +318,7 @@ crate::widest! {
         }
     }
 
-    /// H of one row from the slopes of it and of its neighbours, every pixel having all its links.
+    /// H of one row from the slopes of it and of its neighbors, every pixel having all its links.
     fn difference_joined_row(slopes: [&[f32]; 2], hxx: &mut [f32], hxy: &mut [f32], hyy: &mut [f32]) {
         let n = hxx.len();
         let (hxy, hyy) = (&mut hxy[..n], &mut hyy[..n]);
@@ -331,7 +331,7 @@ crate::widest! {
         }
     }
 
-    /// As [`difference_joined_row`]: central where both neighbours are linked, one-sided where one
+    /// As [`difference_joined_row`]: central where both neighbors are linked, one-sided where one
     /// is.
     fn difference_row(slopes: [&[f32]; 2], links: &[u8], hxx: &mut [f32], hxy: &mut [f32], hyy: &mut [f32]) {
         let n = links.len();

@@ -1,5 +1,5 @@
 //! D over whole rows: the fast twin of `Deformation::at`, in plain loops that the compiler
-//! vectorises. Floor 2. The operator and the number of anchors are dispatched once per row, outside
+//! vectorizes. Floor 2. The operator and the number of anchors are dispatched once per row, outside
 //! the pixel loops.
 
 mod kernels;
@@ -101,7 +101,7 @@ fn try_laid_span(
     }
     let [u, v] = planes.unwrapping.planes().map(|plane| at.of(plane));
     let objects = at.of(planes.objects.labels());
-    // Without an early end the loop is vectorised.
+    // Without an early end the loop is vectorized.
     let one = objects.iter().fold(0, |differs, object| differs | (object ^ objects[0])) == 0;
     match planes.fits().iter().find(|fit| fit.object == objects[0]).filter(|_| one) {
         Some(fit) => match fit.pulled.zip(planes.displacement.as_ref()) {
@@ -161,7 +161,7 @@ impl MapSpan {
 
 /// Rows of intermediate values, one per pixel of a span.
 struct SpanScratch {
-    /// The pixels' centres.
+    /// The pixels' centers.
     place: [[f32; SPAN]; 2],
     /// r̄, where the operator needs it.
     mirrored: [[f32; SPAN]; 2],

@@ -82,7 +82,7 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
     JudgedBlocks { touched, pixel }
 }
 
-/// The centres of a block's first and last pixel relative to the anchor. Blocks that the canvas's
+/// The centers of a block's first and last pixel relative to the anchor. Blocks that the canvas's
 /// edge cuts count whole.
 #[inline(always)]
 fn corners(corner: Vec2, i: usize) -> (Vec2, Vec2) {

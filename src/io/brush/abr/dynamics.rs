@@ -1,4 +1,4 @@
-//! What drives a Photoshop brush: shape dynamics, scattering, texture, colour dynamics and
+//! What drives a Photoshop brush: shape dynamics, scattering, texture, color dynamics and
 //! transfer. Floor 5. Each has a switch in the description of the brush. Not here: its tip
 //! (`presets`).
 //!

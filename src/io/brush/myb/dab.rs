@@ -1,4 +1,4 @@
-//! What a dab of a MyPaint brush looks like: tip, coverage, colour and pickup. Floor 5.
+//! What a dab of a MyPaint brush looks like: tip, coverage, color and pickup. Floor 5.
 
 use super::added::Added;
 use super::settings::MyPaintSettings;
@@ -86,14 +86,14 @@ fn flows(brush: Brush, flow: Added) -> Brush {
     with(Brush { flow: flow.base, ..brush }, Property::Flow, &flow)
 }
 
-/// Colour changes, pickup and erasing.
+/// Color changes, pickup and erasing.
 pub fn paint(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let mut brush = brush;
     let changes = [
         ("change_color_h", Property::Hue, 1.0),
         ("change_color_v", Property::Value, 1.0),
         ("change_color_l", Property::Lightness, 1.0),
-        // Theirs are ratios of the colour's own saturation; a strong colour's is near 1.
+        // Theirs are ratios of the color's own saturation; a strong color's is near 1.
         ("change_color_hsv_s", Property::Saturation, 1.0),
         ("change_color_hsl_s", Property::Saturation, 1.0),
     ];

@@ -31,7 +31,7 @@ pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
     maps::import(source, &UserFiles::default(), &Budget::of_this_machine())
 }
 
-/// The same, with progress; `None` if cancelled.
+/// The same, with progress; `None` if canceled.
 pub fn import_watched(
     source: &SurfaceSource,
     progress: &Progress,

@@ -101,7 +101,7 @@ fn edit() -> impl Strategy<Value = String> {
         let mut line = String::new();
         for c in template.chars() {
             match c {
-                // A colour also begins with the sign, within its quotes.
+                // A color also begins with the sign, within its quotes.
                 '#' if !line.ends_with('"') => {
                     line += &numbers.next().unwrap_or_default().to_string()
                 }

@@ -1,4 +1,4 @@
-//! Adjustments of the colours beneath: levels, curves and their like. Floor 4. Not here: what they
+//! Adjustments of the colors beneath: levels, curves and their like. Floor 4. Not here: what they
 //! do to pixels (`paint::adjustment`).
 
 use super::{CanvasScale, Changed, Content, LayerKind, Role};

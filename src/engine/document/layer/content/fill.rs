@@ -1,4 +1,4 @@
-//! A fill: one colour everywhere.
+//! A fill: one color everywhere.
 //! Floor 4.
 
 use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent};

@@ -36,7 +36,7 @@ impl Marks for StrokeList {
         if !seen.is_empty()
             && stroke::are_heavy(&self.strokes, &scene.front(), seen.len(), is_wanted) == Some(true)
         {
-            // Once cancelled, nothing is needed any more.
+            // Once canceled, nothing is needed any more.
             let _ = stroke::render_many(&self.strokes, scene, &seen, is_wanted, done);
         }
     }
@@ -84,7 +84,7 @@ impl LayerKind for Live<StrokeList> {
         if !missing.is_empty()
             && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true)
         {
-            // Once cancelled, they are rendered when needed.
+            // Once canceled, they are rendered when needed.
             let _ = stroke::render_tiles(strokes, scene, &missing, is_wanted, |at, tile| {
                 self.tile(scene, at, || tile);
             });

@@ -9,7 +9,7 @@ use crate::shape::flats::ink::half_width;
 use crate::shape::flats::picture::Pixel;
 use std::collections::VecDeque;
 
-/// A pixel that differs more from the flat colour of its part, in any channel of 8 bits, is of a
+/// A pixel that differs more from the flat color of its part, in any channel of 8 bits, is of a
 /// line or a mark on it.
 const LINE: u8 = 48;
 /// How far beyond such pixels a line fades, px.
@@ -56,7 +56,7 @@ impl CutLines {
         i32::from(self.away.at(x, y)) > SOFT * SOFT
     }
 
-    /// What the taker of a pixel adds to the colour behind it: the ink, as much of it as is seen.
+    /// What the taker of a pixel adds to the color behind it: the ink, as much of it as is seen.
     pub fn over(&self, cut: &Cut, (x, y): (usize, usize), behind: Pixel) -> Pixel {
         let drawn = cut.drawn.at(x, y);
         if behind[3] < 255 {
@@ -79,7 +79,7 @@ impl Cut {
         part != NO_PART && owner > 0 && u32::from(part) + 1 > owner && self.drawn.at(x, y)[3] == 255
     }
 
-    /// Whether a pixel of a part is of a line between it and a nearer one: of a colour that neither
+    /// Whether a pixel of a part is of a line between it and a nearer one: of a color that neither
     /// has, and that they do not make where they meet.
     fn is_ink_between(&self, part: u16, (x, y): (usize, usize)) -> bool {
         let color = |of: u32| self.outlines.get(of as usize).and_then(|outline| outline.color);
@@ -93,7 +93,7 @@ impl Cut {
     }
 }
 
-/// Whether the drawing shows something else on a part than its flat colour.
+/// Whether the drawing shows something else on a part than its flat color.
 fn is_off_color(cut: &Cut, part: u16, (x, y): (usize, usize)) -> bool {
     let color = cut.outlines[usize::from(part)].color;
     color.is_some_and(|color| color_distance(cut.drawn.at(x, y), color) > LINE)

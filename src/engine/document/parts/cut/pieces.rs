@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Nothing of a pixel.
 const OUT: Pixel = [0; 4];
 
-/// The colour of the nearest part so far.
+/// The color of the nearest part so far.
 #[derive(Clone, Copy, Default)]
 struct ColorBeneath {
     color: Pixel,
@@ -71,7 +71,7 @@ impl Cut {
         areas
     }
 
-    /// A pixel of a part's piece; `own`: the part's colour there.
+    /// A pixel of a part's piece; `own`: the part's color there.
     fn pixel(&self, part: u16, (x, y): (usize, usize), own: Pixel, beneath: ColorBeneath) -> Pixel {
         let (drawn, is_own) = (self.drawn.at(x, y), self.owner.at(x, y) == u32::from(part) + 1);
         let [first, second] = self.nearest.at(x, y);
@@ -98,7 +98,7 @@ impl Cut {
         }
     }
 
-    /// The colour of a part wherever it covers something: at its edges that of its nearest pixel
+    /// The color of a part wherever it covers something: at its edges that of its nearest pixel
     /// that shows nothing else, and beneath others that of its nearest one without lines.
     fn own_colors(&self, part: u16, area: Rect, lines: &CutLines) -> Plane<Pixel> {
         let is_pure = |x: usize, y: usize| {
@@ -115,7 +115,7 @@ impl Cut {
         })
     }
 
-    /// The colour of the nearest pixel that counts, wherever a part covers something.
+    /// The color of the nearest pixel that counts, wherever a part covers something.
     fn nearest_where(
         &self,
         part: u16,

@@ -65,7 +65,7 @@ fn find_folded(
     [least, most]
 }
 
-/// The texel at or before a position `u` (in texel centres, `[0, n − 1]`) and how far beyond it `u`
+/// The texel at or before a position `u` (in texel centers, `[0, n − 1]`) and how far beyond it `u`
 /// lies.
 #[inline(always)]
 fn pair(u: f32, n: f32) -> (i32, f32) {

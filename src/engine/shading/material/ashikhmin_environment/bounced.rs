@@ -1,5 +1,5 @@
 //! What the surface adds where glossy rays meet it again: followed from an eighth of the half
-//! vectors at each pixel, others at its neighbours, and shared among these (MATH 5). Floor 3. Not
+//! vectors at each pixel, others at its neighbors, and shared among these (MATH 5). Floor 3. Not
 //! here: the light that rays see where they meet nothing, which every half vector reads at every
 //! pixel.
 
@@ -30,7 +30,7 @@ pub struct BouncedLight {
 
 impl EnvironmentSamples {
     /// Follows the glossy rays of the pixels of a tile and around it; of a far side, whose pixels are
-    /// no neighbours, none.
+    /// no neighbors, none.
     pub fn follow_tile(&mut self, shading: &Shading, surface: &Surface, area: Rect) {
         self.bounced = None;
         let Some(surface) = surface.on_canvas().filter(|_| shading.specular.weight > 0.0) else {

@@ -123,7 +123,7 @@ fn try_fill_laid(
 /// A row of pixels, and how the plane of a dab's object is laid.
 #[derive(Clone, Copy)]
 struct LaidRow {
-    /// The centre of the first pixel.
+    /// The center of the first pixel.
     first: (f32, f32),
     object: u32,
     linear: Mat2,
@@ -148,7 +148,7 @@ fn ask(surface: &Surface, kernel: Kernel, span: MapSpan) {
 /// A row of pixels and the anchor of their dab.
 #[derive(Clone, Copy)]
 struct DabRow {
-    /// The centre of the first pixel.
+    /// The center of the first pixel.
     first: (f32, f32),
     pin: FastPin,
 }

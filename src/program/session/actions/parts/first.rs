@@ -24,7 +24,7 @@ pub struct FirstShape {
     pub part: String,
     /// The layer that shows the form.
     pub base: LayerId,
-    /// What the user is told about colours without a part.
+    /// What the user is told about colors without a part.
     pub note: Option<String>,
 }
 
@@ -38,7 +38,7 @@ impl FirstShape {
     }
 }
 
-/// A layer of a document gets a shape. If cancelled, nobody uses the result.
+/// A layer of a document gets a shape. If canceled, nobody uses the result.
 pub fn shaped(
     document: &Document,
     layer: LayerId,

@@ -179,7 +179,7 @@ fn blank(dice: &mut Dice) -> Vec<Action> {
     })]
 }
 
-/// Ellipses of two colours on a paint layer.
+/// Ellipses of two colors on a paint layer.
 fn drawing(dice: &mut Dice) -> Vec<Action> {
     let mut actions = vec![Action::File(FileAction::New {
         width: 96,
