@@ -158,10 +158,7 @@ fn no_chain_of_supers_climbs_out_of_its_module() {
         // tests` one more is fine.
         let in_floors =
             CRATES_OF_FLOORS.iter().any(|name| file.starts_with(&format!("src/{name}/")));
-        let mut depth = file.split('/').count() - 1 - usize::from(in_floors);
-        if file.ends_with("/mod.rs") {
-            depth -= 1;
-        }
+        let depth = file.split('/').count() - 1 - usize::from(in_floors);
         assert!(!code.contains(&"super::".repeat(depth + 1)), "{file} climbs to the root by super");
         let own = code.split("#[cfg(test)]").next().unwrap_or("");
         assert!(!own.contains(&"super::".repeat(depth)), "{file} climbs to the root by super");

@@ -49,6 +49,14 @@ fn no_two_types_have_one_name() {
     assert!(homes.is_empty(), "names of more than one type: {homes:#?}");
 }
 
+/// A module has one style: its file is named as it is, beside the folder of its submodules.
+#[test]
+fn no_module_of_the_sources_is_called_mod() {
+    let wrong: Vec<_> =
+        files("src", "rs").into_iter().filter(|path| path.ends_with("mod.rs")).collect();
+    assert!(wrong.is_empty(), "name these as their folders, and put them beside them: {wrong:#?}");
+}
+
 #[test]
 fn types_are_found_however_they_are_written() {
     let text = "pub(super) struct A<'a> {\n}\nnamed! {\n    pub enum B {\n    }\n}\ntype C = u8;\npub trait D {\n    \

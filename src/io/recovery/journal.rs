@@ -1,5 +1,5 @@
 //! One drawing's recovery log on a disk: appended to after every edit, and rewritten when it has
-//! grown to twice the needed size. Floor 5. It is used from one thread, which `mod` owns.
+//! grown to twice the needed size. Floor 5. It is used from one thread, which `recovery` owns.
 
 use super::DrawingVersion;
 use super::log::{self, RecordKind};

@@ -3,7 +3,7 @@
 //!
 //! | file | reads and writes |
 //! |---|---|
-//! | `mod` | the document itself: format, version, canvas |
+//! | this one | the document itself: format, version, canvas |
 //! | `surface` | normal map, depth map, mask and their conventions |
 //! | `parts` | the parts of a shape |
 //! | `layers` | what every layer has, and fills, pixels and groups |
