@@ -15,6 +15,8 @@
 //! | 1 | [`raster`] | tiles, blend modes, textures, samplers |
 //! | 0 | [`math`], [`error`], [`memory`] | rectangles, sRGB, run-time SIMD; the error type; buffers that ask first |
 
+#![cfg_attr(not(test), warn(missing_docs))]
+
 pub mod error;
 pub mod math;
 pub mod memory;

@@ -9,6 +9,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no memory for {} more", bytes_text(*.bytes))]
 pub struct OutOfMemory {
+    /// The bytes that could not be had.
     pub bytes: u64,
 }
 

@@ -8,12 +8,14 @@ use crate::math::{COORDINATE, PlaneMap, Vec2};
 /// An assistant with its handles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assistant {
+    /// What it draws along.
     pub kind: AssistantKind,
     /// As many as its kind has, canvas px.
     pub points: Vec<Vec2>,
 }
 
 crate::named! {
+    /// What an assistant draws along.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum AssistantKind {
         /// From one handle to the other.
@@ -48,16 +50,21 @@ impl AssistantKind {
 pub enum AssistantPath {
     /// A line without ends; `along` has the length 1.
     Line {
+        /// A point of it.
         at: Vec2,
+        /// Where it leads.
         along: Vec2,
     },
+    /// Around an ellipse.
     Ellipse(EllipseFrame),
 }
 
 /// An ellipse by its middle and its half axes, which are at right angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipseFrame {
+    /// The middle.
     pub center: Vec2,
+    /// The two half axes.
     pub axes: [Vec2; 2],
 }
 

@@ -126,6 +126,7 @@ impl CanvasChange {
         Self { map, from, to }
     }
 
+    /// A canvas that is mirrored.
     pub fn mirrored(from: Size, mirror: CanvasMirror) -> Self {
         let matrix = match mirror {
             CanvasMirror::LeftRight => [-1.0, 0.0, 0.0, 1.0, f64::from(from.width), 0.0],

@@ -10,7 +10,9 @@ use std::sync::Arc;
 /// A box with sides along the axes, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameBox {
+    /// Its upper left corner.
     pub low: Vec2,
+    /// Its lower right corner.
     pub high: Vec2,
 }
 
@@ -31,6 +33,7 @@ impl FrameBox {
         [low, vec2(high.x, low.y), high, vec2(low.x, high.y)]
     }
 
+    /// Its middle.
     pub fn center(self) -> Vec2 {
         (self.low + self.high) * 0.5
     }

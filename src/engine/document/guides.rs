@@ -17,6 +17,7 @@ impl Guides {
     /// The most of either direction.
     pub const MOST: usize = 1_000;
 
+    /// There is none.
     pub fn is_empty(&self) -> bool {
         self.vertical.is_empty() && self.horizontal.is_empty()
     }

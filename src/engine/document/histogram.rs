@@ -11,7 +11,9 @@ use crate::raster::{PlanarTile, TileAt};
 /// Counts of each byte of red, green and blue, and of all three together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
+    /// How many pixels have each brightness.
     pub all: [u32; 256],
+    /// How many have each red, green and blue.
     pub channels: [[u32; 256]; 3],
 }
 

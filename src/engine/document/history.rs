@@ -32,6 +32,7 @@ pub struct EditLabel {
 /// The layer that an edit was done to, by the name that it had then.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LabelledLayer {
+    /// A layer by its name.
     Changed(String),
     /// Added to the layers, or deleted from them.
     Listed(String),

@@ -29,6 +29,7 @@ impl MemoryUse {
         count.used()
     }
 
+    /// All bytes.
     pub fn total(self) -> u64 {
         self.painted + self.pictures + self.maps + self.kept
     }
@@ -43,6 +44,7 @@ impl MemoryUse {
         }
     }
 
+    /// The sum of both.
     pub fn plus(self, other: Self) -> Self {
         Self {
             painted: self.painted + other.painted,

@@ -73,6 +73,7 @@ impl Parts {
     /// The parts of one document.
     pub const MOST: usize = 1000;
 
+    /// Parts that are still to be shaped.
     pub fn new(list: Vec<Part>) -> Self {
         Self { list: list.into_iter().map(Arc::new).collect(), ..Self::default() }
     }
@@ -95,6 +96,7 @@ impl Parts {
         parts
     }
 
+    /// There is none.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
@@ -110,6 +112,7 @@ impl Parts {
         Some(part)
     }
 
+    /// The part with an id.
     pub fn part(&self, id: &str) -> Option<&Arc<Part>> {
         self.list.iter().find(|part| part.id == id)
     }
@@ -120,8 +123,11 @@ impl Parts {
 pub struct Part {
     /// Each part has another.
     pub id: String,
+    /// What the list shows.
     pub name: String,
+    /// It belongs to the shape.
     pub visible: bool,
+    /// How it meets what is beneath it.
     pub combine: Combine,
     /// Degrees that it leans, up toward the right and toward the bottom.
     pub tilt_deg: Vec2,
@@ -129,60 +135,85 @@ pub struct Part {
     pub raise: f32,
     /// Its place: canvas from part.
     pub matrix: Affine2,
+    /// What its form is made of.
     pub kind: PartKind,
 }
 
 /// What a part is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PartKind {
+    /// An outline, inflated.
     Inflate {
+        /// Its outline.
         outline: OutlineSource,
+        /// How it is inflated.
         inflation: Inflation,
     },
+    /// An outline with a flat top and slanted rims.
     Bevel {
+        /// Its outline.
         outline: OutlineSource,
+        /// How its rim is shaped.
         bevel: Bevel,
     },
+    /// A body of geometry.
     Primitive(Primitive),
     /// An outline turned about an axis; upright through its middle without one.
     Lathe {
+        /// The outline that is turned.
         outline: OutlineSource,
+        /// Two points of the axis.
         axis: Option<[Vec2; 2]>,
+        /// How deep it is, relative to its width.
         puff: f32,
     },
     /// Balls along a stroke.
     Sweep {
+        /// The balls along the path.
         balls: Vec<Ball>,
+        /// How deep it is, relative to its width.
         puff: f32,
     },
     /// Normals put down on another part.
     Touches {
+        /// The part that is touched.
         on: String,
+        /// What was touched.
         touches: Vec<Touch>,
     },
     /// Heights sculpted on another part.
     Sculpt {
+        /// The part that is sculpted.
         on: String,
+        /// The strokes that sculpt it.
         strokes: Vec<SculptStroke>,
     },
     /// Ink that marks where another part turns.
     Lines {
+        /// The part that the lines are on.
         on: String,
+        /// The ink of the lines.
         ink: OutlineSource,
+        /// How lines shape it.
         lines: Lines,
     },
     /// Several shadings of one drawing by hand, each with the light elsewhere, within an outline or
     /// wherever they hold anything.
     Profiles {
+        /// Its outline.
         outline: Option<OutlineSource>,
+        /// The shaded pictures that it follows.
         shadings: Vec<ProfilePicture>,
     },
     /// Maps that were made elsewhere.
     Maps(PartMaps),
     /// The detail of a picture on another part.
     Relief {
+        /// The part that the relief is on.
         on: String,
+        /// The picture of the relief.
         picture: CoverageFile,
+        /// How high it is.
         detail: Detail,
     },
 }
@@ -209,6 +240,7 @@ pub struct PartMaps {
     pub source: Arc<SurfaceSource>,
     /// The files that it names.
     pub files: Arc<BTreeMap<String, Asset>>,
+    /// The surface that they give.
     pub surface: Arc<Surface>,
 }
 
@@ -237,8 +269,11 @@ pub struct Inflation {
 }
 
 impl Inflation {
+    /// How high it may be, as a factor.
     pub const PUFF: Range = 0.0..=8.0;
+    /// What its profile may be.
     pub const PROFILE: Range = UNIT;
+    /// The angle that its rim may have, degrees.
     pub const RIM: Range = 1.0..=90.0;
     /// Settings that have a name.
     pub const PRESETS: [(Inflation, &'static str); 4] = [
@@ -259,7 +294,12 @@ impl Default for Inflation {
 #[derive(Clone, Debug, PartialEq)]
 pub enum OutlineSource {
     /// The alpha of a layer, by its name, the topmost of several; or its pixels of one color.
-    Layer { layer: String, color: Option<FlatColor> },
+    Layer {
+        /// The layer's name.
+        layer: String,
+        /// The color that is meant; without one, all of its paint.
+        color: Option<FlatColor>,
+    },
     /// A picture of coverage; its upper left corner is the frame's.
     File(CoverageFile),
     /// A selection kept by name. One that follows the surface is found on the document's maps,
@@ -274,6 +314,7 @@ pub enum OutlineSource {
 /// A color of a layer of flats, wherever it is, or in one place only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatColor {
+    /// The color.
     pub color: Color,
     /// A point of the area that is meant, px of the part's frame, which is the canvas before the
     /// part's matrix. If the color is not there, the nearest area of it is meant.
@@ -294,7 +335,9 @@ impl OutlineSource {
 /// A picture that is read as coverage or as luminance, with the name of its file.
 #[derive(Clone, Debug)]
 pub struct CoverageFile {
+    /// The name of the file.
     pub file: String,
+    /// What it covers, one byte a pixel.
     pub coverage: Arc<Plane<u8>>,
 }
 

@@ -213,6 +213,7 @@ impl SelectionList {
         }
     }
 
+    /// All of them, in the order of the list.
     pub fn all(&self) -> impl ExactSizeIterator<Item = &Arc<Selection>> {
         self.all.iter().map(|(_, selection)| selection)
     }
@@ -227,6 +228,7 @@ impl SelectionList {
         self.places.get(&(Arc::as_ptr(selection) as usize)).copied()
     }
 
+    /// There is none.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }

@@ -67,7 +67,14 @@ pub struct MapSource<C> {
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaskSource {
     /// `{ "file": "m.png", "channel": "objectid.A", "invert": false }`
-    File { file: String, channel: Option<String>, invert: bool },
+    File {
+        /// The name of the file.
+        file: String,
+        /// The channel of it.
+        channel: Option<String>,
+        /// It is black where the shape is.
+        invert: bool,
+    },
     /// `{ "from": "flat" }`: pixels whose normal is exactly flat and that are joined to the border
     /// are background.
     Flat,

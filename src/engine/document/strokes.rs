@@ -49,6 +49,7 @@ impl Document {
         })
     }
 
+    /// With strokes of a layer moved by so many pixels; `None` if nothing changes.
     pub fn with_moved_strokes(
         &self,
         layer: LayerId,
@@ -58,6 +59,7 @@ impl Document {
         self.with_each_stroke(layer, chosen, |stroke| stroke.moved(by))
     }
 
+    /// Without some strokes of a layer; `None` if nothing changes.
     pub fn without_strokes(&self, layer: LayerId, chosen: &[usize]) -> Option<Document> {
         self.with_strokes(layer, |strokes| {
             for &index in in_order(chosen, strokes)?.iter().rev() {

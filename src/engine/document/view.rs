@@ -90,14 +90,19 @@ impl Default for ViewOptions {
 /// Why there is nothing to show.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ViewUnavailable {
+    /// There is no surface.
     #[error("the document has no surface to show")]
     NoSurface,
+    /// Nothing is unwrapped.
     #[error("no two neighboring pixels of the surface are in the plane")]
     NothingUnwrapped,
+    /// It does not fit in memory.
     #[error("there is no memory for the picture")]
     NoMemory,
+    /// No layer has anchors.
     #[error("the document has no layer with anchors")]
     NoAnchoredLayer,
+    /// A layer has no anchors.
     #[error("the layer “{0}” has no anchors; image and gradient layers have them")]
     NoAnchors(String),
 }

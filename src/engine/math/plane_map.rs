@@ -17,6 +17,7 @@ pub struct PlaneMap {
 pub struct PixelMove {
     /// Where the pixel's step to the right leads, and its step down: unit vectors along the axes.
     pub right: (i32, i32),
+    /// Where the next pixel below goes.
     pub down: (i32, i32),
     /// Where the corner (0, 0) of the plane goes.
     pub origin: (i32, i32),
@@ -230,6 +231,7 @@ impl PlaneMap {
 }
 
 impl PixelMove {
+    /// Every pixel stays.
     pub const NONE: PixelMove = PixelMove { right: (1, 0), down: (0, 1), origin: (0, 0) };
 
     /// The pixel of the frame that a pixel of the canvas shows.

@@ -28,6 +28,7 @@ pub struct Adjust {
 }
 
 impl Adjust {
+    /// What its blur may be, px.
     pub const BLUR: crate::math::Range = 0.0..=4096.0;
     /// The factors of saturation, brightness and contrast.
     pub const FACTOR: crate::math::Range = 0.0..=100.0;

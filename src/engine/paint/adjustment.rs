@@ -42,7 +42,11 @@ macro_rules! adjustments {
         /// An adjustment with its parameters.
         #[derive(Clone, Debug, PartialEq)]
         pub enum ColorAdjustment {
-            $($(#[$meta])* $kind($kind),)+
+            $(
+                #[doc = concat!($hint, ".")]
+                $(#[$meta])*
+                $kind($kind),
+            )+
         }
 
         impl ColorAdjustment {

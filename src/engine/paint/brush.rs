@@ -128,14 +128,21 @@ impl StrokeFrame {
 /// layer.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum BrushMode {
+    /// Lays paint.
     #[default]
     Paint,
     /// Drags existing paint; `length` in `[0, 1]`, the share of it that is left after a drag of one
     /// radius.
-    Smudge { length: f32 },
+    Smudge {
+        /// How long it carries what it picked up.
+        length: f32,
+    },
     /// Softens the existing paint; `width` in `[0, 1]`: the standard deviation that a stroke
     /// leaves, a ratio of the radius.
-    Blur { width: f32 },
+    Blur {
+        /// How wide it blurs, in radii of the dab.
+        width: f32,
+    },
     /// Copies from elsewhere.
     Clone {
         /// At the same offset for every stroke; otherwise every stroke starts at the source point.
@@ -194,17 +201,27 @@ impl ColorJitter {
 /// How the tool smooths the pen's path before it becomes a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Stabilizer {
+    /// The line is the hand's.
     #[default]
     None,
     /// The line follows the pen as a running average; `weight` in `[0, 1)` is the share of the past
     /// that is left after the pen has moved ten px, of the canvas or of the surface
     /// ([`Brush::stabilizer_on`]).
-    Average { weight: f32 },
+    Average {
+        /// How much of the place before stays, `[0, 1)`.
+        weight: f32,
+    },
     /// The pen pulls the line on a string of this length, px: wiggles shorter than it do not show.
-    String { length_px: f32 },
+    String {
+        /// How far the pen may be from the brush.
+        length_px: f32,
+    },
     /// The line follows the pen in time: after t, e^(−t/secs) of the lag is left. It ends when the
     /// pen lifts.
-    Lag { secs: f32 },
+    Lag {
+        /// How long the brush takes.
+        secs: f32,
+    },
 }
 
 impl Stabilizer {
@@ -219,21 +236,27 @@ impl Stabilizer {
 /// What a dab looks like before it is bent.
 #[derive(Clone, PartialEq)]
 pub enum Tip {
+    /// A disc.
     Round,
     /// `ratio`: the shorter axis over the longer one, which is the diameter and lies along x; `(0,
     /// 1]`.
     Ellipse {
+        /// The shorter axis, relative to the longer.
         ratio: f32,
     },
     /// A rectangle; its longer side is the diameter. Hardness and softness apply to each side.
     Square {
+        /// The shorter side, relative to the longer.
         ratio: f32,
     },
+    /// The ends of many hairs.
     Bristles(Bristles),
+    /// Specks.
     Noise(Noise),
     /// A picture whose longer side is the diameter. An opaque grey picture is coverage, white
     /// covering fully; any other is a stamp in its own colours.
     Picture(PictureSource),
+    /// One of several pictures each time.
     Hose(Hose),
 }
 

@@ -57,6 +57,7 @@ pub struct Offset {
     pub amount: f32,
     /// In which direction, degrees counter-clockwise from `from`.
     pub turn_degrees: f32,
+    /// What its angle is measured from.
     pub from: Bearing,
     /// Every other dab is equally far away on the other side.
     pub alternates: bool,
@@ -89,6 +90,7 @@ pub struct StylusFilter {
     pub direction_px: f32,
     /// The time over which each of the two paces is averaged.
     pub pace_secs: f32,
+    /// The same for the slow pace.
     pub slow_pace_secs: f32,
     /// How many px count as one when a pace is read: more on an enlarged canvas, so that its
     /// brushes read the same pace.
@@ -125,6 +127,7 @@ pub struct Cycle {
 }
 
 impl Cycle {
+    /// A hold so long that it never ends.
     pub const FOR_EVER: f32 = 10.0;
 }
 

@@ -31,6 +31,7 @@ pub struct Fill {
     pub antialias: bool,
     /// Compare colors of the layer only, not of the picture.
     pub layer_alone: bool,
+    /// How far it may go.
     pub bounded: PaintLimit,
 }
 

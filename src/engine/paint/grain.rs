@@ -44,8 +44,11 @@ pub struct BrushGrain {
 /// What the grain is.
 #[derive(Clone, PartialEq)]
 pub enum GrainSource {
+    /// A formula, repeated.
     Pattern {
+        /// Which one.
         pattern: Pattern,
+        /// For what is random in it.
         seed: u32,
     },
     /// Its luminance times its alpha.
@@ -59,7 +62,10 @@ pub enum GrainSpace {
     #[default]
     Canvas,
     /// The surface, through D_p.
-    Surface { gamma: f32 },
+    Surface {
+        /// How strongly it follows the depth.
+        gamma: f32,
+    },
     /// The surface, through D_s: equally large everywhere.
     Unwrapped,
 }

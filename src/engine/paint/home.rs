@@ -28,6 +28,7 @@ impl HomeFrame {
         Self::on(Self::CANVAS)
     }
 
+    /// It is the canvas itself.
     pub fn is_canvas(&self) -> bool {
         &*self.part == Self::CANVAS
     }
@@ -46,6 +47,7 @@ impl HomeFrame {
 /// The home of a stroke that differs from its layer's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrokeHome {
+    /// What carries the stroke.
     pub frame: HomeFrame,
     /// Where the stroke's own frame lies within its layer's: a, b, c, d, e, f as in a layer's
     /// transform.
@@ -53,8 +55,10 @@ pub struct StrokeHome {
 }
 
 impl StrokeHome {
+    /// The map of a home that has not moved.
     pub const UNMOVED: [f64; 6] = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 
+    /// A stroke on something that has not moved since.
     pub fn new(frame: HomeFrame) -> Self {
         Self { frame, own: Self::UNMOVED }
     }

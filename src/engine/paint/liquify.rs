@@ -42,6 +42,7 @@ impl LiquifyTool {
 /// How a stroke of liquify works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiquifySettings {
+    /// What it does.
     pub tool: LiquifyTool,
     /// Diameter of a dab, px.
     pub size: f32,
@@ -66,7 +67,9 @@ impl Default for LiquifySettings {
 }
 
 impl LiquifySettings {
+    /// What its diameter may be, px.
     pub const SIZE: Range = 8.0..=4000.0;
+    /// What its strength may be.
     pub const STRENGTH: Range = UNIT;
 
     /// The same with numbers in range.

@@ -108,6 +108,7 @@ impl StrokeSelection {
         Self { selection, moved: Vec2::ZERO }
     }
 
+    /// The same, moved by so many pixels.
     pub fn moved(&self, by: Vec2) -> Self {
         Self { selection: self.selection.clone(), moved: self.moved + by }
     }
@@ -164,6 +165,7 @@ impl StrokeSelection {
         Self::new(Arc::new(Selection::new(self.coverage().combined(to, product))))
     }
 
+    /// Both select the same.
     pub fn is_same(&self, other: &Self) -> bool {
         let same_place = self.moved == other.moved;
         same_place

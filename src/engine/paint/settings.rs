@@ -8,13 +8,21 @@ use crate::math::{Range, TURNS, UNIT, range::held};
 /// A number of a brush that a user sets, for new strokes or for existing ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BrushNumber {
+    /// Its diameter, px.
     Size,
+    /// The share of its radius that is wholly covered.
     Hardness,
+    /// The most that a stroke covers.
     Opacity,
+    /// What a dab adds.
     Flow,
+    /// How blurred it is.
     Softness,
+    /// From dab to dab, in diameters.
     Spacing,
+    /// How far its tip is turned.
     Rotation,
+    /// How far from the pen a bent mark may land.
     Reach,
 }
 
@@ -55,15 +63,18 @@ pub struct Setting {
     pub group: &'static str,
     /// Its name in documents.
     pub name: &'static str,
+    /// What it may be.
     pub range: Range,
     /// Its name in the window, and its meaning there.
     pub label: &'static str,
+    /// What it does, for tooltips.
     pub hint: &'static str,
     get: fn(&Brush) -> f32,
     set: fn(&mut Brush, f32),
 }
 
 impl Setting {
+    /// What it is for a brush.
     pub fn of(&self, brush: &Brush) -> f32 {
         (self.get)(brush)
     }
@@ -73,6 +84,7 @@ impl Setting {
         (self.set)(brush, held(to, &self.range));
     }
 
+    /// What it is for a new brush.
     pub fn default(&self) -> f32 {
         self.of(&Brush::default())
     }

@@ -16,6 +16,7 @@ pub use modes::{BlendMode, blend_pixel};
 /// How paint meets what it is painted on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Mix {
+    /// How colors are mixed.
     pub mode: BlendMode,
     /// Blend linear light instead of encoded values.
     pub linear: bool,
@@ -42,6 +43,7 @@ pub enum TilePaint<'a> {
     Bytes(&'a [u8]),
     /// Premultiplied rows of 16 bits; one for each that is painted on.
     Deep(&'a [DeepRow]),
+    /// Premultiplied floats.
     Planar(&'a PlanarTile),
 }
 
@@ -62,6 +64,7 @@ pub struct TileCoverage {
 }
 
 impl TileCoverage {
+    /// All of the tile.
     pub const FULL: TileCoverage = TileCoverage { opacity: 1.0, mask: None };
 
     /// The same everywhere; clamped to `[0, 1]`, NaN is 0.

@@ -61,6 +61,7 @@ impl CoverageTile {
         if self.is_whole { 0 } else { TILE_AREA as u64 }
     }
 
+    /// One byte a pixel, row by row.
     pub fn bytes(&self) -> &[u8; TILE_AREA] {
         &self.bytes
     }

@@ -20,9 +20,13 @@ pub struct OpenTile {
 /// The pixels of a tile that may be reached from their neighbor on a side.
 #[derive(Clone, Copy)]
 pub struct TileLinks {
+    /// Those that may be reached from the left.
     pub from_left: TileBits,
+    /// Those that may be reached from the right.
     pub from_right: TileBits,
+    /// Those that may be reached from above.
     pub from_above: TileBits,
+    /// Those that may be reached from below.
     pub from_below: TileBits,
 }
 

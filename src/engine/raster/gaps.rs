@@ -20,7 +20,9 @@ const LEVELS_PER_PX: f32 = 4.0;
 
 /// Some pixels of the canvas: 1 in a plane that covers a rectangle of it.
 pub struct PixelSet {
+    /// Where they lie.
     pub rect: Rect,
+    /// Of that rectangle: 1 where a pixel belongs to the set.
     pub pixels: Plane<u8>,
 }
 

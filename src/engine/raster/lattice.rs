@@ -31,7 +31,9 @@ pub struct Lattice {
 /// A displacement, and how it changes with the point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displaced {
+    /// How far a point is displaced, px.
     pub by: Vec2,
+    /// How that changes from point to point.
     pub jacobian: Mat2,
 }
 
@@ -60,6 +62,7 @@ impl Lattice {
     /// The farthest that blocks may be from the canvas's corner.
     pub const FARTHEST_BLOCK: i32 = 16_000;
 
+    /// Nothing is displaced.
     pub fn is_empty(&self) -> bool {
         self.blocks.iter().next().is_none()
     }

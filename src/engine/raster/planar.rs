@@ -25,6 +25,7 @@ pub struct PixelRow {
 }
 
 impl PixelRow {
+    /// A row without paint.
     pub const TRANSPARENT: PixelRow = PixelRow { rgb: [[0.0; TILE]; 3], a: [0.0; TILE] };
 }
 
@@ -38,6 +39,7 @@ pub struct PlanarTile {
 }
 
 impl PlanarTile {
+    /// A tile without paint.
     pub fn transparent() -> Self {
         Self::of_rows(TILE)
     }
@@ -108,6 +110,7 @@ impl PlanarTile {
         &self.rows
     }
 
+    /// Its rows, to be painted on.
     pub fn rows_mut(&mut self) -> &mut [PixelRow] {
         &mut self.rows
     }

@@ -75,6 +75,7 @@ impl Texel for [f32; 4] {
 /// One mip level.
 #[derive(Clone)]
 pub struct MipLevel<T = [u8; 4]> {
+    /// Its size, texels.
     pub size: Size,
     /// Premultiplied RGBA, sRGB-encoded, row by row.
     pub texels: Vec<T>,
@@ -141,6 +142,7 @@ impl<T: Texel> Texture<T> {
         Self { levels: self.levels.clone(), first }
     }
 
+    /// The size of the largest level, texels.
     pub fn size(&self) -> Size {
         self.levels[self.first].size
     }

@@ -85,8 +85,11 @@ impl Features {
 pub enum FeatureMap {
     /// λ = 0: the same toward every light.
     Isotropic(Arc<Kappa>),
+    /// The curvature along a direction.
     Directional {
+        /// The scales that it is summed of.
         parts: Vec<ScalePart>,
+        /// How far it depends on the direction.
         lambda: f32,
     },
 }

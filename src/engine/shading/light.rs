@@ -22,10 +22,16 @@ pub struct Light {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     /// Infinitely far. `direction` points toward the light, camera space (y up), any length but 0.
-    Directional { direction: Vec3 },
+    Directional {
+        /// Toward the light, of any length but 0.
+        direction: Vec3,
+    },
     /// At a point of the canvas (px, y down) and a height above the surface's nearest point (px,
     /// toward the viewer).
-    Point { position: Vec3 },
+    Point {
+        /// Canvas px; the height is toward the viewer.
+        position: Vec3,
+    },
 }
 
 impl Light {

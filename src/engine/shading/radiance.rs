@@ -94,11 +94,14 @@ impl GainLadder {
 /// shown: every channel clipped at 1. Add the parts in a fixed order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightSums {
+    /// That of the picture as it is.
     pub before: f64,
+    /// That of the scaled picture, for each gain.
     pub after: [f64; GAINS],
 }
 
 impl LightSums {
+    /// The sums of both.
     pub fn plus(self, other: LightSums) -> LightSums {
         LightSums {
             before: self.before + other.before,

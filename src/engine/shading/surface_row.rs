@@ -16,10 +16,13 @@ pub type Light3 = [RowValues; 3];
 
 /// A row of a tile on the surface. Beyond the canvas the normals face the viewer and κ is 0.
 pub struct SurfaceRow<'a> {
+    /// The surface that is shaded.
     pub surface: &'a Surface,
+    /// Its features.
     pub features: &'a FeatureMap,
     /// Canvas px of the first pixel.
     pub x0: usize,
+    /// The row.
     pub y: usize,
     /// How many pixels lie on the canvas.
     pub width: usize,
@@ -156,6 +159,7 @@ impl<'a> SurfaceRow<'a> {
         }
     }
 
+    /// The normal of a pixel, counted from the first.
     pub fn normal_at(&self, x: usize) -> Vec3 {
         vec3(self.normal[0][x], self.normal[1][x], self.normal[2][x])
     }

@@ -15,7 +15,10 @@ pub enum Combine {
     #[default]
     Over,
     /// Merged with it, over so many px of height.
-    Union { smooth: f32 },
+    Union {
+        /// How widely the seam is rounded, px.
+        smooth: f32,
+    },
     /// Its height is added.
     Add,
     /// Its height is subtracted.
@@ -53,6 +56,7 @@ pub struct Relief {
     pub height: Plane<f32>,
     /// Unit, camera space (y up).
     pub normals: Plane<Vec3>,
+    /// Where it is, one byte a pixel.
     pub coverage: Plane<u8>,
     /// Which part is seen, from 1 on; 0 where there is none.
     pub ids: Plane<u32>,
@@ -66,6 +70,7 @@ pub struct Relief {
 const GAP: f32 = 0.004;
 
 impl Relief {
+    /// One without a form.
     pub fn empty(size: Size) -> Self {
         Self {
             height: Plane::filled(size, 0.0),

@@ -16,6 +16,7 @@ pub struct Form {
     pub height: Arc<Plane<f32>>,
     /// Unit, camera space (y up); +z where nothing is covered.
     pub normals: Arc<Plane<Vec3>>,
+    /// Where it is, one byte a pixel.
     pub coverage: Arc<Plane<u8>>,
 }
 

@@ -63,6 +63,7 @@ impl Outline {
         self.corner
     }
 
+    /// Its size, px.
     pub fn size(&self) -> Size {
         self.coverage.size()
     }
@@ -78,6 +79,7 @@ impl Outline {
         )
     }
 
+    /// What it covers, one byte a pixel.
     pub fn coverage(&self) -> &Arc<Plane<u8>> {
         &self.coverage
     }

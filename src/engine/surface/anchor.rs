@@ -25,7 +25,10 @@ impl Anchor {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weights {
     /// Inverse distance (Shepard 1968), `power > 0`; exactly 1 at an anchor.
-    Shepard { power: f32 },
+    Shepard {
+        /// How steeply influence falls with the distance.
+        power: f32,
+    },
     /// Linear along the segment from the first anchor to the second, clamped beyond its ends.
     Segment,
 }

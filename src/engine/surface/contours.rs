@@ -39,6 +39,7 @@ pub(super) use window::{BESIDE, PixelWindow};
 pub struct ContourPixel {
     /// Canvas pixel.
     pub x: i32,
+    /// Its row on the canvas.
     pub y: i32,
     /// The share that its own population sees, `[0, 1]`: the one whose readings the maps hold at
     /// the pixel, or no surface where they hold none.

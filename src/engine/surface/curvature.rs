@@ -28,8 +28,11 @@ pub const GRAZING_NZ: f32 = 0.05;
 /// curvature scale *s*. At the ends of the surface it is continued from neighbors; off the surface
 /// it is 0.
 pub struct Curvature {
+    /// H's first entry.
     pub hxx: Plane<f32>,
+    /// H's entries off the diagonal.
     pub hxy: Plane<f32>,
+    /// H's last entry.
     pub hyy: Plane<f32>,
 }
 

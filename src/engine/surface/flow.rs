@@ -10,15 +10,20 @@ use crate::raster::{Plane, blur};
 /// A structure tensor JᵀJ: symmetric, image axes (y **down**).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct StructureTensor {
+    /// Its first entry.
     pub xx: f32,
+    /// Its entries off the diagonal.
     pub xy: f32,
+    /// Its last entry.
     pub yy: f32,
 }
 
 /// Eigenvalues and the direction of the larger one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eigen {
+    /// The larger eigenvalue.
     pub larger: f32,
+    /// The smaller eigenvalue.
     pub smaller: f32,
     /// Unit, image axes (y down), sign arbitrary; x where both eigenvalues are one.
     pub direction: Vec2,

@@ -265,11 +265,17 @@ impl PaintLimit {
 /// A part of the canvas.
 #[derive(Clone)]
 pub enum CanvasPart {
+    /// All of it.
     Whole,
+    /// What a surface covers.
     Surface(Arc<Surface>),
+    /// One object of a surface.
     Object {
+        /// The surface that it is part of.
         surface: Arc<Surface>,
+        /// The objects of that surface.
         objects: Arc<Objects>,
+        /// Which of them.
         object: ObjectId,
     },
     /// All that the surface does not cover.

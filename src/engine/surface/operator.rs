@@ -21,17 +21,37 @@ pub enum Operator {
     #[default]
     None,
     /// First order, by depth, texture-like (SF eq. 13). `gamma ≥ 0`: rate.
-    Depth { gamma: f32 },
+    Depth {
+        /// How strongly, `≥ 0`.
+        gamma: f32,
+    },
     /// Second order, by normals, reflection-like for `alpha > 0`, refraction-like for `alpha < 0`
     /// (SF eq. 15). `alpha` in canvas lengths *L*; `beta ≥ 0`: rate; `detail ≥ 0`: μ of SF fig. 10.
-    Normal { alpha: f32, beta: f32, detail: f32 },
+    Normal {
+        /// How far, in canvas lengths.
+        alpha: f32,
+        /// How soon, `≥ 0`.
+        beta: f32,
+        /// How much more on curved parts.
+        detail: f32,
+    },
     /// By the reflected view direction on an angular map (beyond the paper). `alpha` in canvas
     /// lengths.
-    Reflection { alpha: f32, detail: f32 },
+    Reflection {
+        /// How far, in canvas lengths.
+        alpha: f32,
+        /// How much more on curved parts.
+        detail: f32,
+    },
     /// The surface unwrapped: an image lies on it, undistorted as far as can be (MATH 8, beyond the
     /// papers). `amount`: a, 0 flat … 1 its own metric; `smooth`: blur of the normals beforehand,
     /// px.
-    Surface { amount: f32, smooth: f32 },
+    Surface {
+        /// How far between flat and the surface's own metric.
+        amount: f32,
+        /// Blur of the normals beforehand, px.
+        smooth: f32,
+    },
 }
 
 /// What the maps hold at one pixel.
@@ -41,6 +61,7 @@ pub struct MapValues {
     pub depth: f32,
     /// n̄, image axes (y down).
     pub nbar: Vec2,
+    /// The third component of the normal.
     pub nz: f32,
 }
 

@@ -50,6 +50,7 @@ pub struct RayMap {
 pub struct SurfaceRay {
     /// Where it leaves: canvas px, and the nearness there.
     pub at: Vec2,
+    /// How near its start is.
     pub nearness: f32,
     /// Unit, camera space (y up).
     pub direction: Vec3,
@@ -62,6 +63,7 @@ pub struct SurfaceRay {
 pub struct RayHit {
     /// Canvas px, and the nearness there.
     pub at: Vec2,
+    /// How near the point is.
     pub nearness: f32,
     /// Unit, camera space; it faces the ray.
     pub normal: Vec3,

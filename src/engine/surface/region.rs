@@ -60,6 +60,7 @@ impl RegionKind {
 /// The description of a region of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceRegion {
+    /// What belongs to it.
     pub kind: RegionKind,
     /// Canvas px; the maps are read there, between pixels.
     pub at: Vec2,
@@ -72,6 +73,7 @@ pub struct SurfaceRegion {
 }
 
 impl SurfaceRegion {
+    /// What its softness may be.
     pub const SOFTNESS: Range = UNIT;
 
     /// A sharp and contiguous one with the kind's own tolerance.

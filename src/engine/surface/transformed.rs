@@ -14,6 +14,7 @@ use std::sync::Arc;
 /// What a surface was made of.
 #[derive(Clone)]
 pub struct Origin {
+    /// The surface before it was transformed.
     pub surface: Arc<Surface>,
     /// Canvas from the pixels of that surface; affine.
     pub map: PlaneMap,

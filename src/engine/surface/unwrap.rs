@@ -61,6 +61,7 @@ const FINE: Effort = Effort { goal: 1e-3, most_steps: 60 };
 pub const SOLVES: u64 = (TURNS as u64 + 1) * 2;
 
 impl Unwrapping {
+    /// Unwraps all that a surface covers.
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Self {
         Self::with_progress(surface, settings, &|| true).expect("nobody gives it up")
     }
@@ -107,6 +108,7 @@ impl Unwrapping {
         Self { x, y, bounds: OnceLock::new() }
     }
 
+    /// The size of the surface, px.
     pub fn size(&self) -> Size {
         self.x.size()
     }

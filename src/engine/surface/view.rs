@@ -14,7 +14,12 @@ pub enum Eye {
     Afar,
     /// So many px of the map from the picture plane, before a point at this offset from the map's
     /// middle.
-    At { focal_px: f32, beside: Vec2 },
+    At {
+        /// The focal length.
+        focal_px: f32,
+        /// How far the middle of the canvas lies beside the axis.
+        beside: Vec2,
+    },
 }
 
 impl Eye {
@@ -81,6 +86,7 @@ impl Surface {
         self
     }
 
+    /// Where it is seen from.
     pub fn eye(&self) -> Eye {
         self.eye
     }

@@ -92,6 +92,7 @@ fn stroke(stroke: &Stroke) -> Fit {
     })
 }
 
+/// Whether a file can hold a brush.
 pub fn brush(brush: &Brush) -> Fit {
     within("the size of the brush", brush.size, &Brush::SIZE)?;
     within("the hardness", brush.hardness, &UNIT)?;
@@ -182,6 +183,7 @@ fn grain(grain: &BrushGrain) -> Fit {
     }
 }
 
+/// Whether a file can hold an operator.
 pub fn operator(operator: Operator) -> Fit {
     operator
         .numbers()
@@ -189,6 +191,7 @@ pub fn operator(operator: Operator) -> Fit {
         .try_for_each(|(number, value)| within(number.label, value, &number.range))
 }
 
+/// Whether a file can hold a placed picture.
 pub fn image(image: &PlacedImage) -> Fit {
     adjust(&image.source.adjust)?;
     placement(&image.placement)?;
@@ -221,6 +224,7 @@ fn piece(piece: &PlanePiece) -> Fit {
     within("the turn of a piece", piece.rotation, &PlanePiece::ROTATION)
 }
 
+/// Whether a file can hold a gradient.
 pub fn gradient(gradient: &Gradient) -> Fit {
     point("an end of the gradient", gradient.from)
         .and(point("an end of the gradient", gradient.to))?;
@@ -240,6 +244,7 @@ pub fn placement(placement: &Placement) -> Fit {
     within("the rotation", placement.rotation, &TURNS)
 }
 
+/// Whether a file can hold what is adjusted of a picture.
 pub fn adjust(adjust: &Adjust) -> Fit {
     within("the blur", adjust.blur, &Adjust::BLUR)?;
     within("the exposure", adjust.exposure, &STOPS)?;

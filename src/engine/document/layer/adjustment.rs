@@ -52,11 +52,17 @@ pub enum Reach {
 /// Where the pixels lie that are adjusted.
 pub enum AdjustedPlace<'a> {
     /// A tile of the canvas.
-    Tile { scene: &'a Scene, at: TileAt },
+    Tile {
+        /// What the layer sees.
+        scene: &'a Scene,
+        /// Which tile.
+        at: TileAt,
+    },
     /// Rows of pixels as the other populations of contour pixels see them.
     Packed {
-        /// What they see, and the surface of the canvas.
+        /// What they see.
         surface: Option<&'a Surface>,
+        /// The surface of the canvas.
         front: Option<&'a Surface>,
         /// For each pixel its place on the surface that it sees, or that it is off it.
         places: &'a [Option<(usize, usize)>],

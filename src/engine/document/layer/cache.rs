@@ -39,10 +39,13 @@ pub struct PreviewKind {
 /// A layer's pixels as a file holds them, with their place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EncodedPixels {
+    /// The bytes of the file.
     pub file: Asset,
+    /// Its size, px.
     pub size: Size,
-    /// Canvas pixel of the upper left corner.
+    /// Column of the canvas of its upper left corner.
     pub x: i32,
+    /// Row of the canvas of that corner.
     pub y: i32,
 }
 

@@ -19,7 +19,9 @@ use crate::raster::warp::{PixelMap, PointRow};
 /// All transforms that act on a layer, as one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerMap {
+    /// Canvas from layer.
     pub plane: PlaneMap,
+    /// How pixels are read under it.
     pub filter: Resampling,
     pub(in crate::document) canvas: Size,
     /// The transform of the layer itself.
@@ -100,6 +102,7 @@ impl LayerMap {
         Self { plane: own.then(&home.frame.map()).then(&self.around), own, ..*self }
     }
 
+    /// It moves nothing that has no home of its own.
     pub fn is_none(&self) -> bool {
         self.plane.is_identity_on(self.canvas)
     }

@@ -24,7 +24,12 @@ pub struct LayerMask {
 #[derive(Clone)]
 pub enum MaskKind {
     /// A picture of the canvas's size: encoded luminance × alpha.
-    File { file: String, coverage: Arc<Plane<u8>> },
+    File {
+        /// The name of the file.
+        file: String,
+        /// What it covers, one byte a pixel.
+        coverage: Arc<Plane<u8>>,
+    },
     /// Derived again wherever the surface changes.
     Derived(DerivedMask),
 }
@@ -33,11 +38,30 @@ pub enum MaskKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DerivedMask {
     /// Schlick's approximation: f0 + (1 − f0)(1 − n_z)^power (SF fig. 12c).
-    Fresnel { f0: f32, power: f32 },
+    Fresnel {
+        /// What it is where the surface faces the viewer.
+        f0: f32,
+        /// How steeply it rises toward the silhouette.
+        power: f32,
+    },
     /// κ of MATH 4, 0 at `from`, 1 at `to`.
-    Curvature { scale: f32, blur: f32, from: f32, to: f32 },
+    Curvature {
+        /// The scale s of κ, px.
+        scale: f32,
+        /// Blur of the normals beforehand, px.
+        blur: f32,
+        /// The curvature where it begins.
+        from: f32,
+        /// The curvature where it is whole.
+        to: f32,
+    },
     /// z, 0 at `from`, 1 at `to`.
-    Depth { from: f32, to: f32 },
+    Depth {
+        /// The depth where it begins.
+        from: f32,
+        /// The depth where it is whole.
+        to: f32,
+    },
     /// The region that has something in common with a point of the surface.
     Region(SurfaceRegion),
 }

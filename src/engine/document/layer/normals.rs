@@ -35,6 +35,7 @@ impl NormalLayer {
 pub enum DetailSource {
     /// A tangent-space normal map.
     Map {
+        /// The picture, with the name of its file.
         picture: PictureSource,
         /// What its numbers mean; detected where it is not given.
         convention: NormalConvention,

@@ -28,6 +28,7 @@ pub struct UnwrapOptions {
 }
 
 impl UnwrapOptions {
+    /// How many pixels of it may lie along one of the canvas.
     pub const SCALE: std::ops::RangeInclusive<u32> = 1..=4;
 }
 
@@ -40,11 +41,14 @@ impl Default for UnwrapOptions {
 /// A painting in the planes of its surface, and what puts the same picture back: an image layer
 /// with this placement and this bend shows it where it was.
 pub struct UnwrappedPicture {
+    /// Its size, px.
     pub size: Size,
     /// Premultiplied, encoded, row by row. A few pixels around the pieces continue their rims, so
     /// that nothing shines through where a rim is looked up.
     pub pixels: Vec<[f32; 4]>,
+    /// Where a picture lies in it.
     pub placement: Placement,
+    /// How it is bent back.
     pub bend: Bend,
 }
 

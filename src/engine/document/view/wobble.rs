@@ -44,6 +44,7 @@ impl WobbleScene {
         Self { size, pixels, heights }
     }
 
+    /// The size of its pictures, px.
     pub fn size(&self) -> Size {
         self.size
     }

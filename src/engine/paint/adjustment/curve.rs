@@ -44,6 +44,7 @@ impl ToneCurve {
         &self.points
     }
 
+    /// It changes nothing.
     pub fn is_straight(&self) -> bool {
         *self == Self::default()
     }

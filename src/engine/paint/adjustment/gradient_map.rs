@@ -8,7 +8,9 @@ use crate::paint::{GradientStop, ramp::Ramp};
 /// it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GradientMap {
+    /// The gradient, by brightness.
     pub stops: Vec<GradientStop>,
+    /// White takes the first color.
     pub reverse: bool,
 }
 
@@ -22,6 +24,7 @@ impl GradientMap {
     /// Colors of the ramp that are looked up: more than 16 bits of luminosity tell apart on it.
     const COLORS: usize = 4096;
 
+    /// What a color becomes, encoded, `[0, 1]`.
     pub fn color(&self) -> impl Fn([f32; 3]) -> [f32; 3] + use<> {
         let ramp = Ramp::new(&self.stops);
         let at = |i: usize| {

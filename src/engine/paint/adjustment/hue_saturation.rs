@@ -29,6 +29,7 @@ impl Parameters for HslShift {
 pub struct HueRange {
     /// Degrees, going up, past 360 where they go on beyond red.
     pub angles: [f32; 4],
+    /// What becomes of colors in it.
     pub shift: HslShift,
 }
 
@@ -61,12 +62,16 @@ pub const HUE_RANGES: [(ParameterName, [f32; 4]); 6] = [
     (named("magentas", "Magentas", ""), [255.0, 285.0, 315.0, 345.0]),
 ];
 
+/// Shifts of all colors, of six ranges of them, or one hue for all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HueSaturation {
+    /// The shift of all colors.
     pub master: HslShift,
+    /// The shifts of ranges, reds first.
     pub ranges: [HueRange; 6],
     /// Everything gets the hue, saturation and lightness of `tint`.
     pub colorize: bool,
+    /// The one hue, and its saturation and lightness.
     pub tint: HslShift,
 }
 

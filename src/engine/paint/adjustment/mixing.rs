@@ -35,6 +35,7 @@ impl ColorBalance {
         [shadows, middle, lights].map(|weight| weight * SCALE)
     }
 
+    /// What a color becomes, encoded, `[0, 1]`.
     #[inline(always)]
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         let (low, high) = hsl::extent(rgb);
@@ -118,9 +119,11 @@ impl Parameters for Vibrance {
 /// A colored glass in front of the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotoFilter {
+    /// The color of the glass.
     pub color: Color,
     /// Percent.
     pub density: f32,
+    /// The picture becomes no darker.
     pub keep_luminosity: bool,
 }
 
@@ -169,6 +172,7 @@ pub struct ChannelMixer {
     pub outputs: [[f32; 4]; 3],
     /// All channels become the one of `grey`.
     pub monochrome: bool,
+    /// The shares of gray, with a constant.
     pub grey: [f32; 4],
 }
 
@@ -184,6 +188,7 @@ impl Default for ChannelMixer {
 }
 
 impl ChannelMixer {
+    /// What a color becomes, encoded, `[0, 1]`.
     #[inline(always)]
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         let mixed = |[r, g, b, constant]: [f32; 4]| {
@@ -225,6 +230,7 @@ pub struct BlackWhite {
     pub weights: [f32; 6],
     /// The grays are given the hue and saturation of `color`.
     pub is_tinted: bool,
+    /// The color of the tint.
     pub color: Color,
 }
 
@@ -263,6 +269,7 @@ impl BlackWhite {
         low + ((middle - low) * secondary + (high - middle) * primary) / 100.0
     }
 
+    /// What a color becomes, encoded, `[0, 1]`.
     #[inline(always)]
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         let grey = self.grey(rgb).max(0.0).min(1.0);
@@ -318,6 +325,7 @@ impl SelectiveColor {
         ]
     }
 
+    /// What a color becomes, encoded, `[0, 1]`.
     #[inline(always)]
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         let weights = Self::weights(rgb);
@@ -375,6 +383,7 @@ impl Default for Threshold {
 }
 
 impl Threshold {
+    /// What a color becomes, encoded, `[0, 1]`.
     #[inline(always)]
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
         let is_light = (255.0 * hsl::luminosity(rgb) + 0.5).floor() >= self.level.round();

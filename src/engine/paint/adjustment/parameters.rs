@@ -30,8 +30,11 @@ pub(super) const fn named(
 /// A number and what it may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NumberParameter {
+    /// What it is called.
     pub name: ParameterName,
+    /// The least that it may be.
     pub least: f32,
+    /// The most that it may be.
     pub most: f32,
     /// What it is where nothing is said.
     pub default: f32,
@@ -55,6 +58,7 @@ impl NumberParameter {
         Self { decimals, ..self }
     }
 
+    /// What it may be.
     pub fn range(&self) -> Range {
         self.least..=self.most
     }
@@ -67,8 +71,11 @@ pub(super) fn black_to_white() -> Vec<GradientStop> {
 
 /// Reads or changes the parameters of an adjustment, in the order in which they are shown.
 pub trait ParameterVisitor {
+    /// A number.
     fn number(&mut self, parameter: NumberParameter, value: &mut f32);
+    /// Something that is on or off.
     fn flag(&mut self, name: ParameterName, default: bool, value: &mut bool);
+    /// A color.
     fn color(&mut self, name: ParameterName, default: Color, value: &mut Color);
     /// Points of a curve through (0, 0) and (255, 255), where nothing is said.
     fn curve(&mut self, name: ParameterName, value: &mut ToneCurve);

@@ -31,6 +31,7 @@ impl LiveAdjustment {
         Self { params: Arc::new(adjustment.held()), prepared: Arc::default() }
     }
 
+    /// What it was made of.
     pub fn params(&self) -> &ColorAdjustment {
         &self.params
     }

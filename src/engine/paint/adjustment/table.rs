@@ -17,6 +17,7 @@ pub struct ColorTable {
 impl ColorTable {
     /// Entries along an axis that a table may have: of one dimension, and of three.
     pub const MOST_SEPARATE: usize = 65_536;
+    /// The most entries along a side of a table of three dimensions.
     pub const MOST_SIDE: usize = 65;
     /// Letters of a title.
     pub const LONGEST_TITLE: usize = 200;
@@ -36,18 +37,22 @@ impl ColorTable {
         (values.len() == 3 * entries).then_some(Self { title, side, is_separate, values })
     }
 
+    /// The title that its file has.
     pub fn title(&self) -> &str {
         &self.title
     }
 
+    /// How many entries lie along a side.
     pub fn side(&self) -> usize {
         self.side
     }
 
+    /// It holds a curve for each channel, not a cube of colors.
     pub fn is_separate(&self) -> bool {
         self.is_separate
     }
 
+    /// Its entries, three numbers each, red fastest.
     pub fn values(&self) -> &[u16] {
         &self.values
     }

@@ -20,6 +20,7 @@ pub struct LevelsRange {
     pub gamma: f32,
     /// The least and the most after, `[0, 255]`.
     pub out_black: f32,
+    /// What white becomes.
     pub out_white: f32,
 }
 
@@ -61,11 +62,14 @@ impl Parameters for LevelsRange {
 /// Levels of each channel, then of all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Levels {
+    /// The levels of all channels.
     pub master: LevelsRange,
+    /// Those of red, green and blue.
     pub channels: [LevelsRange; 3],
 }
 
 impl Levels {
+    /// What a tone of a channel becomes, `[0, 1]`.
     pub fn tone(&self, channel: usize, x: f32) -> f32 {
         self.master.tone(self.channels[channel].tone(x))
     }
@@ -87,7 +91,9 @@ impl Parameters for Levels {
 /// A curve of each channel, then one of all.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
+    /// The curve of all channels.
     pub master: ToneCurve,
+    /// Those of red, green and blue.
     pub channels: [ToneCurve; 3],
 }
 
@@ -189,6 +195,7 @@ pub struct Exposure {
     pub exposure: f32,
     /// Added to linear light.
     pub offset: f32,
+    /// The exponent of what results, above 0.
     pub gamma: f32,
 }
 
@@ -226,6 +233,7 @@ impl Parameters for Exposure {
 pub struct Invert;
 
 impl Invert {
+    /// What a tone becomes, `[0, 1]`.
     pub fn tone(x: f32) -> f32 {
         1.0 - x
     }

@@ -17,6 +17,7 @@ use crate::surface::deformation::DeformedRect;
 /// What a dab covers.
 #[derive(Clone, Copy)]
 pub enum Footprint<'t> {
+    /// A formula.
     Shape(TipShape, Falloff),
     /// A round tip times a picture of its own coverage.
     Textured(&'t SoftenedStamps),

@@ -17,9 +17,15 @@ use crate::surface::support::DabExtent;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TipShape {
     /// `ratio`: the shorter axis over the longer, `(0, 1]`.
-    Ellipse { ratio: f32 },
+    Ellipse {
+        /// The shorter axis, relative to the longer.
+        ratio: f32,
+    },
     /// A rectangle, the longer axis along x before it is turned.
-    Square { ratio: f32 },
+    Square {
+        /// The shorter side, relative to the longer.
+        ratio: f32,
+    },
 }
 
 /// Half of a dab's least width, px: a thinner dab is fainter instead.

@@ -41,6 +41,7 @@ impl SoftenedStamps {
         }
     }
 
+    /// Its stamps have colors of their own.
     pub fn is_colored(&self) -> bool {
         self.at(0.0).0.is_colored
     }

@@ -28,19 +28,33 @@ pub fn px_per_sec_of(pace: f32) -> f32 {
 /// The readings at a dab, each in `[0, 1]` as [`Input`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DabInputs {
+    /// The pressure of the pen.
     pub pressure: f32,
+    /// How far the pen leans: 0 upright, 1 flat.
     pub tilt: f32,
+    /// Where the pen leans, in turns.
     pub tilt_direction: f32,
+    /// Where the stroke goes, in turns.
     pub direction: f32,
+    /// The averaged speed; 1 is two canvas lengths a second.
     pub speed: f32,
+    /// The path so far; 1 is ten diameters.
     pub distance: f32,
+    /// How far the surface turns away from the viewer.
     pub slope: f32,
+    /// How raised the surface is; ½ is flat.
     pub curvature: f32,
+    /// How far away the surface is.
     pub depth: f32,
+    /// The logarithmic pace.
     pub pace: f32,
+    /// The same, averaged for longer.
     pub slow_pace: f32,
+    /// Where the stroke is in its cycle.
     pub cycle: f32,
+    /// What the beginning of the stroke has reached.
     pub attack: f32,
+    /// What the brush set with its last dab.
     pub custom: f32,
     /// Unique to this dab: everything random about it depends on it.
     pub seed: u32,

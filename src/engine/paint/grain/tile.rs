@@ -21,6 +21,7 @@ use std::sync::Arc;
 pub struct GrainTile {
     /// The factor of F in either part, `[0, 1]`.
     pub light: [f32; TILE_AREA],
+    /// How much paint each pixel does not take.
     pub dark: [f32; TILE_AREA],
     /// The lighter part's share of the pixel, `[0, 1]`.
     pub share: [f32; TILE_AREA],

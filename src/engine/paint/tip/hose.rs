@@ -46,6 +46,7 @@ crate::named! {
 pub struct DabMoment {
     /// Its number in the stroke.
     pub number: u32,
+    /// What drives the dab.
     pub inputs: DabInputs,
 }
 

@@ -12,7 +12,9 @@ use std::sync::{Mutex, PoisonError};
 /// What a textured tip is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TipTexture {
+    /// The ends of hairs.
     Bristles(Bristles),
+    /// Specks.
     Noise(Noise),
 }
 
@@ -21,6 +23,7 @@ pub enum TipTexture {
 pub struct Bristles {
     /// Number of hairs, `[1, 1000]`.
     pub count: u32,
+    /// Where they stand.
     pub seed: u32,
 }
 
@@ -31,14 +34,17 @@ pub struct Noise {
     pub cells: u32,
     /// Share of the tip that they cover, `[0, 1]`.
     pub density: f32,
+    /// Where they lie.
     pub seed: u32,
 }
 
 impl Bristles {
+    /// How many there may be.
     pub const COUNT: std::ops::RangeInclusive<u32> = 1..=1000;
 }
 
 impl Noise {
+    /// How many may lie along the diameter.
     pub const CELLS: std::ops::RangeInclusive<u32> = 1..=200;
 }
 

@@ -78,7 +78,12 @@ macro_rules! declare {
         /// of a layer is mixed this way.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
         pub enum BlendMode {
-            $($(#[$meta])* $mode,)+
+            $(
+                #[doc = concat!("“", $label, "” in the window.")]
+                ///
+                $(#[$meta])*
+                $mode,
+            )+
         }
 
         impl BlendMode {

@@ -58,36 +58,43 @@ pub fn dissolved(source: [f32; 4], [x, y]: [i32; 2]) -> [f32; 4] {
     }
 }
 
+/// The source alone (sec. 9.1.1).
 #[inline(always)]
 pub fn normal(_cb: f32, cs: f32) -> f32 {
     cs
 }
 
+/// Never lighter than either (sec. 9.1.2).
 #[inline(always)]
 pub fn multiply(cb: f32, cs: f32) -> f32 {
     cb * cs
 }
 
+/// Never darker than either (sec. 9.1.3).
 #[inline(always)]
 pub fn screen(cb: f32, cs: f32) -> f32 {
     cb + cs - cb * cs
 }
 
+/// Multiplies or screens, as the backdrop is dark or light (sec. 9.1.4).
 #[inline(always)]
 pub fn overlay(cb: f32, cs: f32) -> f32 {
     hard_light(cs, cb)
 }
 
+/// The darker of both (sec. 9.1.5).
 #[inline(always)]
 pub fn darken(cb: f32, cs: f32) -> f32 {
     cb.min(cs)
 }
 
+/// The lighter of both (sec. 9.1.6).
 #[inline(always)]
 pub fn lighten(cb: f32, cs: f32) -> f32 {
     cb.max(cs)
 }
 
+/// Brightens the backdrop to reflect the source (sec. 9.1.7).
 #[inline(always)]
 pub fn color_dodge(cb: f32, cs: f32) -> f32 {
     if cb == 0.0 {
@@ -99,6 +106,7 @@ pub fn color_dodge(cb: f32, cs: f32) -> f32 {
     }
 }
 
+/// Darkens the backdrop to reflect the source (sec. 9.1.8).
 #[inline(always)]
 pub fn color_burn(cb: f32, cs: f32) -> f32 {
     if cb == 1.0 {
@@ -110,11 +118,13 @@ pub fn color_burn(cb: f32, cs: f32) -> f32 {
     }
 }
 
+/// Multiplies or screens, as the source is dark or light (sec. 9.1.9).
 #[inline(always)]
 pub fn hard_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { multiply(cb, 2.0 * cs) } else { screen(cb, 2.0 * cs - 1.0) }
 }
 
+/// Darkens or lightens softly, as the source is dark or light (sec. 9.1.10).
 #[inline(always)]
 pub fn soft_light(cb: f32, cs: f32) -> f32 {
     let d = if cb <= 0.25 { ((16.0 * cb - 12.0) * cb + 4.0) * cb } else { cb.sqrt() };
@@ -125,51 +135,61 @@ pub fn soft_light(cb: f32, cs: f32) -> f32 {
     }
 }
 
+/// How far both differ (sec. 9.1.11).
 #[inline(always)]
 pub fn difference(cb: f32, cs: f32) -> f32 {
     (cb - cs).abs()
 }
 
+/// As the difference, with less contrast (sec. 9.1.12).
 #[inline(always)]
 pub fn exclusion(cb: f32, cs: f32) -> f32 {
     cb + cs - 2.0 * cb * cs
 }
 
+/// The sum of both, at most white.
 #[inline(always)]
 pub fn linear_dodge(cb: f32, cs: f32) -> f32 {
     (cb + cs).min(1.0)
 }
 
+/// The sum less white, at least black.
 #[inline(always)]
 pub fn linear_burn(cb: f32, cs: f32) -> f32 {
     (cb + cs - 1.0).max(0.0)
 }
 
+/// Burns or dodges linearly, as the source is dark or light.
 #[inline(always)]
 pub fn linear_light(cb: f32, cs: f32) -> f32 {
     (cb + 2.0 * cs - 1.0).max(0.0).min(1.0)
 }
 
+/// Burns or dodges, as the source is dark or light.
 #[inline(always)]
 pub fn vivid_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { color_burn(cb, 2.0 * cs) } else { color_dodge(cb, 2.0 * cs - 1.0) }
 }
 
+/// Replaces what is darker, or lighter, than the source allows.
 #[inline(always)]
 pub fn pin_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { darken(cb, 2.0 * cs) } else { lighten(cb, 2.0 * cs - 1.0) }
 }
 
+/// Each channel wholly black or white.
 #[inline(always)]
 pub fn hard_mix(cb: f32, cs: f32) -> f32 {
     if cb + cs > FULL { 1.0 } else { 0.0 }
 }
 
+/// The backdrop less the source.
 #[inline(always)]
 pub fn subtract(cb: f32, cs: f32) -> f32 {
     (cb - cs).max(0.0)
 }
 
+/// The backdrop over the source.
 #[inline(always)]
 pub fn divide(cb: f32, cs: f32) -> f32 {
     if cs > 0.0 { (cb / cs).min(1.0) } else { 1.0 }
@@ -193,21 +213,25 @@ pub fn lighter(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     if lum(cs) > lum(cb) { cs } else { cb }
 }
 
+/// The source's hue with the backdrop's saturation and luminosity (sec. 9.2.1).
 #[inline(always)]
 pub fn hue(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(set_sat(cs, sat(cb)), lum(cb))
 }
 
+/// The source's saturation with the backdrop's hue and luminosity (sec. 9.2.2).
 #[inline(always)]
 pub fn saturation(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(set_sat(cb, sat(cs)), lum(cb))
 }
 
+/// The source's hue and saturation with the backdrop's luminosity (sec. 9.2.3).
 #[inline(always)]
 pub fn color(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(cs, lum(cb))
 }
 
+/// The source's luminosity with the backdrop's hue and saturation (sec. 9.2.4).
 #[inline(always)]
 pub fn luminosity(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(cb, lum(cs))
@@ -229,12 +253,14 @@ pub fn clip_color(c: [f32; 3]) -> [f32; 3] {
     if x > 1.0 { c.map(|v| l + (v - l) * (1.0 - l) / (x - l)) } else { c }
 }
 
+/// `SetLum` of sec. 9.2: a color with another luminosity.
 #[inline(always)]
 pub fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
     let d = l - lum(c);
     clip_color(c.map(|v| v + d))
 }
 
+/// `Sat` of sec. 9.2: the largest component less the smallest.
 #[inline(always)]
 pub fn sat([r, g, b]: [f32; 3]) -> f32 {
     r.max(g).max(b) - r.min(g).min(b)

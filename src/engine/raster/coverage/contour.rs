@@ -11,8 +11,11 @@ use std::sync::Arc;
 pub struct Run {
     /// Its upper or left end.
     pub x: i32,
+    /// The row of its first corner.
     pub y: i32,
+    /// How many pixels long it is.
     pub length: i32,
+    /// It runs down; else to the right.
     pub is_vertical: bool,
 }
 

@@ -25,6 +25,7 @@ use lattice::{LANES, TapLattice};
 pub struct PatchRow<'a> {
     /// The image of the pixel's center.
     pub x: &'a [f32],
+    /// The second coordinates.
     pub y: &'a [f32],
     /// From there to the image of the middle of the left, right, upper and lower edge of the pixel:
     /// `[x, y]` each.

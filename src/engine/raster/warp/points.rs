@@ -10,6 +10,7 @@ use crate::raster::TILE;
 pub struct PointRow {
     /// Px of the source.
     pub x: [f32; TILE],
+    /// The second coordinates.
     pub y: [f32; TILE],
     /// How the points move with the pixel: with a step to the right (x, y), and with one down (x,
     /// y).

@@ -9,7 +9,9 @@ use crate::math::{Mat2, Rect, Vec2, vec2};
 /// own row.
 #[derive(Clone, Debug, Default)]
 pub struct TilePoints {
+    /// The first coordinates.
     pub x: Vec<f32>,
+    /// The second coordinates.
     pub y: Vec<f32>,
     /// How the points move with the pixel: with a step to the right (x, y), and with one down (x,
     /// y).
@@ -32,19 +34,23 @@ impl TilePoints {
         Self { x: row(), y: row(), jacobian: std::array::from_fn(|_| row()) }
     }
 
+    /// How many points there are.
     pub fn len(&self) -> usize {
         self.x.len()
     }
 
+    /// There is no point.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
 
+    /// A point, and how it changes from pixel to pixel.
     pub fn at(&self, k: usize) -> (Vec2, Mat2) {
         let [a, b, c, d] = &self.jacobian;
         (vec2(self.x[k], self.y[k]), Mat2::from_cols_array(&[a[k], b[k], c[k], d[k]]))
     }
 
+    /// Sets a point, and how it changes from pixel to pixel.
     pub fn set(&mut self, k: usize, (p, jacobian): (Vec2, Mat2)) {
         (self.x[k], self.y[k]) = (p.x, p.y);
         self.jacobian.iter_mut().zip(jacobian.to_cols_array()).for_each(|(row, v)| row[k] = v);

@@ -29,6 +29,7 @@ struct LightParcel {
 }
 
 impl Irradiance {
+    /// That of a map.
     pub fn of(map: &EnvironmentMap) -> Self {
         let parcels = parcels(map.level(8 * ROWS));
         let gather = |i: usize| {

@@ -18,6 +18,7 @@ pub struct SphereLevel {
 pub struct Spot {
     /// Numbers of texels, row by row.
     pub index: [i32; 4],
+    /// The weight of each texel.
     pub weight: [f32; 4],
 }
 
@@ -59,10 +60,12 @@ impl SphereLevel {
         Self { rows, texels }
     }
 
+    /// How many rows it has.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
+    /// How many columns it has.
     pub fn columns(&self) -> usize {
         2 * self.rows
     }

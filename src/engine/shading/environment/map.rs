@@ -91,6 +91,7 @@ impl TapLine {
 }
 
 impl EnvironmentMap {
+    /// What a picture shows all around.
     pub fn new(picture: Picture, projection: Projection) -> Self {
         let mut map = Self { picture, projection, brightest: 0.0, levels: Vec::new() };
         map.brightest = map.find_brightest();

@@ -3,6 +3,7 @@
 /// Colours nearer than this, in any channel of 8 bits, are one flat.
 pub const NEAR: i32 = 8;
 
+/// Whether a pixel has nearly a color.
 pub fn is_near(pixel: [u8; 4], color: [u8; 4]) -> bool {
     pixel.iter().zip(color).all(|(a, b)| (i32::from(*a) - i32::from(b)).abs() <= NEAR)
 }

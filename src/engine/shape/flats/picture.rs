@@ -27,6 +27,7 @@ const PIXEL_ART_PX: u32 = 256;
 
 /// The pixels of a flat picture.
 pub struct FlatPicture {
+    /// Its pixels, straight.
     pub pixels: Plane<Pixel>,
     /// Those in flat areas.
     pub is_flat: Plane<bool>,
@@ -36,6 +37,7 @@ pub struct FlatPicture {
 
 /// The two areas that a mixed pixel lies between.
 pub struct Between {
+    /// Which color it is.
     pub index: usize,
     /// A pixel of each; `None` beyond the picture.
     pub sides: [Option<usize>; 2],

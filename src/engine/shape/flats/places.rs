@@ -25,6 +25,7 @@ pub struct ColorPlaces {
 }
 
 impl ColorPlaces {
+    /// Where a color lies in a drawing.
     pub fn of(flats: &Flats, color: Color) -> Self {
         let all = flats.share_of(color, &[]);
         let size = all.size();

@@ -139,6 +139,7 @@ impl Flats {
         self.is_given.at(x, y)
     }
 
+    /// What a pixel belongs to.
     pub fn owner(&self, x: usize, y: usize) -> FlatOwner {
         match self.owner.at(x, y) {
             NONE => FlatOwner::Unknown,
@@ -308,6 +309,7 @@ fn renumbered(owner: Plane<u16>, is_kept: &[bool]) -> Plane<u16> {
     owner.map(|of| if of < NOTHING { numbers[usize::from(of)] } else { of })
 }
 
+/// An opaque pixel of a color.
 pub fn bytes(color: Color) -> Pixel {
     color.premultiplied().map(|v| (v * 255.0).round() as u8)
 }

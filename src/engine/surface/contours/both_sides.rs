@@ -14,7 +14,9 @@ use std::sync::Arc;
 
 /// The surface of the canvas.
 pub enum FrontSurface<'s> {
+    /// The surface that was asked.
     Itself(&'s Surface),
+    /// The one whose far side was asked.
     Of(Arc<Surface>),
 }
 

@@ -92,6 +92,7 @@ impl FarSide {
         self.canvas
     }
 
+    /// The contours that it is behind.
     pub fn contours(&self) -> &Contours {
         &self.contours
     }

@@ -30,7 +30,9 @@ pub(super) struct LaidPlanes {
 /// The unwrapped plane under a dab, before it is turned: distances from the dab and lengths of
 /// pixels are the same.
 pub struct OwnPlane<'p> {
+    /// The plane's first coordinates, one a pixel.
     pub x: &'p Plane<f32>,
+    /// The plane's second coordinates, one a pixel.
     pub y: &'p Plane<f32>,
     /// The dab's center there.
     pub at: Vec2,

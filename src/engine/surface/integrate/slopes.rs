@@ -6,7 +6,9 @@ use crate::raster::Plane;
 
 /// Unit normals (camera space, y up) over the pixels where `inside` holds.
 pub struct Slopes<'a> {
+    /// The normals, y up.
     pub normals: &'a Plane<Vec3>,
+    /// Where they count.
     pub inside: &'a Plane<bool>,
 }
 

@@ -53,11 +53,13 @@ const HOLD: f32 = 16.0;
 const EFFORT: Effort = Effort { goal: 1e-3, most_steps: 30 };
 
 impl PlaneDisplacement {
+    /// How far the plane is displaced at a pixel.
     #[inline(always)]
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         Vec2::new(self.planes[0].at(x, y), self.planes[1].at(x, y))
     }
 
+    /// Both components, one a pixel.
     pub fn planes(&self) -> [&Plane<f32>; 2] {
         self.planes.each_ref()
     }

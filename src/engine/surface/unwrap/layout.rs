@@ -78,6 +78,7 @@ impl PlaneLayout {
         Size::new(self.sheet.rect.width() as u32, self.sheet.rect.height() as u32)
     }
 
+    /// The pieces, as they are laid out.
     pub fn pieces(&self) -> &[LaidPiece] {
         &self.pieces
     }

@@ -10,6 +10,7 @@ use crate::surface::{Surface, links};
 pub struct PlaneView {
     /// In the plane, px.
     pub rect: Rect,
+    /// In the canvas, px.
     pub points: Vec<Vec2>,
 }
 
