@@ -1,6 +1,7 @@
 //! Floor 0: numbers without pictures. Vectors are `glam`'s; a position and a direction are both
 //! `Vec2`, distinguished by name.
 
+pub mod conjugate_gradients;
 pub mod fast;
 pub mod hash;
 mod named;

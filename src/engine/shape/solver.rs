@@ -5,15 +5,15 @@
 
 mod level;
 
+use crate::math::conjugate_gradients::{
+    ConjugateSystem, JACOBI_STEPS as STEPS, conjugate_gradients,
+};
 use crate::math::{Rect, Size};
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
 use level::*;
 use rayon::prelude::*;
 
-/// Two sweeps of Jacobi with these steps damp best the errors from half a grid's highest frequency
-/// on: Chebyshev's polynomial over [½, 2].
-const STEPS: [f32; 2] = [0.561_7, 1.389_5];
 /// The most steps of conjugate gradients.
 const MOST_STEPS: usize = 60;
 
@@ -136,37 +136,19 @@ impl Solver {
             left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
         });
         let goal = dots(w, b, b) * goal;
-        let (mut direction, mut pulled, mut rz_before) = (buffer(), buffer(), 0.0);
-        let mut scratch = SolverBuffers::default();
-        for step in 0..MOST_STEPS {
-            let left = dots(w, &residual, &residual);
-            if left.is_nan() || left <= goal {
-                break;
-            }
-            let z = self.cycle(at, &residual, &mut scratch);
-            let rz = dots(w, &residual, &z);
-            let turn = if step == 0 { 0.0 } else { (rz / rz_before) as f32 };
-            let bands = direction.par_chunks_mut(w * BAND).zip(z.par_chunks(w * BAND));
-            bands.with_min_len(least_bands(w)).for_each(|(d, z)| {
-                d.iter_mut().zip(z).for_each(|(d, z)| *d = z + turn * *d);
-            });
-            scratch.keep(z);
-            grid.fill(&mut pulled, |y, out| {
-                applied(grid.couplings(y), grid.around(&direction, y), out)
-            });
-            let energy = dots(w, &direction, &pulled);
-            if energy.is_nan() || energy <= 0.0 || rz <= 0.0 {
-                break;
-            }
-            let along = (rz / energy) as f32;
-            let bands = v.par_chunks_mut(w * BAND).zip(residual.par_chunks_mut(w * BAND));
-            let moved = direction.par_chunks(w * BAND).zip(pulled.par_chunks(w * BAND));
-            bands.zip(moved).with_min_len(least_bands(w)).for_each(|((v, r), (d, p))| {
-                add(v, along, d);
-                add(r, -along, p);
-            });
-            rz_before = rz;
-        }
+        let left = dots(w, &residual, &residual);
+        let mut system = SolverSystem {
+            solver: self,
+            at,
+            v: &mut v,
+            residual,
+            z: Vec::new(),
+            direction: buffer(),
+            pulled: buffer(),
+            scratch: SolverBuffers::default(),
+        };
+        let is_done = |_, left: f64| left.is_nan() || left <= goal;
+        conjugate_gradients(&mut system, left, MOST_STEPS, is_done);
         v
     }
 
@@ -266,6 +248,56 @@ fn between_blocks(grid: &Level, below: &Level, coarse: &[f32], y: usize, out: &m
             let row = |r: &[f32]| 0.75 * r[near] + 0.25 * r[far];
             *out = 0.75 * row(rows[0]) + 0.25 * row(rows[1]);
         }
+    }
+}
+
+/// What a solve on a level works on.
+struct SolverSystem<'a> {
+    solver: &'a Solver,
+    at: usize,
+    v: &'a mut [f32],
+    residual: Vec<f32>,
+    z: Vec<f32>,
+    direction: Vec<f32>,
+    pulled: Vec<f32>,
+    scratch: SolverBuffers,
+}
+
+impl SolverSystem<'_> {
+    fn grid(&self) -> &Level {
+        &self.solver.levels[self.at]
+    }
+}
+
+impl ConjugateSystem for SolverSystem<'_> {
+    fn precondition(&mut self) -> f64 {
+        self.z = self.solver.cycle(self.at, &self.residual, &mut self.scratch);
+        dots(self.grid().w, &self.residual, &self.z)
+    }
+
+    fn turn(&mut self, turn: f32) -> f64 {
+        let (grid, w) = (&self.solver.levels[self.at], self.grid().w);
+        let bands = self.direction.par_chunks_mut(w * BAND).zip(self.z.par_chunks(w * BAND));
+        bands.with_min_len(least_bands(w)).for_each(|(d, z)| {
+            d.iter_mut().zip(z).for_each(|(d, z)| *d = z + turn * *d);
+        });
+        self.scratch.keep(std::mem::take(&mut self.z));
+        let direction = &self.direction;
+        grid.fill(&mut self.pulled, |y, out| {
+            applied(grid.couplings(y), grid.around(direction, y), out)
+        });
+        dots(w, direction, &self.pulled)
+    }
+
+    fn walk(&mut self, along: f32) -> f64 {
+        let w = self.grid().w;
+        let bands = self.v.par_chunks_mut(w * BAND).zip(self.residual.par_chunks_mut(w * BAND));
+        let moved = self.direction.par_chunks(w * BAND).zip(self.pulled.par_chunks(w * BAND));
+        bands.zip(moved).with_min_len(least_bands(w)).for_each(|((v, r), (d, p))| {
+            add(v, along, d);
+            add(r, -along, p);
+        });
+        dots(w, &self.residual, &self.residual)
     }
 }
 

@@ -13,6 +13,9 @@ mod graph;
 mod merge;
 mod rows;
 
+use crate::math::conjugate_gradients::{
+    ConjugateSystem, JACOBI_STEPS as STEPS, conjugate_gradients,
+};
 use crate::memory::filled_or_unwind;
 pub use constraints::SoftConstraints;
 use graph::PoissonGraph;
@@ -73,10 +76,6 @@ impl PoissonGrid {
 
 /// Rows that one task works on: enough that the rows around them, read by two tasks, weigh little.
 const BAND: usize = 16;
-
-/// Two sweeps of Jacobi with these steps leave at most 0.22 of every error between half the
-/// steepest and the steepest that a grid holds: Chebyshev's polynomial over [½, 2].
-const STEPS: [f32; 2] = [0.561_7, 1.389_5];
 
 /// Steps without a smaller residual after which f32 is too coarse to go on.
 const PATIENCE: usize = 3;
@@ -201,26 +200,17 @@ impl PoissonSolver {
         }
         levels.resize_with(self.graphs.len(), Default::default);
         let goal = self.dot(b, b) * effort.goal * effort.goal;
-        let mut left = self.residual(constraints, v, b, residual);
-        let (mut rz_before, mut least, mut least_at) = (0.0, left, 0);
-        for step in 0..effort.most_steps {
+        let left = self.residual(constraints, v, b, residual);
+        let (mut least, mut least_at) = (left, 0);
+        let is_done = |step: usize, left: f64| {
             if left < least {
                 (least, least_at) = (left, step);
             }
-            if left.is_nan() || left <= goal || step > least_at + PATIENCE || !go_on() {
-                return step;
-            }
-            self.cycle(constraints, residual, z, levels);
-            let rz = self.dot(residual, &z[0]);
-            let turn = if step == 0 { 0.0 } else { (rz / rz_before) as f32 };
-            let energy = self.turned(constraints, &z[0], turn, direction, pulled);
-            if energy.is_nan() || energy <= 0.0 || rz <= 0.0 {
-                return step;
-            }
-            left = self.walked((rz / energy) as f32, (direction, pulled), v, residual);
-            rz_before = rz;
-        }
-        effort.most_steps
+            left.is_nan() || left <= goal || step > least_at + PATIENCE || !go_on()
+        };
+        let mut system =
+            PoissonSystem { solver: self, constraints, v, residual, direction, pulled, z, levels };
+        conjugate_gradients(&mut system, left, effort.most_steps, is_done)
     }
 
     /// Σ a b, folded row by row.
@@ -347,6 +337,33 @@ impl PoissonSolver {
         }
         relax(STEPS[0], z, twin);
         relax(STEPS[1], twin, z);
+    }
+}
+
+/// What a solve works on.
+struct PoissonSystem<'a> {
+    solver: &'a PoissonSolver,
+    constraints: &'a SoftConstraints,
+    v: &'a mut [f32],
+    residual: &'a mut [f32],
+    direction: &'a mut [f32],
+    pulled: &'a mut [f32],
+    z: &'a mut [Vec<f32>; 2],
+    levels: &'a mut [graph::GraphScratch],
+}
+
+impl ConjugateSystem for PoissonSystem<'_> {
+    fn precondition(&mut self) -> f64 {
+        self.solver.cycle(self.constraints, self.residual, self.z, self.levels);
+        self.solver.dot(self.residual, &self.z[0])
+    }
+
+    fn turn(&mut self, turn: f32) -> f64 {
+        self.solver.turned(self.constraints, &self.z[0], turn, self.direction, self.pulled)
+    }
+
+    fn walk(&mut self, along: f32) -> f64 {
+        self.solver.walked(along, (self.direction, self.pulled), self.v, self.residual)
     }
 }
 
