@@ -194,11 +194,13 @@ impl Flats {
 
 /// A picture of flats whose lines are told from its areas.
 pub struct WithoutLines {
+    /// Its pixels.
     pub picture: FlatPicture,
     /// Those that were asked for, then the most frequent first.
     pub colors: Vec<PaletteColor>,
     /// The number of the colour of each pixel in a flat area, as in [`Palette`]; [`NONE`] in lines.
     pub owner: Plane<u16>,
+    /// Its mixed pixels, each with what it lies between.
     pub between: Vec<Between>,
     /// Which colours are mostly lines.
     pub is_line: Vec<bool>,
