@@ -52,11 +52,14 @@ pub fn pasted() -> Result<PastedContent> {
 
 /// A picture as the file that another program offers, with a name for it, where the system has
 /// such.
+#[cfg(all(unix, not(target_os = "macos")))]
 fn offered(most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
-    #[cfg(all(unix, not(target_os = "macos")))]
-    return Ok(x11::picture(most_bytes)?.map(|(ending, bytes)| (format!("Pasted.{ending}"), bytes)));
-    #[cfg(not(all(unix, not(target_os = "macos"))))]
-    return Ok(None).inspect(|_: &Option<_>| drop(most_bytes));
+    Ok(x11::picture(most_bytes)?.map(|(ending, bytes)| (format!("Pasted.{ending}"), bytes)))
+}
+
+#[cfg(not(all(unix, not(target_os = "macos"))))]
+fn offered(_most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
+    Ok(None)
 }
 
 /// Puts a picture of straight RGBA into the clipboard. It stays there as long as the returned value

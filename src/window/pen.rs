@@ -18,6 +18,8 @@ pub use events::WindowPen;
 #[cfg(test)]
 pub use recorded::RecordedPen;
 pub use report_filter::{FilteredReport, ReportFilter};
+// For the platforms that tell the meaning of a device's axes.
+#[cfg_attr(not(all(unix, not(target_os = "macos"))), allow(unused_imports))]
 pub use tablet::{AxisMeaning, PenAxes, PenAxis, SharedTablet};
 
 /// One report.
