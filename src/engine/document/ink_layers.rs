@@ -43,7 +43,7 @@ impl Document {
             let lifted = match &layer.content {
                 Content::Pixels(pixels) if drawings.contains(&layer.id) => {
                     let known = layer.lifted.clone().filter(|ink| ink.source.ptr_eq(&pixels.tiles));
-                    Some(known.unwrap_or_else(|| Arc::new(LiftedInk::of(&pixels.tiles))))
+                    Some(known.unwrap_or_else(|| Arc::new(self.lifted_ink(&pixels.tiles))))
                 }
                 _ => None,
             };
@@ -63,6 +63,14 @@ impl Document {
             next = next.with_layer(layer.id, |layer| layer.content = content).unwrap_or(next);
         }
         next
+    }
+
+    /// The ink of paint, from what parts read of it or will read.
+    fn lifted_ink(&self, tiles: &TileGrid) -> LiftedInk {
+        match self.parts.reading_of(tiles) {
+            Some(reading) => LiftedInk::of_reading(tiles, &reading),
+            None => LiftedInk::of(tiles),
+        }
     }
 
     /// With ink layers naming their drawings by their present names; `before`: the document in

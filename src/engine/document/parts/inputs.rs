@@ -57,6 +57,7 @@ impl Document {
     pub fn reshaped_with_progress(&self, progress: &Progress) -> Option<Document> {
         let placed = self.with_homes_placed().with_ink_lifted();
         if placed.is_shaped() {
+            placed.parts.forget_flats();
             return Some(placed.with_selections_found());
         }
         progress.enter("making the shape");

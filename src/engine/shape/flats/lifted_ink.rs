@@ -8,7 +8,7 @@
 use super::areas::{pixels, spread};
 use super::color_distance::{added, color_distance, share_on_the_way};
 use super::palette::NONE;
-use super::picture::{Pixel, REACH};
+use super::picture::{FlatReading, Pixel, REACH};
 use super::shares::WithoutLines;
 use crate::math::Rect;
 use crate::raster::{Plane, Tile, TileAt, TileGrid, distance};
@@ -36,12 +36,16 @@ pub struct LiftedInk {
 impl LiftedInk {
     /// The ink of a drawing.
     pub fn of(source: &TileGrid) -> Self {
-        let rect = source.bounds();
-        let mut lifted = Self::none_of(source);
-        if rect.is_empty() {
-            return lifted;
+        match source.bounds().is_empty() {
+            true => Self::none_of(source),
+            false => Self::of_reading(source, &FlatReading::of(source, source.bounds())),
         }
-        let read = WithoutLines::of(source, rect, &[]).with_thin_lines();
+    }
+
+    /// The same where the whole of it was read.
+    pub fn of_reading(source: &TileGrid, reading: &FlatReading) -> Self {
+        let (rect, mut lifted) = (source.bounds(), Self::none_of(source));
+        let read = WithoutLines::of(reading, &[]).with_thin_lines();
         if read.lines.values().iter().any(|line| *line != NONE) {
             let split = Lifting::of(&read, source, rect).split();
             lay(&mut lifted, &split, rect);

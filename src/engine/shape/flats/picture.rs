@@ -5,6 +5,7 @@ use super::color_distance::{NEAR, is_near, share_on_the_way};
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Premultiplied.
 pub type Pixel = [u8; 4];
@@ -33,6 +34,24 @@ pub struct FlatPicture {
     pub is_flat: Plane<bool>,
     /// A small picture without soft edges: no gap in it is an accident.
     pub is_pixel_art: bool,
+}
+
+/// What is found in a picture of flats, whatever colors are asked for.
+#[derive(Clone)]
+pub struct FlatReading {
+    /// Its pixels.
+    pub picture: Arc<FlatPicture>,
+    /// The mixed pixels that lie between two areas, row by row.
+    pub between: Arc<[Between]>,
+}
+
+impl FlatReading {
+    /// The pixels of a rectangle.
+    pub fn of(tiles: &TileGrid, rect: Rect) -> Self {
+        let picture = FlatPicture::of(tiles, rect);
+        let between = picture.between_areas().into();
+        Self { picture: Arc::new(picture), between }
+    }
 }
 
 /// The two areas that a mixed pixel lies between.

@@ -8,10 +8,11 @@ use super::color_distance::is_near;
 use super::complete::{Given, complete};
 use super::ink::{color_pixels, lines};
 use super::palette::{NONE, NOTHING, Palette, PaletteColor, nearest};
-use super::picture::{Between, FlatPicture, MixedPixel};
+use super::picture::{Between, FlatPicture, FlatReading, MixedPixel};
 use crate::math::Rect;
 use crate::math::srgb::Color;
 use crate::raster::{Plane, TileGrid};
+use std::sync::Arc;
 
 pub use super::picture::{MOSTLY, Pixel, REACH};
 
@@ -55,11 +56,13 @@ impl Flats {
     /// The pixels of a rectangle, `None` if it holds none; `asked`: colours that are looked for
     /// however small their areas are.
     pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Option<Self> {
-        if rect.is_empty() {
-            return None;
-        }
+        (!rect.is_empty()).then(|| Self::of_reading(&FlatReading::of(tiles, rect), asked))
+    }
+
+    /// The same of pixels that were read.
+    pub fn of_reading(reading: &FlatReading, asked: &[Color]) -> Self {
         let WithoutLines { picture, mut colors, mut owner, between, is_line, lines } =
-            WithoutLines::of(tiles, rect, asked);
+            WithoutLines::of(reading, asked);
         let in_areas =
             |owner: &Plane<u16>| owner.values().iter().filter(|of| **of < NOTHING).count();
         let of_lines = lines.values().iter().zip(owner.values());
@@ -78,14 +81,14 @@ impl Flats {
         let gap_px = if picture.is_pixel_art { 0.0 } else { GAP_PX };
         let flat_share = flat as f32 / painted.max(1) as f32;
         let mut flats = Self { colors, owner, mixed, is_given, gap_px, left_out, flat_share };
-        flats.add_mixed(between, &nearest);
-        Some(flats)
+        flats.add_mixed(&between, &nearest);
+        flats
     }
 
     /// Adds the pixels between areas; `nearest`: the number of the nearest area of each pixel, one
     /// more.
-    fn add_mixed(&mut self, between: Vec<Between>, nearest: &Plane<u32>) {
-        for Between { index, sides, share } in between {
+    fn add_mixed(&mut self, between: &[Between], nearest: &Plane<u32>) {
+        for &Between { index, sides, share } in between {
             let is_of_line = |side: &usize| self.is_given.values()[*side];
             let is_beside_line = sides.iter().flatten().any(is_of_line);
             let sides = sides.map(|side| match side {
@@ -195,13 +198,13 @@ impl Flats {
 /// A picture of flats whose lines are told from its areas.
 pub struct WithoutLines {
     /// Its pixels.
-    pub picture: FlatPicture,
+    pub picture: Arc<FlatPicture>,
     /// Those that were asked for, then the most frequent first.
     pub colors: Vec<PaletteColor>,
     /// The number of the colour of each pixel in a flat area, as in [`Palette`]; [`NONE`] in lines.
     pub owner: Plane<u16>,
     /// Its mixed pixels, each with what it lies between.
-    pub between: Vec<Between>,
+    pub between: Arc<[Between]>,
     /// Which colours are mostly lines.
     pub is_line: Vec<bool>,
     /// The number of the colour of each pixel that is mostly of a line; else [`NONE`].
@@ -209,12 +212,11 @@ pub struct WithoutLines {
 }
 
 impl WithoutLines {
-    /// The pixels of a rectangle; `asked`: as for [`Flats::of`].
-    pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Self {
-        let picture = FlatPicture::of(tiles, rect);
+    /// Of pixels that were read; `asked`: as for [`Flats::of`].
+    pub fn of(reading: &FlatReading, asked: &[Color]) -> Self {
+        let FlatReading { picture, between } = reading.clone();
         let asked: Vec<Pixel> = asked.iter().copied().map(bytes).collect();
         let Palette { colors, of: mut owner } = Palette::of(&picture, &asked);
-        let between = picture.between_areas();
         for index in picture.of_thin_lines(&between) {
             let here = picture.pixels.values()[index];
             if let Some(number) = nearest(colors.iter().map(|color| color.color), here) {
@@ -237,7 +239,7 @@ impl WithoutLines {
     /// Takes lines out of each colour. One that was asked for keeps them if it is nothing else.
     fn take_out_lines(&mut self) {
         let mut mostly = self.owner.clone();
-        for Between { index, sides, share } in &self.between {
+        for Between { index, sides, share } in self.between.iter() {
             let side = sides[usize::from(*share >= MOSTLY)];
             mostly.values_mut()[*index] = side.map_or(NOTHING, |side| self.owner.values()[side]);
         }
