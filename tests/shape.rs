@@ -110,3 +110,34 @@ fn a_shape_for_which_there_is_no_memory_is_refused_before_it_is_made() {
     );
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
 }
+
+#[test]
+fn a_part_for_which_there_is_no_memory_is_refused_where_it_is_made() {
+    let desk = Desk::with(PHOTO);
+    let told = |side: u32, limit: &str| {
+        let save = serde_json::json!({ "in": "file", "do": "save", "file": desk.path("new.ora") });
+        let story = format!(
+            r##"{{"in":"file","do":"new","width":{side},"height":{side},"background":"#ffffff"}}
+{{"in":"part","do":"add","kind":"sphere"}}
+{{"in":"part","do":"add","kind":"touches"}}
+{save}
+"##
+        );
+        std::fs::write(desk.path("story.jsonl"), story).unwrap();
+        let mut command = rilievo(&["replay", "--force", "--max-memory", limit]);
+        let output = command.arg(desk.path("story.jsonl")).output().unwrap();
+        assert!(output.status.success(), "{}", said(&output));
+        let info = rilievo(&["info"]).arg(desk.path("new.ora")).output().unwrap();
+        (said(&output), String::from_utf8(info.stdout).unwrap())
+    };
+    let (said, info) = told(3000, "300M");
+    assert!(
+        said.contains("Too large: the shape of 1 part on 3000 × 3000 pixels takes")
+            && said.contains("Nothing was changed.")
+            && said.contains("No part is selected"),
+        "{said}"
+    );
+    assert!(!info.contains("on a surface"), "{info}");
+    let (said, info) = told(128, "300M");
+    assert!(said.is_empty() && info.contains("on a surface"), "{said}{info}");
+}

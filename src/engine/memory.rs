@@ -59,6 +59,29 @@ pub fn bytes_text(bytes: u64) -> String {
     if mb < 1000.0 { format!("{mb:.0} MB") } else { format!("{:.1} GB", mb / 1000.0) }
 }
 
+/// Asks how many bytes are free; all are until a floor above says how to ask.
+static FREE: OnceLock<fn() -> u64> = OnceLock::new();
+
+/// Says how to ask how many bytes are free for what is made next. Who says it first is asked.
+pub fn ask_for_free_bytes(ask: fn() -> u64) {
+    FREE.get_or_init(|| ask);
+}
+
+/// Bytes that are free for what is made next.
+pub fn free_bytes() -> u64 {
+    FREE.get().map_or(u64::MAX, |ask| ask())
+}
+
+/// Checks memory before it is allocated; fails with a sentence without its full stop. `what`: in
+/// front of “takes”; `free`: how many bytes there are.
+pub fn room_for(what: &str, bytes: u64, free: u64) -> Result<(), String> {
+    if bytes <= free {
+        return Ok(());
+    }
+    let (asked, there) = (bytes_text(bytes), bytes_text(free));
+    Err(format!("{what} takes {asked} of memory, and {there} are free for it"))
+}
+
 /// Bytes that may be kept for speed alone, what could be computed again, and those that are.
 #[derive(Debug)]
 pub struct CachePool {
@@ -84,6 +107,11 @@ impl CachePool {
     /// How much may be kept.
     pub fn ceiling(&self) -> u64 {
         self.ceiling.load(Ordering::Relaxed)
+    }
+
+    /// How much more may be kept.
+    pub fn room(&self) -> u64 {
+        self.ceiling().saturating_sub(self.kept.load(Ordering::Relaxed))
     }
 
     /// `None` where all that is kept would be more than the ceiling.

@@ -5,7 +5,7 @@
 
 use crate::document::{Content, Document, Part, PartKind};
 use crate::math::Size;
-use crate::memory::bytes_text;
+use crate::memory;
 use crate::paint::Stroke;
 use crate::raster::{Picture, Tile};
 use crate::surface::Bend;
@@ -145,11 +145,7 @@ impl Budget {
 
     /// The same for work that belongs to no file; fails with a sentence without its full stop.
     pub fn room_for(&self, what: &str, bytes: u64) -> Result<(), String> {
-        if bytes > self.memory_bytes {
-            let (asked, there) = (bytes_text(bytes), bytes_text(self.memory_bytes));
-            return Err(format!("{what} takes {asked} of memory, and {there} are free for it"));
-        }
-        Ok(())
+        memory::room_for(what, bytes, self.memory_bytes)
     }
 
     /// Checks memory before the surface of some parts is made. `held_bytes`: of the layers that
@@ -161,10 +157,9 @@ impl Budget {
         list: &[Arc<Part>],
         held_bytes: u64,
     ) -> Result<()> {
-        let parts = if list.len() == 1 { "1 part".into() } else { format!("{} parts", list.len()) };
-        let what = format!("the shape of {parts} on {} pixels", document.size);
         let held_bytes = held_bytes + document.maps_surface().map_or(0, |maps| maps.map_bytes());
-        self.room(file, &what, document.shape_bytes(list).saturating_add(held_bytes))
+        let bytes = document.shape_bytes(list).saturating_add(held_bytes);
+        self.room(file, &document.shape_work(list), bytes)
     }
 
     /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.

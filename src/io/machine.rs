@@ -4,15 +4,34 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What is assumed to be free if the system gives no figure.
 pub const UNKNOWN_BYTES: u64 = 4 << 30;
+
+/// Bytes that the program may take in all, if the user said so.
+static CEILING: AtomicU64 = AtomicU64::new(u64::MAX);
+
+/// The program may take so many bytes in all from now on, whatever is free.
+pub fn set_ceiling(bytes: u64) {
+    CEILING.store(bytes, Ordering::Relaxed);
+}
 
 /// Bytes that may be allocated now without evicting anything, minus an eighth that is left to other
 /// programs.
 pub fn free_bytes() -> u64 {
     let free = least_available(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
-    free - free / 8
+    (free - free / 8).min(left_below(CEILING.load(Ordering::Relaxed)))
+}
+
+/// What is left of a ceiling for the whole program; all of it where the system does not say what
+/// the program takes.
+fn left_below(ceiling: u64) -> u64 {
+    if ceiling == u64::MAX {
+        return ceiling;
+    }
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    ceiling.saturating_sub(field(&status, "VmRSS:").map_or(0, |kib| kib * 1024))
 }
 
 /// Bytes that may be kept for speed alone (`memory::DABS`): a small share, so that old machines
@@ -177,6 +196,14 @@ mod tests {
         write("sys/fs/cgroup/user/app/memory.max", "max\n");
         write("sys/fs/cgroup/user/memory.max", "1000000000\n");
         assert_eq!(whole(root.path()), Some(1_000_000_000));
+    }
+
+    #[test]
+    fn what_the_program_takes_counts_below_its_own_ceiling() {
+        assert_eq!(left_below(u64::MAX), u64::MAX);
+        assert_eq!(left_below(1000), 0, "the test alone takes more");
+        let most = 1 << 50;
+        assert!((most / 2..=most).contains(&left_below(most)));
     }
 
     #[test]

@@ -77,6 +77,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
             return ExitCode::from(u8::try_from(refusal.exit_code()).unwrap_or(2));
         }
     };
+    crate::memory::ask_for_free_bytes(crate::io::machine::free_bytes);
     crate::memory::DABS.set_ceiling(crate::io::machine::kept_bytes());
     // A document that is read once is made once.
     let is_edited = matches!(parsed.command, Some(CliCommand::Open(_) | CliCommand::Replay(_)));

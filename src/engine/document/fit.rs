@@ -14,6 +14,7 @@ use super::{
 };
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, Size};
+use crate::memory::free_bytes;
 use crate::raster::{Picture, Resampling, TILE};
 use crate::shading::FeatureScale;
 use std::collections::HashSet;
@@ -33,7 +34,8 @@ impl Document {
     /// it is read.
     pub const MOST_VALUES: usize = 4_000_000;
 
-    /// Refuses what files cannot hold, in a sentence that names the layer. Layers that `before`
+    /// Refuses what files cannot hold, in a sentence that names the layer, and parts whose surface
+    /// could not be made, since too little memory is free for it. Layers that `before`
     /// holds unchanged are only counted, so that an opened document can be edited whatever it
     /// holds.
     pub fn fits(&self, before: Option<&Document>) -> Result<(), String> {
@@ -61,6 +63,7 @@ impl Document {
             .and_then(|()| self.parts_fit(before))
             .and_then(|()| homes())
             .and_then(|()| values())
+            .and_then(|()| self.shape_fits())
     }
 }
 
@@ -76,6 +79,11 @@ impl Document {
         self.surface_source
             .as_ref()
             .map_or(Ok(()), |source| source.fits().map_err(|why| format!("Surface: {why}.")))
+    }
+
+    /// Whether its surface was made, or can be.
+    fn shape_fits(&self) -> Fit {
+        self.shape_fits_in(free_bytes()).map_err(|why| format!("Too large: {why}."))
     }
 
     /// Whether every home is the canvas or one of the parts.

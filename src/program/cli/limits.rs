@@ -2,9 +2,25 @@
 //! Floor 7.
 
 use crate::document::{Document, MemoryUse};
-use crate::io::{Budget, machine::free_bytes};
+use crate::io::Budget;
+use crate::io::machine::{self, free_bytes};
 use crate::{Error, Result};
 use std::path::Path;
+
+/// How much memory the program may take.
+#[derive(clap::Args, Default)]
+pub struct MemoryLimit {
+    /// Maximum memory for reading and painting, such as 800M or 6G; by default, the free memory
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    max_memory: Option<u64>,
+}
+
+impl MemoryLimit {
+    /// From now on, for whatever is opened and done.
+    pub fn set(&self) {
+        self.max_memory.into_iter().for_each(machine::set_ceiling);
+    }
+}
 
 /// How much a command may use.
 #[derive(clap::Args)]
@@ -15,9 +31,8 @@ pub struct LimitArgs {
     /// Maximum number of pixels of a picture
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000_000))]
     max_pixels: Option<u64>,
-    /// Maximum memory for reading and painting, such as 800M or 6G; by default, the free memory
-    #[arg(long, value_name = "SIZE", value_parser = bytes)]
-    max_memory: Option<u64>,
+    #[command(flatten)]
+    memory: MemoryLimit,
     /// Number of threads; the result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -38,7 +53,7 @@ fn bytes(text: &str) -> std::result::Result<u64, String> {
 impl LimitArgs {
     /// The budget for readers.
     pub fn budget(&self) -> Budget {
-        let usual = Budget::default().within(self.max_memory.unwrap_or_else(free_bytes));
+        let usual = Budget::default().within(self.memory.max_memory.unwrap_or_else(free_bytes));
         let area_px = self.max_pixels.unwrap_or(usual.area_px);
         Budget {
             side_px: self.max_side.unwrap_or(usual.side_px),
@@ -53,7 +68,7 @@ impl LimitArgs {
         let what = format!("painting {} pixels", document.size);
         let painting = document.flattening_bytes();
         // What is free was asked for after the document was read; a given ceiling is for both.
-        let held = self.max_memory.map_or(0, |_| MemoryUse::of(document).total());
+        let held = self.memory.max_memory.map_or(0, |_| MemoryUse::of(document).total());
         self.budget().room(file, &what, painting.saturating_add(held))
     }
 
@@ -83,7 +98,7 @@ mod tests {
         let (held, painting) = (MemoryUse::of(&document).total(), document.flattening_bytes());
         assert!(held > 512 * 512 * 16, "the maps of the surface: {held}");
         let is_room = |bytes: u64| {
-            let limits = LimitArgs { max_memory: Some(bytes), ..limits() };
+            let limits = LimitArgs { memory: MemoryLimit { max_memory: Some(bytes) }, ..limits() };
             limits.room_to_paint(Path::new("a"), &document).is_ok()
         };
         assert!(is_room(2 * (held + painting)) && !is_room(painting + held / 2));
@@ -91,7 +106,12 @@ mod tests {
 
     /// None given.
     fn limits() -> LimitArgs {
-        LimitArgs { max_side: None, max_pixels: None, max_memory: None, threads: None }
+        LimitArgs {
+            max_side: None,
+            max_pixels: None,
+            memory: MemoryLimit::default(),
+            threads: None,
+        }
     }
 
     #[test]

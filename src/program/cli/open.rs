@@ -2,6 +2,7 @@
 //! Floor 7. The window itself is passed in.
 
 use super::OpenWindow;
+use super::limits::MemoryLimit;
 use crate::{Error, Result};
 use std::path::PathBuf;
 
@@ -11,9 +12,12 @@ pub struct OpenArgs {
     /// Projects, recipes, pictures, normal or depth maps
     #[arg(value_name = "FILES")]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    memory: MemoryLimit,
 }
 
 pub fn run(args: OpenArgs, window: Option<OpenWindow>) -> Result<()> {
+    args.memory.set();
     let none =
         || Error::unsupported("window", "this build has none; “rilievo render” paints without one");
     window.ok_or_else(none)?(args.files.into_iter().map(whole).collect())
@@ -36,6 +40,7 @@ mod tests {
             Ok(())
         };
         let files = ["normal.png", "/art/pot_n.png"].map(PathBuf::from).to_vec();
-        run(OpenArgs { files }, Some(window)).unwrap();
+        let memory = MemoryLimit::default();
+        run(OpenArgs { files, memory }, Some(window)).unwrap();
     }
 }

@@ -4,6 +4,7 @@
 mod piped;
 
 use super::force::Force;
+use super::limits::MemoryLimit;
 use super::print;
 use crate::io::files::read_file;
 use crate::io::{Budget, Overwrite};
@@ -25,9 +26,12 @@ pub struct ReplayArgs {
     recover_in: Option<PathBuf>,
     #[command(flatten)]
     force: Force,
+    #[command(flatten)]
+    memory: MemoryLimit,
 }
 
 pub fn run(args: &ReplayArgs) -> Result<()> {
+    args.memory.set();
     let mut session = Session::default();
     session.replaces_unasked = args.force.or(Overwrite::Nothing) == Overwrite::Forced;
     session.autosave = args.recover_in.clone().map(Autosave::new);

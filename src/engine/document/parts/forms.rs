@@ -4,6 +4,7 @@
 use super::{FormArea, Part};
 use crate::document::{Document, Progress};
 use crate::math::{Affine2, Vec2};
+use crate::memory::free_bytes;
 use std::sync::Arc;
 
 impl Document {
@@ -22,8 +23,9 @@ impl Document {
                 .collect();
         }
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
-        if shown().any(|part| self.made_area(part).is_none()) {
-            // What was made last may be of another version of the document.
+        let is_missing = shown().any(|part| self.made_area(part).is_none());
+        // What was made last may be of another version of the document.
+        if is_missing && (self.is_shaped() || self.shape_fits_in(free_bytes()).is_ok()) {
             drop(self.derived(&Progress::default()));
         }
         shown().filter_map(|part| Some((part.clone(), self.made_area(part)?))).collect()

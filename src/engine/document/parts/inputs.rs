@@ -11,6 +11,7 @@ use super::outlines::OutlineKey;
 use super::unchanged::{are_same_parts, is_same_surface};
 use crate::document::{Document, Progress};
 use crate::math::Size;
+use crate::memory::free_bytes;
 use crate::surface::Surface;
 use std::sync::{Arc, Weak};
 
@@ -48,6 +49,8 @@ impl Document {
     /// parts at their places, and with what follows the surface; itself, at once, if it is so
     /// already ([`Document::is_shaped`]). Every step of a [`History`](crate::document::History) and
     /// every document that was read is so.
+    ///
+    /// If less memory is free than that takes, nothing is made, and [`Document::fits`] says so.
     pub fn reshaped(&self) -> Document {
         // Nobody cancels it, so it is complete.
         self.reshaped_with_progress(&Progress::default()).unwrap_or_else(|| self.clone())
@@ -59,6 +62,9 @@ impl Document {
         if placed.is_shaped() {
             placed.parts.forget_flats();
             return Some(placed.with_selections_found());
+        }
+        if placed.shape_fits_in(free_bytes()).is_err() {
+            return Some(self.clone());
         }
         progress.enter("making the shape");
         // On a thread of the pool: handed over one by one, the many small steps of small parts

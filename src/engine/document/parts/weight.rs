@@ -5,7 +5,7 @@ use super::unchanged::split_whole_px;
 use super::{OutlineSource, Part, PartKind};
 use crate::document::{Content, Document};
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
-use crate::memory::FORMS;
+use crate::memory::{FORMS, room_for};
 use crate::shape::inflate;
 use std::sync::Arc;
 
@@ -72,6 +72,24 @@ fn transformed_sides(map: Affine2, [w, h]: Sides) -> Sides {
 }
 
 impl Document {
+    /// What making the surface of some parts is called where memory is asked for it.
+    pub fn shape_work(&self, list: &[Arc<Part>]) -> String {
+        let parts = if list.len() == 1 { "1 part".into() } else { format!("{} parts", list.len()) };
+        format!("the shape of {parts} on {} pixels", self.size)
+    }
+
+    /// Whether as much memory is free as making its surface takes: a sentence without its full stop
+    /// if not. Nothing is asked for where it is made already.
+    ///
+    /// * `free`: how many bytes there are.
+    pub fn shape_fits_in(&self, free: u64) -> Result<(), String> {
+        if self.is_shaped() {
+            return Ok(());
+        }
+        let list = &self.parts.list;
+        room_for(&self.shape_work(list), self.shape_bytes(list), free)
+    }
+
     /// Bytes that making the surface of some parts takes at most, what is kept of them included;
     /// the layers and maps that they are made of are the document's.
     pub fn shape_bytes(&self, list: &[Arc<Part>]) -> u64 {
@@ -108,7 +126,7 @@ impl Document {
         }
         let maps = if self.maps_surface().is_some() { canvas * FORM_BYTES } else { 0 };
         let made = (canvas * RELIEF_BYTES + most.max(maps)).max(canvas * SURFACE_BYTES);
-        outlines.saturating_add(flats.max(made)).saturating_add(forms.min(FORMS.ceiling()))
+        outlines.saturating_add(flats.max(made)).saturating_add(forms.min(FORMS.room()))
     }
 
     /// Pixels of the box around a part, 0 if it is so large that none is made of it.

@@ -160,13 +160,13 @@ impl PartAction {
                 let part = new::make_part(*kind, open)?;
                 let id = part.id.clone();
                 let next = list::with_new(document, part);
-                // What lies on another shows there.
+                // What lies on another shows there. What could not be made is refused below.
                 let shows = next
                     .parts
                     .part(&id)
                     .and_then(|part| part.on().map(str::to_owned))
                     .unwrap_or(id.clone());
-                if !next.part_areas().iter().any(|(part, _)| part.id == shows) {
+                if next.is_shaped() && !next.part_areas().iter().any(|(part, _)| part.id == shows) {
                     return Err(kind.why_empty());
                 }
                 ("Add part", next, Some(id))
