@@ -45,6 +45,7 @@ pub use canvas_change::CanvasChange;
 pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
+pub use flatten::singles::SingleLayers;
 pub use flatten::{
     flatten, flatten_deep, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_paint,
     flatten_whole,

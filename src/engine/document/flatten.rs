@@ -2,11 +2,13 @@
 //! once. Floor 4. Tiles are independent, so they are composed in parallel, and the bytes do not
 //! depend on the number of threads.
 
+pub mod singles;
+
 use super::compose::Composer;
 use super::deep::{DeepTiles, Highlights};
 use super::far_side::FarTile;
 use super::progress::in_parallel;
-use super::{Content, Document, Group, Layer, LayerId, PreparedDocument, Progress};
+use super::{Content, Document, Group, Layer, LayerId, PreparedDocument, Progress, mask};
 use crate::memory::filled_or_unwind;
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
@@ -186,6 +188,14 @@ impl PreparedDocument {
         Composer { prepared: self, at, far: None, sought: None, deep: None }.only_tile(&self.stack)
     }
 
+    /// Every tile is that of the one layer, a fill that nothing cuts: tiles can share their pixels.
+    fn is_one_color(&self) -> bool {
+        let [node] = &self.stack[..] else { return false };
+        let is_whole = node.layer.mask.is_none() && mask::clip(node).is_none();
+        let is_alone = node.clipped.is_empty() && node.warp.is_none() && self.contours.is_none();
+        matches!(node.layer.content, Content::Fill(_)) && is_whole && is_alone
+    }
+
     /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft, or shows a
     /// picture that has them.
     fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
@@ -228,7 +238,9 @@ impl PreparedDocument {
         tiles: &[TileAt],
         progress: &Progress,
     ) -> Option<TileGrid> {
-        let composed = in_parallel(tiles, progress, |at| self.flatten_tile(at))?;
+        let one = tiles.first().filter(|_| self.is_one_color()).map(|at| self.flatten_tile(*at));
+        let tile = |at| one.clone().unwrap_or_else(|| self.flatten_tile(at));
+        let composed = in_parallel(tiles, progress, tile)?;
         let mut grid = old.clone();
         grid.reserve(self.size.rect());
         tiles.iter().zip(composed).for_each(|(&at, tile)| grid.set(at, tile));

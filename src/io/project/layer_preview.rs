@@ -3,8 +3,8 @@
 
 use super::plan::{ItemContent, PlanItem};
 use crate::Result;
-use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layers, flatten_whole};
-use crate::document::{EncodedPixels, PreviewKind};
+use crate::document::{Content, Document, Layer, LayerId, Progress, SingleLayers};
+use crate::document::{EncodedPixels, PreviewKind, flatten_layers, flatten_whole};
 use crate::pixels;
 use crate::raster::{BlendMode, TileGrid};
 use rayon::prelude::*;
@@ -70,6 +70,7 @@ struct SeenLayers<'d> {
     /// What a layer's preview depends on besides the scene and the layer itself: normal layers, and
     /// groups that move those within.
     others: Vec<Arc<Layer>>,
+    singles: SingleLayers<'d>,
 }
 
 impl<'d> SeenLayers<'d> {
@@ -81,7 +82,8 @@ impl<'d> SeenLayers<'d> {
             .filter(|layer| layer.content.is_shaping_surface() || takes_along(layer))
             .cloned()
             .collect();
-        Self { document, moved: document.moved_layers(), others }
+        let singles = SingleLayers::of(document);
+        Self { document, moved: document.moved_layers(), others, singles }
     }
 
     fn by(&self, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
@@ -115,7 +117,7 @@ fn render_preview(
         return pixels_of(file, document, layer, tiles).map(Some);
     }
     let render = || {
-        let plain = document.with_layer(layer.id, |layer| {
+        let plain = seen.singles.around(layer.id, |layer| {
             (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
             layer.mask = layer.mask.take().filter(|_| kind.masked);
         });

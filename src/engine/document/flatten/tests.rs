@@ -63,6 +63,7 @@ fn left_mask() -> Option<LayerMask> {
 }
 
 mod contours;
+mod singles;
 
 #[test]
 fn a_tile_that_one_opaque_layer_fills_is_its_very_own_and_what_composing_gives() {

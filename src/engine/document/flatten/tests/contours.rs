@@ -102,9 +102,9 @@ fn what_is_not_clipped_to_the_surface_stands_in_both() {
     );
 }
 
-#[test]
-fn masks_and_normal_layers_leave_coverage_to_act_once() {
-    let detail = Arc::new(DetailMap::new(Plane::filled(Size::new(4, 4), vec3(0.1, 0.0, 1.0))));
+/// Detail that leans everywhere in one direction.
+pub fn cloth(normal: Vec3) -> Layer {
+    let detail = Arc::new(DetailMap::new(Plane::filled(Size::new(4, 4), normal)));
     let picture = Picture::srgb8(Size::new(1, 1), vec![[255; 4]]).unwrap();
     let picture = PictureSource::new("d.png".into(), picture, Default::default());
     let source =
@@ -117,7 +117,12 @@ fn masks_and_normal_layers_leave_coverage_to_act_once() {
         strength: 1.0,
         frame: Default::default(),
     };
-    let normals = Layer::new("cloth", Content::Normals(normals));
+    Layer::new("cloth", Content::Normals(normals))
+}
+
+#[test]
+fn masks_and_normal_layers_leave_coverage_to_act_once() {
+    let normals = cloth(vec3(0.1, 0.0, 1.0));
     let masked =
         with(fill("#ffffff"), |l| l.mask = mask(DerivedMask::Depth { from: 0.0, to: 1.0 }));
     let p = on_soft(vec![normals, masked.clone(), with(masked, |l| l.mask = left_mask())]);
