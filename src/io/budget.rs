@@ -8,6 +8,7 @@ use crate::math::Size;
 use crate::memory;
 use crate::paint::Stroke;
 use crate::raster::{Picture, Tile};
+use crate::recipe::samples::MOST_CHARS;
 use crate::surface::Bend;
 use crate::{Error, Remedy, Result};
 use std::path::Path;
@@ -72,8 +73,8 @@ impl Default for Budget {
             // some hundred bytes.
             entries: 1 << 18,
             // The limit on values also bounds the text, except for readings of the pen, which are
-            // packed before parsing.
-            json_bytes: 256 << 20,
+            // packed before parsing: whatever edits may hold of them is read.
+            json_bytes: (256 << 20) + Document::MOST_SAMPLES as u64 * MOST_CHARS,
             json_values: Document::MOST_VALUES,
             // A group takes two levels; the contents of the innermost take the rest. The parser
             // goes no deeper than 127.
@@ -133,6 +134,8 @@ impl Budget {
             memory_bytes,
             file_bytes: self.file_bytes.min(share),
             unpacked_bytes: self.unpacked_bytes.min(share.saturating_mul(4)),
+            // Beside a text there are its packed form and what is parsed from it.
+            json_bytes: self.json_bytes.min(share / 4),
             ..self
         }
     }

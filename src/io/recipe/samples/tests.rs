@@ -56,6 +56,28 @@ fn every_reading_comes_back_in_its_very_bits() {
 }
 
 #[test]
+fn no_readings_take_more_than_their_share_of_a_text() {
+    // Far apart, and on the finest grid for one of them.
+    let far = |i: usize| {
+        let (end, fine) = (if i.is_multiple_of(2) { 1.0 } else { -1.0 }, 2.0f32.powi(-24));
+        let of = |most: f32| if i == 7 { fine } else { end * most };
+        let (at, tilt) = (vec2(of(1e6), of(1e6)), vec2(of(90.0), of(90.0)));
+        Sample { at, pressure: of(1.0).max(0.0), tilt, time_secs: of(1e6).max(0.0) }
+    };
+    let far: Vec<Sample> = (0..10_000).map(far).collect();
+    assert!(far.iter().all(|sample| trouble(sample).is_none()));
+    let mut most = 0.0f32;
+    for samples in [far, drawn(10_000, true), drawn(10_000, false)] {
+        let chars = pack(&samples).len() as f32 / samples.len() as f32;
+        assert!(chars <= MOST_CHARS as f32, "{chars}");
+        most = most.max(chars);
+    }
+    assert!(most > 0.9 * MOST_CHARS as f32, "{most} at most: the limit can be lower");
+    let budget = Budget::default();
+    assert!(budget.json_bytes > budget.document_samples as u64 * MOST_CHARS, "what fits is read");
+}
+
+#[test]
 fn what_the_hand_draws_takes_few_bytes() {
     let (settled, raw) = (drawn(10_000, false), drawn(10_000, true));
     let bytes = |samples: &[Sample]| pack(samples).len() as f32 / samples.len() as f32;
