@@ -10,6 +10,7 @@ mod dice;
 mod facts;
 mod gestures;
 mod known;
+mod names;
 mod parts;
 mod play;
 mod promises;

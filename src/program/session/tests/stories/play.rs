@@ -106,7 +106,7 @@ impl Play {
         let before = self.session.active().map(|open| (open.key, open.document().clone()));
         let notes = self.session.notes.len();
         let done = catch_unwind(AssertUnwindSafe(|| action.apply(&mut self.session)));
-        self.actions.push(action);
+        self.actions.push(action.clone());
         match done {
             Err(panic) => return Err(Broken::panicked(&*panic)),
             Ok(Err(error)) => {
@@ -116,7 +116,7 @@ impl Play {
             Ok(Ok(())) => {}
         }
         self.session.keep();
-        promises::after_step(&self.session, before, &self.session.notes[notes..])?;
+        promises::after_step(&self.session, &action, before, &self.session.notes[notes..])?;
         if self.actions.len().is_multiple_of(7) {
             self.seen.extend(promises::Seen::now(&self.session)?);
         }

@@ -1,12 +1,14 @@
 //! What holds after every story: see `docs/PROJECTS.md`. Each broken promise has a kind, by which
 //! stories that fail in one way are counted and shrunk.
 
+use super::names;
 use crate::document::{Document, MemoryUse, Progress, flatten, flatten_rounding_once};
 use crate::io::export::ExportOptions;
 use crate::io::export::deep::encode_document;
 use crate::io::project::{self, Archive};
 use crate::io::{Budget, picture, psd, recipe};
 use crate::raster::picture::Texels;
+use crate::session::actions::Action;
 use crate::session::memory::HeldDocuments;
 use crate::session::{Autosave, OpenDocument, Session, is_same};
 use std::any::Any;
@@ -90,25 +92,31 @@ pub fn nothing_changed(session: &Session, before: Option<(usize, Document)>, why
     }
 }
 
-/// What an edit accepted, files can hold; what was refused changed nothing.
-pub fn after_step(session: &Session, before: Option<(usize, Document)>, told: &[String]) -> Kept {
+/// What an edit accepted, files can hold, and what it changed is called by its name; what was
+/// refused changed nothing, and is called by its name, too.
+pub fn after_step(
+    session: &Session,
+    action: &Action,
+    before: Option<(usize, Document)>,
+    told: &[String],
+) -> Kept {
     let Some(open) = session.active() else { return Ok(()) };
     let refused = told.iter().find(|note| note.ends_with("Nothing was changed."));
-    let is_changed =
-        before.is_some_and(|(key, before)| key == open.key && !is_same(&before, open.document()));
-    match refused {
-        Some(note) if is_changed => {
+    let Some((_, before)) = before.filter(|(key, _)| *key == open.key) else { return Ok(()) };
+    let is_changed = !is_same(&before, open.document());
+    if let Some(note) = refused {
+        names::refusal_is_named(action, &before, note)?;
+        if is_changed {
             return Err(Broken::from_message("refused, and yet changed", note));
         }
-        _ => {}
     }
-    if is_changed {
-        open.document()
-            .fits(None)
-            .map_err(|why| Broken::from_message("accepted, and does not fit", why))
-    } else {
-        Ok(())
+    if !is_changed {
+        return Ok(());
     }
+    names::difference_is_named(action, &before, open.document())?;
+    open.document()
+        .fits(None)
+        .map_err(|why| Broken::from_message("accepted, and does not fit", why))
 }
 
 /// Everything that holds at the end of a story.
