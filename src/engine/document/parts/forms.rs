@@ -25,7 +25,7 @@ impl Document {
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         let is_missing = shown().any(|part| self.made_area(part).is_none());
         // What was made last may be of another version of the document.
-        if is_missing && (self.is_shaped() || self.shape_fits_in(free_bytes()).is_ok()) {
+        if is_missing && (self.has_its_surface() || self.shape_fits_in(free_bytes()).is_ok()) {
             drop(self.derived(&Progress::default()));
         }
         shown().filter_map(|part| Some((part.clone(), self.made_area(part)?))).collect()

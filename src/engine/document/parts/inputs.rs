@@ -33,7 +33,7 @@ impl Document {
         self.is_ink_lifted() && self.has_its_surface()
     }
 
-    fn has_its_surface(&self) -> bool {
+    pub(super) fn has_its_surface(&self) -> bool {
         let Some(made) = &self.parts.made_of else { return self.parts.is_empty() };
         let of = made.made.as_ref().map(Weak::as_ptr);
         self.parts.is_empty()

@@ -83,7 +83,7 @@ impl Document {
     ///
     /// * `free`: how many bytes there are.
     pub fn shape_fits_in(&self, free: u64) -> Result<(), String> {
-        if self.is_shaped() {
+        if self.has_its_surface() {
             return Ok(());
         }
         let list = &self.parts.list;
