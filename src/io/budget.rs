@@ -6,9 +6,8 @@
 use crate::document::{Content, Document, Part, PartKind};
 use crate::math::Size;
 use crate::memory;
-use crate::paint::Stroke;
+use crate::paint::{Sample, Stroke};
 use crate::raster::{Picture, Tile};
-use crate::recipe::samples::MOST_CHARS;
 use crate::surface::Bend;
 use crate::{Error, Remedy, Result};
 use std::path::Path;
@@ -74,7 +73,7 @@ impl Default for Budget {
             entries: 1 << 18,
             // The limit on values also bounds the text, except for readings of the pen, which are
             // packed before parsing: whatever edits may hold of them is read.
-            json_bytes: (256 << 20) + Document::MOST_SAMPLES as u64 * MOST_CHARS,
+            json_bytes: (256 << 20) + Document::MOST_SAMPLES as u64 * Sample::MOST_CHARS,
             json_values: Document::MOST_VALUES,
             // A group takes two levels; the contents of the innermost take the rest. The parser
             // goes no deeper than 127.

@@ -36,7 +36,7 @@ mod normals;
 pub mod parts;
 mod pictures;
 mod presets;
-pub(crate) mod samples;
+mod samples;
 mod selections;
 mod shading;
 mod strokes;

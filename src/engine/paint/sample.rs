@@ -25,6 +25,10 @@ impl Sample {
     pub const PRESSURE: Range = UNIT;
     /// Degrees, each way.
     pub const TILT: Range = -90.0..=90.0;
+    /// Characters that a reading takes in a file at most, among so many that the rest of their text
+    /// is nothing beside them: seven bytes each for a place and a time on the finest grid, four for
+    /// the pressure and five each for the tilt, in base64.
+    pub const MOST_CHARS: u64 = 47;
     /// Ten days.
     pub const TIME_SECS: Range = 0.0..=1e6;
     /// The reading as a stroke keeps it: within what a document may hold, and on a grid finer than

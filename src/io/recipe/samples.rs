@@ -28,10 +28,6 @@ const ROWS: usize = 32;
 /// A reading whose last fields are absent.
 const UNSAID: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
 const COLUMNS: usize = 6;
-/// Characters that a reading takes in a text at most, among so many that the rest of their text is
-/// nothing beside them: seven bytes each for a place and a time on the finest grid, four for the
-/// pressure and five each for the tilt, in base64.
-pub const MOST_CHARS: u64 = 47;
 
 pub fn write(samples: &[Sample]) -> Value {
     if samples.len() > ROWS { pack(samples).into() } else { samples.iter().map(row).collect() }

@@ -69,12 +69,15 @@ fn no_readings_take_more_than_their_share_of_a_text() {
     let mut most = 0.0f32;
     for samples in [far, drawn(10_000, true), drawn(10_000, false)] {
         let chars = pack(&samples).len() as f32 / samples.len() as f32;
-        assert!(chars <= MOST_CHARS as f32, "{chars}");
+        assert!(chars <= Sample::MOST_CHARS as f32, "{chars}");
         most = most.max(chars);
     }
-    assert!(most > 0.9 * MOST_CHARS as f32, "{most} at most: the limit can be lower");
+    assert!(most > 0.9 * Sample::MOST_CHARS as f32, "{most} at most: the limit can be lower");
     let budget = Budget::default();
-    assert!(budget.json_bytes > budget.document_samples as u64 * MOST_CHARS, "what fits is read");
+    assert!(
+        budget.json_bytes > budget.document_samples as u64 * Sample::MOST_CHARS,
+        "what fits is read"
+    );
 }
 
 #[test]
