@@ -55,7 +55,7 @@ fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     assert!(session.notes.pop().unwrap().contains("into pixels"), "it is a placed picture yet");
     tell(&mut session, r#"{"in":"layer","do":"bake","layer":"0"}"#);
     tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
-    assert!(session.notes.pop().unwrap().contains("outline"), "it has no part yet");
+    assert!(session.notes.pop().unwrap().contains("was made from"), "it has no part yet");
     tell(
         &mut session,
         r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#,
