@@ -15,6 +15,7 @@ use rilievo::{Content, Document, Layer, Maps, Progress, Size, Surface, TileGrid}
 use rilievo_engine::document::DocumentReducer;
 use rilievo_engine::raster::planar::PixelRow;
 use rilievo_engine::shading::radiance::BackdropStats;
+use rilievo_engine::surface::chunks::ChunkSettings;
 use rilievo_engine::surface::shadow::{LampPlace, ShadowLamp};
 use std::sync::Arc;
 
@@ -81,6 +82,31 @@ fn ambient_occlusion(bencher: Bencher, run: Run) {
     let pool = pool(run.1);
     bencher.counter(area(run)).with_inputs(|| scene(run.0)).bench_local_refs(|scene| {
         pool.install(|| scene.surface.as_deref().map(|surface| surface.occlusion(48.0)))
+    });
+}
+
+/// The places of a painted ball: once for each surface and size, then kept.
+#[divan::bench(args = RUNS, sample_count = 5, sample_size = 1)]
+fn places_of_a_painted_ball(bencher: Bencher, run: Run) {
+    let pool = pool(run.1);
+    let settings = ChunkSettings { ball_px: 512.0, chunk_px: 64.0, follow: 0.0, seam_px: 1.0 };
+    bencher.counter(area(run)).with_inputs(|| scene(run.0)).bench_local_refs(|scene| {
+        pool.install(|| scene.surface.as_deref().map(|surface| surface.ball_places(&settings)))
+    });
+}
+
+/// A figure whose ball was painted on: its places are kept.
+#[divan::bench(args = RUNS)]
+fn figure_of_a_repainted_ball(bencher: Bencher, run: Run) {
+    let (scene, pool) = (scene(run.0), pool(run.1));
+    let mut shading = Shading::new(Model::LitSphere);
+    shading.strokes.on = true;
+    shading.warm(&scene);
+    let tiles: Vec<TileAt> = TileAt::covering(scene.size.rect()).collect();
+    bencher.counter(area(run)).bench_local(|| {
+        pool.install(|| {
+            tiles.par_iter().for_each(|at| drop(divan::black_box(shading.render_tile(&scene, *at))))
+        });
     });
 }
 

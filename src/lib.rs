@@ -123,8 +123,9 @@ pub mod paint {
 pub mod shading {
     #[doc(inline)]
     pub use rilievo_engine::shading::{
-        Environment, FeatureScale, Features, Light, LightKind, LightSetting, LitSphere, Model,
-        Mood, Painter, Projection, RadianceScaling, Reference, Scaling, Shading, Shadows, Term,
+        BallStrokes, Environment, FeatureScale, Features, Light, LightKind, LightSetting,
+        LitSphere, Model, Mood, Painter, Projection, RadianceScaling, Reference, Scaling, Shading,
+        Shadows, Term,
     };
 }
 

@@ -5,6 +5,7 @@
 //! [`material`] to each term of a lit material. [`features`] selects the curvature that drives it.
 //! Colours are linear light inside.
 
+mod ball_strokes;
 pub mod environment;
 pub mod features;
 pub mod light;
@@ -18,6 +19,7 @@ mod shadow;
 pub mod sphere;
 pub mod surface_row;
 
+pub use ball_strokes::BallStrokes;
 pub use environment::{Environment, Projection};
 pub use features::{FeatureScale, Features};
 pub use light::{Light, LightKind};

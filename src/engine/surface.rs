@@ -8,6 +8,7 @@
 mod accessors;
 pub mod anchor;
 mod cache;
+pub mod chunks;
 pub mod combine;
 pub mod contours;
 mod creases;

@@ -105,6 +105,7 @@ pub fn all() -> Vec<Case> {
     all.extend(BlendMode::ALL.iter().map(|(_, name)| blend(name)));
     all.extend(operators());
     all.extend(Model::ALL.iter().map(|(_, name)| shading(name)));
+    all.push(ball_strokes());
     all.push(scaling());
     all.push(normals());
     all.extend(masks());
@@ -216,6 +217,13 @@ fn shading(model: &str) -> Case {
         _ => {}
     }
     Case::layers("shading", model, ROUNDED, Shape::Torus, json!([layer]))
+}
+
+/// A ball whose brush marks stay whole, a little bent.
+fn ball_strokes() -> Case {
+    let layers = json!([{ "kind": "shading", "model": "lit-sphere", "sphere": { "file": "sphere.png" },
+        "strokes": { "size": 48, "chunk": 16, "follow": 0.3 } }]);
+    Case::layers("shading", "ball-strokes", ROUNDED, Shape::Torus, layers)
 }
 
 /// The relief of a ramp made stronger, in a group of its own.

@@ -79,7 +79,7 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
             Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
             Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,
             Content::Shading(live) => {
-                area * (TILE_BYTES + CURVATURE_BYTES + live.params().shadow_bytes())
+                area * (TILE_BYTES + CURVATURE_BYTES + live.params().kept_bytes())
             }
             Content::RadianceScaling(_) => area * CURVATURE_BYTES,
             Content::Normals(_) => area * SURFACE_BYTES,

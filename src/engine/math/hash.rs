@@ -16,6 +16,13 @@ pub fn unit(seed: u32, i: u32, j: u32) -> f32 {
     (h >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
+/// Two numbers in `[0, 1)` from a seed and two indices, 16 bits each.
+#[inline(always)]
+pub const fn unit_pair(seed: u32, i: u32, j: u32) -> [f32; 2] {
+    let h = mix(seed ^ mix(i.wrapping_add(0x9e37_79b9) ^ mix(j.wrapping_add(0x85eb_ca6b))));
+    [(h >> 16) as f32 * (1.0 / 65_536.0), (h & 0xffff) as f32 * (1.0 / 65_536.0)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

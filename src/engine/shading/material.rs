@@ -15,6 +15,7 @@ mod second_look;
 mod toon;
 
 use super::{
+    ball_strokes::BallStrokes,
     environment::Environment,
     features::Features,
     light::{Light, LightKind, RowLight},
@@ -135,6 +136,8 @@ pub struct Shading {
     pub sphere: Option<LitSphere>,
     /// The lit sphere of concave features.
     pub sphere_concave: Option<LitSphere>,
+    /// How the brush marks of spheres lie on the figure.
+    pub strokes: BallStrokes,
     /// Refractive index, `> 0`.
     pub index: f32,
     /// The distance up to which occluders count, px; 0 turns occlusion off.
@@ -222,6 +225,7 @@ impl Shading {
             environment: None,
             sphere: None,
             sphere_concave: None,
+            strokes: BallStrokes::DEFAULT,
             index: 1.5,
             occlusion_radius_px: 48.0,
             bounces: 0,
@@ -238,6 +242,10 @@ impl Shading {
         let fit = |v: f32, least: f32| (v * ratio).round().clamp(least, 1000.0);
         shading.shadows.reach = fit(Shadows::DEFAULT.reach, 8.0);
         shading.painter.contact_size = fit(Painter::DEFAULT.contact_size, 4.0);
+        if model == Model::LitSphere {
+            shading.strokes.size = fit(BallStrokes::DEFAULT.size, 16.0);
+            shading.strokes.chunk = fit(BallStrokes::DEFAULT.chunk, 8.0);
+        }
         shading
     }
 
@@ -265,17 +273,24 @@ impl Shading {
         next.occlusion_radius_px *= factor;
         next.shadows.reach *= factor;
         next.painter.contact_size *= factor;
+        next.strokes = self.strokes.scaled(factor);
         next
     }
 
-    /// What its shadows keep of each pixel, bytes.
-    pub fn shadow_bytes(&self) -> u64 {
+    /// Whether its spheres' brush marks stay whole.
+    pub fn shows_strokes(&self) -> bool {
+        self.model == Model::LitSphere && self.strokes.on
+    }
+
+    /// What its shadows and its ball's places keep of each pixel, bytes.
+    pub fn kept_bytes(&self) -> u64 {
         let lamps = match self.model.has_lamps() && self.shadows.has_effect() {
             true => self.lights.len().min(Shadows::MOST_LAMPS),
             false => 0,
         };
         let contact = usize::from(self.model == Model::Painter);
-        ((lamps + contact) * Surface::SHADOW_BYTES) as u64
+        let strokes = usize::from(self.shows_strokes());
+        ((lamps + contact) * Surface::SHADOW_BYTES + strokes * Surface::BALL_PLACE_BYTES) as u64
     }
 
     /// Its lights with their shadows, as seen from the rows of a tile of a surface.

@@ -7,6 +7,9 @@ use crate::shading::surface_row::{Light3, RowValues};
 use rayon::prelude::*;
 use std::sync::{Arc, LazyLock, OnceLock};
 
+/// How many sizes of a sphere there are, each half of the one before.
+const HALVINGS: usize = 5;
+
 /// A picture whose inscribed disc is the sphere seen orthographically.
 #[derive(Clone)]
 pub struct LitSphere {
@@ -14,8 +17,8 @@ pub struct LitSphere {
     pub file: String,
     /// A painted sphere that fills its picture.
     pub picture: Picture,
-    /// Shared by clones, made on first use.
-    light: Arc<OnceLock<SphereLight>>,
+    /// As large as its picture, half as large, and so on. Shared by clones, made on first use.
+    light: Arc<[OnceLock<SphereLight>; HALVINGS]>,
 }
 
 impl PartialEq for LitSphere {
@@ -33,7 +36,22 @@ impl LitSphere {
 
     /// The sphere's light, ready to be looked up.
     pub fn light(&self) -> &SphereLight {
-        crate::memory::once(&self.light, || SphereLight::new(&self.picture))
+        self.halved(0)
+    }
+
+    /// The same, as fine as is seen where its disc is so many px wide.
+    pub fn light_at(&self, diameter_px: f32) -> &SphereLight {
+        let texels = self.picture.size.width.min(self.picture.size.height) as f32;
+        let halvings = (texels / diameter_px.max(1.0)).log2().round();
+        self.halved(halvings.max(0.0).min((HALVINGS - 1) as f32) as usize)
+    }
+
+    fn halved(&self, times: usize) -> &SphereLight {
+        let make = || match times {
+            0 => SphereLight::new(&self.picture),
+            _ => self.halved(times - 1).halved(),
+        };
+        crate::memory::once(&self.light[times], make)
     }
 
     /// Grey clay under a window at the upper left: the sphere of a layer that names none.
@@ -65,6 +83,19 @@ impl SphereLight {
         };
         let brightest = texels.iter().map(|t| srgb::luminance(t.x, t.y, t.z)).fold(0.0, f32::max);
         Self { size: picture.size, texels, brightest }
+    }
+
+    /// Half as large: means of four texels.
+    fn halved(&self) -> Self {
+        let (w, h) = (self.size.width as usize, self.size.height as usize);
+        let size = Size::new(self.size.width.div_ceil(2), self.size.height.div_ceil(2));
+        let texel = |x: usize, y: usize| self.texels[y.min(h - 1) * w + x.min(w - 1)];
+        let mean = |i: usize| {
+            let (x, y) = (2 * (i % size.width as usize), 2 * (i / size.width as usize));
+            (texel(x, y) + texel(x + 1, y) + texel(x, y + 1) + texel(x + 1, y + 1)) * 0.25
+        };
+        let texels: Vec<Vec3A> = (0..size.area()).map(mean).collect();
+        Self { size, texels, brightest: self.brightest }
     }
 
     /// The colour at ½ + ½ n̄ of the picture, bilinear, linear light (MATH 5). `nbar`: image axes

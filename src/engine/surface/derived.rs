@@ -4,6 +4,7 @@
 
 use super::Surface;
 use super::cache::{Cache, HeapSize, RecentCache};
+use super::chunks::BallPlaces;
 use super::curvature::{Curvature, CurvatureRims, Kappa};
 use super::objects::Objects;
 use super::pyramid::MapPyramids;
@@ -56,6 +57,8 @@ caches! {
     shadows: RecentCache<ShadowKey, ShareMap>,
     /// By the largest size, as bits.
     contacts: RecentCache<u32, ContactShade>,
+    /// Which place of a painted ball each pixel shows, by its settings, as bits.
+    ball_places: RecentCache<[u32; 4], BallPlaces>,
     /// What rays are marched through.
     ray_maps: RecentCache<(), RayMap>,
     /// Coverage of selections by the surface.

@@ -6,8 +6,8 @@ use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{COORDINATE, Vec3, srgb::Color};
 use crate::shading::{
-    FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference, Scaling, Shadows,
-    Term,
+    BallStrokes, FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference,
+    Scaling, Shadows, Term,
 };
 use serde_json::Value;
 
@@ -100,6 +100,17 @@ impl RecipeValue for Shadows {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         shadows(node, Shadows::DEFAULT)
+    }
+}
+
+/// `true`, `false`, or an object.
+impl RecipeValue for BallStrokes {
+    fn to_json(&self) -> Value {
+        write_ball_strokes(self)
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        ball_strokes(node)
     }
 }
 
@@ -241,6 +252,28 @@ pub fn write_shadows(shadows: &Shadows, base: &Shadows) -> JsonObject {
     out.color("color", shadows.color, base.color);
     out.number("rays", shadows.rays as f32, base.rays as f32);
     out
+}
+
+/// Strokes that are given are on unless they say otherwise.
+pub fn ball_strokes(node: &JsonNode) -> Result<BallStrokes> {
+    let base = BallStrokes { on: true, ..BallStrokes::DEFAULT };
+    if node.value().is_boolean() {
+        return Ok(BallStrokes { on: node.boolean()?, ..base });
+    }
+    of_object(node, |fields| {
+        let numbers = settings(fields, BallStrokes::SETTINGS, base)?;
+        Ok(BallStrokes { on: fields.boolean("on", base.on)?, ..numbers })
+    })
+}
+
+pub fn write_ball_strokes(strokes: &BallStrokes) -> Value {
+    let mut out = JsonObject::default();
+    write_settings(&mut out, BallStrokes::SETTINGS, strokes, &BallStrokes::DEFAULT);
+    if out.is_empty() {
+        return strokes.on.into();
+    }
+    out.flag("on", strokes.on, true);
+    out.done()
 }
 
 /// Fields that are not given are those of `base`.

@@ -47,6 +47,10 @@ impl LayerReader<'_> {
             environment,
             sphere: self.sphere(fields, "sphere")?,
             sphere_concave: self.sphere(fields, "sphere_concave")?,
+            strokes: match fields.get("strokes") {
+                Some(node) => light::ball_strokes(&node)?,
+                None => base.strokes,
+            },
             index: fields.number("index", base.index, Shading::INDEX)?,
             occlusion_radius_px: fields.number(
                 "occlusion_radius",
@@ -165,6 +169,9 @@ pub fn write(out: &mut JsonObject, shading: &Shading) {
         if let Some(sphere) = sphere {
             out.set(name, json!({ "file": sphere.file }));
         }
+    }
+    if shading.strokes != base.strokes {
+        out.set("strokes", light::write_ball_strokes(&shading.strokes));
     }
     out.number("index", shading.index, base.index);
     out.number("occlusion_radius", shading.occlusion_radius_px, base.occlusion_radius_px);

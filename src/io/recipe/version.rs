@@ -4,7 +4,7 @@
 use crate::document::{Content, Document, Layer, LayerLabel};
 use crate::paint::DistanceMetric;
 use crate::paint::grain::GrainSpace;
-use crate::shading::Model;
+use crate::shading::{BallStrokes, Model};
 use crate::surface::Operator;
 
 /// The newest schema this program reads. A document that needs nothing newer is written as the
@@ -31,7 +31,10 @@ pub fn has_unwrapped(document: &Document) -> bool {
         }),
         Content::Shading(live) => {
             let shading = live.params();
-            shading.bounces > 0 || shading.model == Model::Painter || shading.shadows.on
+            shading.bounces > 0
+                || shading.model == Model::Painter
+                || shading.shadows.on
+                || shading.strokes != BallStrokes::DEFAULT
         }
         _ => false,
     };

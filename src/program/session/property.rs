@@ -18,8 +18,8 @@ use crate::paint::{
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
 use crate::shading::{
-    Features, Light, Model, Mood, Painter, Projection, RadianceScaling, Scaling, Shading, Shadows,
-    Term,
+    BallStrokes, Features, Light, Model, Mood, Painter, Projection, RadianceScaling, Scaling,
+    Shading, Shadows, Term,
 };
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
@@ -84,6 +84,7 @@ actions! {
         "index" RefractiveIndex { to: f32 }
         "shadows" Shadowed { shadows: Shadows }
         "painter" Painted { painter: Painter }
+        "ball strokes" BallMarks { strokes: BallStrokes }
         /// Lamps, shadows and painter's light of a mood.
         "mood" InMood { mood: Mood }
         "features" Features { features: Features }
@@ -142,6 +143,7 @@ impl Property {
             Property::Anisotropy { .. } | Property::RefractiveIndex { .. } => "Material",
             Property::Shadowed { .. } => "Shadows",
             Property::Painted { .. } => "Painter's light",
+            Property::BallMarks { .. } => "Strokes of the ball",
             Property::InMood { .. } => "Mood",
             Property::Features { .. } => "Features",
             Property::Scaled { .. }
@@ -294,6 +296,7 @@ impl Property {
             Property::RefractiveIndex { to } => next.index = held(*to, &Shading::INDEX),
             Property::Shadowed { shadows } => next.shadows = *shadows,
             Property::Painted { painter } => next.painter = *painter,
+            Property::BallMarks { strokes } => next.strokes = *strokes,
             Property::InMood { mood } => next = mood.on(shading),
             Property::Features { features } => next.features = features.clone(),
             Property::Occlusion { to } => {

@@ -5,8 +5,8 @@ use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
 use crate::math::{COORDINATE, TURNS};
 use crate::shading::{
-    Environment, FeatureScale, Features, Light, LightKind, LightSetting, Painter, RadianceScaling,
-    Reference, Scaling, Shading, Shadows, Term,
+    BallStrokes, Environment, FeatureScale, Features, Light, LightKind, LightSetting, Painter,
+    RadianceScaling, Reference, Scaling, Shading, Shadows, Term,
 };
 
 /// The most values that things take in a description.
@@ -33,6 +33,7 @@ pub fn shading(shading: &Shading) -> Fit {
     within("the refractive index", shading.index, &Shading::INDEX)?;
     settings(&shading.painter, Painter::SETTINGS)?;
     settings(&shading.shadows, Shadows::SETTINGS)?;
+    settings(&shading.strokes, BallStrokes::SETTINGS)?;
     if !Shadows::RAYS.contains(&shading.shadows.rays) {
         let (rays, most) = (shading.shadows.rays, Shadows::RAYS.end());
         return Err(format!("the rays to a lamp are {rays}; there may be 1 to {most}"));

@@ -11,7 +11,9 @@ use crate::raster::{PlanarTile, TILE, Tile, TileAt, tile::TILE_AREA};
 use crate::shading::environment::Environment;
 use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, RowRelief, SurfaceRow};
+use crate::surface::chunks::BallPlaces;
 use crate::surface::{Scene, Surface};
+use std::sync::Arc;
 
 impl Shading {
     /// One tile of the material on a scene, opaque wherever there is any surface; `None` where
@@ -137,6 +139,7 @@ impl Shading {
             }
         }
         if self.model == Model::LitSphere {
+            scene.surface.as_deref().map(|surface| self.strokes.places(surface));
             lit_sphere::warm_caches(self);
         }
     }
@@ -150,6 +153,8 @@ struct RowShader<'a> {
     terms: PhongTerms,
     /// For the painter's light.
     painter: Option<PainterTerms>,
+    /// For a lit sphere with strokes.
+    places: Option<Arc<BallPlaces>>,
     /// For an Ashikhmin material in an environment.
     samples: Option<EnvironmentSamples>,
     relief: RowRelief,
@@ -167,6 +172,7 @@ impl<'a> RowShader<'a> {
         Self {
             shading,
             painter,
+            places: if shading.shows_strokes() { shading.strokes.places(surface) } else { None },
             lights,
             terms,
             samples,
@@ -177,7 +183,7 @@ impl<'a> RowShader<'a> {
 
     /// Linear light along a row.
     fn light(&mut self, surface_row: &SurfaceRow) -> &Light3 {
-        let Self { shading, lights, terms, painter, samples, relief, light } = self;
+        let Self { shading, lights, terms, painter, places, samples, relief, light } = self;
         relief.leave_row();
         lights.iter_mut().for_each(|lit| lit.turn(surface_row));
         *light = [[0.0; TILE]; 3];
@@ -192,7 +198,9 @@ impl<'a> RowShader<'a> {
                     samples.shade(shading, surface_row, relief, light);
                 }
             }
-            Model::LitSphere => lit_sphere::shade(shading, surface_row, relief, light),
+            Model::LitSphere => {
+                lit_sphere::shade(shading, surface_row, places.as_deref(), relief, light);
+            }
             Model::Mirror | Model::Refraction => mirror::shade(shading, surface_row, light),
             Model::DiffuseEnvironment => hemisphere::diffuse(shading, surface_row, light),
             Model::AmbientOcclusion => hemisphere::occlusion(shading, surface_row, light),

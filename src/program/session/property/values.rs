@@ -8,7 +8,9 @@ use crate::paint::{Adjust, ColorAdjustment, GradientStop, ImageFilter, Placement
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
-use crate::shading::{Features, Light, Model, Mood, Painter, Projection, Scaling, Shadows, Term};
+use crate::shading::{
+    BallStrokes, Features, Light, Model, Mood, Painter, Projection, Scaling, Shadows, Term,
+};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
@@ -23,7 +25,7 @@ names!(Mood);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
 as_in_recipes!(ColorAdjustment);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
-as_in_recipes!(Shadows, Painter);
+as_in_recipes!(Shadows, Painter, BallStrokes);
 
 /// As documents write it.
 impl crate::session::replay::ReplayValue for LayerTransform {

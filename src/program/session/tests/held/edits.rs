@@ -52,6 +52,7 @@ pub const PROPERTIES: &[&str] = &[
     r#"{"do":"shininess","to":#}"#,
     r##"{"do":"shadows","shadows":{"on":true,"strength":#,"softness":#,"reach":200,"color":"#102030"}}"##,
     r##"{"do":"painter","painter":{"warmth":#,"fill":#,"rim":#,"rim_color":"#405060"}}"##,
+    r#"{"do":"ball strokes","strokes":{"size":#,"chunk":#,"follow":#,"seams":#}}"#,
     r#"{"do":"mood","mood":"sunset"}"#,
     r#"{"do":"anisotropy","nu":#,"nv":#}"#,
     r#"{"do":"features","features":{"scales":[{"curvature_scale":#,"blur":#,"weight":#}],"lambda":#}}"#,

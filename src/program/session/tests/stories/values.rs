@@ -16,8 +16,8 @@ use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
 use crate::shading::{
-    FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference, Scaling, Shadows,
-    Term,
+    BallStrokes, FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference,
+    Scaling, Shadows, Term,
 };
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::region::{RegionKind, SurfaceRegion};
@@ -228,6 +228,13 @@ impl Drawn for Shadows {
         let numbers = settings(dice, Shadows::SETTINGS, Shadows::DEFAULT);
         let rays = 1 + dice.below(8) as u32;
         Shadows { on: dice.is(80), color: dice.value(dice.word, "color"), rays, ..numbers }
+    }
+}
+
+impl Drawn for BallStrokes {
+    fn drawn(dice: &mut Dice) -> Self {
+        let numbers = settings(dice, BallStrokes::SETTINGS, BallStrokes::DEFAULT);
+        BallStrokes { on: dice.is(80), ..numbers }
     }
 }
 

@@ -75,6 +75,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
             "bounces",
             "shadows",
             "painter",
+            "ball strokes",
             "mood",
             "model",
             "lights",

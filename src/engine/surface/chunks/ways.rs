@@ -1,0 +1,61 @@
+//! Ways from pixel to pixel within a surface. Floor 2.
+
+use crate::math::{Rect, Size};
+use crate::raster::Plane;
+use crate::surface::{Surface, links};
+use rayon::prelude::*;
+
+/// For every pixel how many links are missing before it, in its row and in its column: two pixels
+/// of a row with the same number are joined. Counts wrap; no row is long enough for that to tell.
+pub(super) struct WayCounts {
+    across: Plane<u16>,
+    down: Plane<u16>,
+}
+
+impl WayCounts {
+    pub fn of(surface: &Surface) -> Self {
+        let linked = surface.links_plane();
+        let size = surface.size();
+        let width = linked.width().max(1);
+        let (mut across, mut down) = (Plane::filled(size, 0u16), Plane::filled(size, 0u16));
+        let missing = |bits: u8, link: u8| u16::from(bits & link == 0);
+        across.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            let mut count = 0u16;
+            for (out, &bits) in row.iter_mut().zip(linked.row(y)) {
+                count = count.wrapping_add(missing(bits, links::LEFT));
+                *out = count;
+            }
+        });
+        for y in 1..linked.height() {
+            let (above, below) = down.values_mut().split_at_mut(y * width);
+            let above = &above[(y - 1) * width..];
+            for ((out, before), &bits) in below.iter_mut().zip(above).zip(linked.row(y)) {
+                *out = before.wrapping_add(missing(bits, links::UP));
+            }
+        }
+        Self { across, down }
+    }
+
+    /// Whether one of the two ways with one corner joins two pixels.
+    #[inline(always)]
+    pub fn reaches(&self, from: (usize, usize), to: (usize, usize)) -> bool {
+        let ((x0, y0), (x1, y1)) = (from, to);
+        let along = |y: usize| self.across.at(x0, y) == self.across.at(x1, y);
+        let upright = |x: usize| self.down.at(x, y0) == self.down.at(x, y1);
+        along(y0) && upright(x1) || upright(x0) && along(y1)
+    }
+
+    /// Whether every pixel of a rectangle, as far as it lies on the canvas, is joined to its
+    /// neighbors in it.
+    pub fn is_whole(&self, rect: Rect) -> bool {
+        let Size { width, height } = self.across.size();
+        let rect = rect.intersect(Rect::new(0, 0, width as i32, height as i32));
+        if rect.is_empty() {
+            return true;
+        }
+        let [x0, x1] = [rect.x0, rect.x1 - 1].map(|x| x as usize);
+        let [y0, y1] = [rect.y0, rect.y1 - 1].map(|y| y as usize);
+        (y0..=y1).all(|y| self.across.at(x0, y) == self.across.at(x1, y))
+            && self.down.row(y0)[x0..=x1] == self.down.row(y1)[x0..=x1]
+    }
+}
