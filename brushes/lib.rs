@@ -1,5 +1,7 @@
-//! The brushes that come with Rilievo, as texts. To add one, add a file to this folder and a line
-//! here. A file has the fields of a stroke, and what a list shows (`docs/RECIPES.md`).
+//! The brushes, painted balls and looks that come with Rilievo. To add one, add a file to its folder
+//! and a line here. The file of a brush has the fields of a stroke, and what a list shows
+//! (`docs/RECIPES.md`); that of a look has layers (`docs/LOOKS.md`). A ball is a picture, with the
+//! recipe that it was painted by beside it.
 
 macro_rules! table {
     ($($key:literal),* $(,)?) => {
@@ -58,4 +60,56 @@ pub const BRUSHES: &[(&str, &str)] = &table![
     "blender",
     "soften",
     "clone-stamp",
+];
+
+macro_rules! looks {
+    ($($key:literal),* $(,)?) => {
+        [$(($key, include_str!(concat!("looks/", $key, ".json")))),*]
+    };
+}
+
+/// Every look: its key and its file, in the order of the list.
+pub const LOOKS: &[(&str, &str)] = &looks![
+    "oil-sketch",
+    "palette-knife",
+    "gouache",
+    "watercolor",
+    "pastel",
+    "pencil-sketch",
+    "charcoal",
+    "ink",
+    "comic",
+    "marker",
+    "cel-rim",
+    "clay",
+    "porcelain",
+    "gold",
+    "chrome",
+    "bronze",
+    "blueprint",
+    "moonlight",
+];
+
+macro_rules! balls {
+    ($($key:literal $name:literal),* $(,)?) => {
+        [$(($key, $name, include_bytes!(concat!("balls/", $key, ".jpg")))),*]
+    };
+}
+
+/// Every painted ball: its key, its name and its picture, in the order of the list.
+pub const BALLS: &[(&str, &str, &[u8])] = &balls![
+    "oil" "Oil",
+    "impasto" "Palette knife",
+    "gouache" "Gouache",
+    "watercolor" "Watercolor",
+    "pastel" "Pastel",
+    "marker" "Marker",
+    "pencil" "Pencil",
+    "charcoal" "Charcoal and chalk",
+    "ink" "Ink",
+    "cel" "Cel",
+    "clay" "Clay",
+    "porcelain" "Porcelain",
+    "gold" "Gold",
+    "chrome" "Chrome",
 ];

@@ -12,6 +12,7 @@
 //! | `samples` | readings of the pen |
 //! | `brush` | the numbers of a brush, its dynamics |
 //! | `tips` | a brush's tip and its grain |
+//! | `looks` | the looks and painted balls that come with the program |
 //! | `presets` | the brushes that come with the program, and those in files of their own |
 //! | `shading` | shading layers, radiance scaling |
 //! | `light` | lights, terms, scalings and features |
@@ -31,6 +32,7 @@ mod images;
 mod layers;
 mod light;
 mod liquify;
+mod looks;
 mod masks;
 mod normals;
 pub mod parts;
@@ -46,6 +48,7 @@ pub mod transforms;
 pub mod value;
 mod version;
 
+pub use looks::{LiveLook, PaintedBall};
 pub use presets::{
     BrushPreset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush,
     write_preset, written_brush,

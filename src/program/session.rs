@@ -4,6 +4,7 @@
 
 pub mod actions;
 pub mod autosave;
+mod balls;
 pub mod brushes;
 pub mod drawing;
 pub mod memory;
@@ -63,6 +64,8 @@ pub struct Session {
     pub recent_colors: Vec<Color>,
     /// The outline of the selection is not drawn.
     pub hides_selection: bool,
+    /// Balls that are painted in documents of their own.
+    balls: Vec<balls::BallLink>,
     /// What was copied last.
     pub copied: Option<Copied>,
     /// A view of the surface shown over the picture, by its name.
@@ -103,6 +106,7 @@ impl Default for Session {
             tools: ToolSettings::with_brush(brush.unwrap_or_default()),
             recent_colors: Vec::new(),
             hides_selection: false,
+            balls: Vec::new(),
             copied: None,
             overlay: None,
             overlay_opacity: 0.85,

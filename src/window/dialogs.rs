@@ -8,6 +8,7 @@ pub mod export;
 pub mod grid;
 pub mod help;
 pub mod import;
+pub mod looks;
 pub mod losses;
 pub mod maps;
 pub mod new;
@@ -38,6 +39,7 @@ pub enum Dialog {
     Edge(edge::EdgeDialog),
     Keep(edge::KeepDialog),
     Grid,
+    Looks(Box<looks::LooksDialog>),
     Canvas(canvas::CanvasSizeDialog),
     ImageSize(canvas::ImageSizeDialog),
     Turn(canvas::TurnDialog),
@@ -117,6 +119,7 @@ impl Dialog {
                     keep.show(ui, &names, requests)
                 }
                 Dialog::Grid => grid::show(ui, session, requests),
+                Dialog::Looks(looks) => looks.show(ui, session, requests),
                 Dialog::Canvas(canvas) => canvas.show(ui, requests),
                 Dialog::ImageSize(image) => image.show(ui, requests),
                 Dialog::Turn(turn) => turn.show(ui, requests),

@@ -15,6 +15,7 @@ mod icons;
 mod jobs;
 mod keymap;
 mod keys;
+mod look_pictures;
 mod mood_pictures;
 mod operators;
 mod panel_layout;

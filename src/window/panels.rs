@@ -3,6 +3,7 @@
 
 pub mod adjustment;
 mod assistants;
+mod balls;
 mod brush;
 pub mod brush_mode;
 pub mod brushes;

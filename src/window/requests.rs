@@ -69,6 +69,7 @@ pub enum WindowRequest {
     EdgeDialog(EdgeChange),
     KeepDialog,
     GridDialog,
+    LooksDialog,
     CanvasSizeDialog,
     ImageSizeDialog,
     TurnDialog,

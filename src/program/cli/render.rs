@@ -10,7 +10,7 @@ use crate::document::{Document, SurfaceSource};
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::open::FileKind;
-use crate::io::recipe::{self, OtherSurface, RecipeSource};
+use crate::io::recipe::{self, LiveLook, OtherSurface, RecipeSource};
 use crate::io::{Budget, RecipeFolder, UserFiles, deep_paint, open};
 use crate::math::srgb::Color;
 use crate::{Error, Result};
@@ -21,9 +21,10 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(group(ArgGroup::new("maps").args(["normal", "depth"]).multiple(true)))]
 pub struct RenderArgs {
-    /// The project (.ora), or the recipe: a JSON file, next to the files that it names
-    #[arg(value_name = "DOC")]
-    document: PathBuf,
+    /// The project (.ora), or the recipe: a JSON file, next to the files that it names. May be left
+    /// out with --look and maps
+    #[arg(value_name = "DOC", required_unless_present_all = ["look", "maps"])]
+    document: Option<PathBuf>,
     /// The picture to write: .png, .exr, .jpg, .webp or .tif; an existing file is replaced only
     /// with --force
     #[arg(short, long, value_name = "FILE")]
@@ -43,6 +44,9 @@ pub struct RenderArgs {
     /// The other object's mask
     #[arg(long, value_name = "FILE", requires = "maps")]
     mask: Option<PathBuf>,
+    /// Show it in a look that comes with the program, such as oil-sketch, clay or blueprint
+    #[arg(long, value_name = "NAME", value_parser = look)]
+    look: Option<LiveLook>,
     /// Size of the picture relative to the canvas
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::scale)]
     scale: f32,
@@ -70,6 +74,11 @@ fn convention(word: &str) -> std::result::Result<NormalConvention, String> {
         .ok_or_else(|| format!("one of {}", NormalConvention::WORDS.join(", ")))
 }
 
+fn look(word: &str) -> std::result::Result<LiveLook, String> {
+    LiveLook::of_key(word)
+        .ok_or_else(|| format!("one of {}", LiveLook::keys().collect::<Vec<_>>().join(", ")))
+}
+
 fn near(word: &str) -> std::result::Result<Near, String> {
     Near::from_name(word).ok_or_else(|| {
         format!("one of {}", Near::ALL.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", "))
@@ -80,11 +89,13 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     // A misspelled extension is reported before the work, not after it.
     ExportFormat::of(&args.output)?.bits(&args.output, args.bits)?;
     args.limits.install(|| {
+        let told_of = args.named();
         let LoadedDocument { document, notes, reads } = load(args)?;
-        refuse_incomplete(&args.document, &document)?;
+        refuse_incomplete(told_of, &document)?;
         let target = OutputFile::new(&args.output, args.force.export(reads))?;
-        let document = scaled(&args.document, args.scale, &args.limits, document)?;
-        args.limits.room_to_paint(&args.document, &document)?;
+        let document = dressed(args, document)?;
+        let document = scaled(told_of, args.scale, &args.limits, document)?;
+        args.limits.room_to_paint(told_of, &document)?;
         let alone = args.layer.as_ref().map(|name| named(args, &document, name)).transpose()?;
         let shown = alone.and_then(|layer| document.with_only(&[layer])).unwrap_or(document);
         let options = ExportOptions {
@@ -97,9 +108,27 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             target.write_document(&shown, &options, &args.limits.budget(), progress)
         })?;
         // Notes would only hide an error.
-        tell(&args.document, &notes);
+        tell(told_of, &notes);
         Ok(())
     })
+}
+
+impl RenderArgs {
+    /// What messages name: the document, or the map that stands for it.
+    fn named(&self) -> &Path {
+        let given = [&self.document, &self.normal, &self.depth];
+        given.into_iter().flatten().next().map_or(Path::new(""), PathBuf::as_path)
+    }
+}
+
+/// In the look that was asked for.
+fn dressed(args: &RenderArgs, document: Document) -> Result<Document> {
+    let Some(look) = &args.look else { return Ok(document) };
+    if document.surface.is_none() {
+        let reason = "it has no shape: name its maps with --normal or --depth";
+        return Err(Error::unsupported(args.named(), reason));
+    }
+    look.on(&document)
 }
 
 struct LoadedDocument {
@@ -111,30 +140,37 @@ struct LoadedDocument {
 
 fn load(args: &RenderArgs) -> Result<LoadedDocument> {
     let budget = args.limits.budget();
-    let files = TrackedFiles::new(RecipeFolder::beside(&args.document));
     let mut given = UserFiles::default();
     let surface = other_object(args, &mut given);
     let given = TrackedFiles::new(given);
     let onto = surface.as_ref().map(|surface| OtherSurface { surface, files: &given });
-    let bytes = read_file(&args.document, budget.file_bytes)?;
-    let mut reads = vec![args.document.clone()];
+    let Some(file) = &args.document else {
+        // Maps alone, to be shown in a look: a recipe of nothing else.
+        let read = |budget: &Budget| {
+            let source =
+                RecipeSource { file: args.named(), files: &UserFiles::default(), budget, onto };
+            recipe::read_noting(b"{}", source)
+        };
+        let (document, notes) = read(&budget)?;
+        return Ok(LoadedDocument { document, notes, reads: given.read_paths() });
+    };
+    let files = TrackedFiles::new(RecipeFolder::beside(file));
+    let bytes = read_file(file, budget.file_bytes)?;
+    let mut reads = vec![file.clone()];
     let (document, notes) = match FileKind::of(&bytes) {
         FileKind::Recipe => {
             let read = |budget: &Budget| {
-                recipe::read_noting(
-                    &bytes,
-                    RecipeSource { file: &args.document, files: &files, budget, onto },
-                )
+                recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto })
             };
             let ((document, mut notes), rounded) =
-                deep_paint::fitted(&args.document, &budget, read, |(document, _)| document)?;
+                deep_paint::fitted(file, &budget, read, |(document, _)| document)?;
             notes.extend(rounded);
             (document, notes)
         }
         _ => {
-            let opened = open(&args.document, &budget)?;
+            let opened = open(file, &budget)?;
             let document = onto.map_or(Ok(opened.document.clone()), |onto| {
-                recipe::put_onto(&opened.document, &args.document, onto, &budget)
+                recipe::put_onto(&opened.document, file, onto, &budget)
             })?;
             (document, opened.notes)
         }
@@ -169,7 +205,7 @@ fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::do
         let names: Vec<_> =
             document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
         Error::invalid(
-            &args.document,
+            args.named(),
             "--layer",
             format!("no layer is called “{name}”; there are {}", names.join(", ")),
         )

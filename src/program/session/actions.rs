@@ -115,6 +115,7 @@ impl Action {
             Action::Stroke(action) => action.apply(session),
             Action::View(action) => action.apply(session),
         }
+        session.follow_balls();
         session.tell_refusals();
         done
     }

@@ -205,6 +205,11 @@ impl OpenDocument {
         self.saved = Document::empty(self.document().size);
     }
 
+    /// What it holds is kept elsewhere: nothing of it is unsaved.
+    pub(super) fn mark_kept(&mut self) {
+        self.saved = self.document().clone();
+    }
+
     /// Whether something is shown that is not a step yet.
     pub fn is_previewing(&self) -> bool {
         self.preview.is_some()

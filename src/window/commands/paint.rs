@@ -1,16 +1,26 @@
 //! The Paint menu: the current brush, colours and operator.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, key, row, shift};
+use super::row::{LINE, MenuCommand, always, has_surface, key, row, shift};
+use crate::document::Content;
 use crate::operators;
-use crate::requests::UiRequests;
-use crate::session::actions::HandAction;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::{HandAction, LayerAction};
 use crate::session::{Action, Session};
+use crate::shading::Model;
 use crate::tools::ToolKind;
 use eframe::egui::Key;
 
 fn hand(requests: &mut UiRequests, action: HandAction) {
     requests.act(Action::Hand(action));
+}
+
+/// Whether the selected layer shows a painted ball.
+fn has_ball(session: &Session) -> bool {
+    session.layer().is_some_and(|layer| match &layer.content {
+        Content::Shading(live) => live.params().model == Model::LitSphere,
+        _ => false,
+    })
 }
 
 fn resize(session: &Session, requests: &mut UiRequests, factor: f32) {
@@ -28,6 +38,25 @@ fn resize(session: &Session, requests: &mut UiRequests, factor: f32) {
 }
 
 pub const COMMANDS: &[MenuCommand] = &[
+    row(
+        "Looks…",
+        &[],
+        "Shows the shape as an oil sketch, in clay, in gold, as a comic, …",
+        has_surface,
+        |_, requests| requests.request(WindowRequest::LooksDialog),
+    ),
+    row(
+        "Paint the ball",
+        &[],
+        "Opens the ball of the layer as a drawing of its own; each stroke on it repaints the shape",
+        has_ball,
+        |session, requests| {
+            let path = session.layer_path();
+            let paint = |layer| LayerAction::PaintBall { layer, hollows: false };
+            path.into_iter().for_each(|path| requests.act(Action::Layer(paint(path))));
+        },
+    ),
+    LINE,
     row(
         "Larger brush",
         &[key(Key::CloseBracket)],

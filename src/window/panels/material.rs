@@ -2,14 +2,14 @@
 //! Floor 7.
 
 use super::setter::LayerSetter;
-use super::{colors, painter};
+use super::{balls, colors, painter};
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::mood_pictures::MoodPictures;
-use crate::session::PicturePart;
-use crate::session::Property;
+use crate::session::actions::LayerAction;
+use crate::session::{Action, PicturePart, Property};
 use crate::shading::{
-    Environment, FeatureScale, Features, Light, LightKind, Model, Projection, RadianceScaling,
-    Scaling, Shading, Term,
+    BallStrokes, Environment, FeatureScale, Features, Light, LightKind, Model, Projection,
+    RadianceScaling, Scaling, Shading, Term,
 };
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
@@ -151,6 +151,27 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
             shading.sphere_concave.as_ref().map(|sphere| &*sphere.file),
             "The same",
         );
+        balls::chooser(ui, setter);
+        ball_strokes(ui, shading.strokes, setter);
+        let button = ui.button("Paint the ball");
+        let hint = "Opens the ball as a drawing of its own; each stroke on it repaints the shape";
+        if button.on_hover_text(hint).clicked() {
+            let paint = LayerAction::PaintBall { layer: setter.layer.clone(), hollows: false };
+            setter.requests.act(Action::Layer(paint));
+        }
+    }
+}
+
+/// How the brush marks of a painted ball lie on the figure.
+fn ball_strokes(ui: &mut Ui, strokes: BallStrokes, setter: &mut LayerSetter) {
+    let hint = "Brush marks of the ball stay whole; off, each pixel looks its own normal up";
+    if let Some(on) = check(ui, "Whole strokes", hint, strokes.on) {
+        setter.set(Property::BallMarks { strokes: BallStrokes { on, ..strokes } }, true);
+    }
+    if strokes.on {
+        painter::settings(ui, BallStrokes::SETTINGS, strokes, setter, |strokes| {
+            Property::BallMarks { strokes }
+        });
     }
 }
 

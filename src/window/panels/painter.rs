@@ -14,7 +14,7 @@ use eframe::egui::{self, Ui};
 type ColorOf = fn(&mut Painter) -> &mut Color;
 
 /// A row for each number of a table.
-fn settings<T: Copy + 'static>(
+pub fn settings<T: Copy + 'static>(
     ui: &mut Ui,
     table: &'static [LightSetting<T>],
     all: T,

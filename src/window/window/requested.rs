@@ -2,7 +2,7 @@
 //! interface. Floor 7.
 
 use super::MainWindow;
-use crate::dialogs::{Dialog, adjust, canvas, edge, import, new, palette, shortcuts};
+use crate::dialogs::{Dialog, adjust, canvas, edge, import, looks, new, palette, shortcuts};
 use crate::file_purpose::FilePurpose;
 use crate::panel_layout::PanelSide;
 use crate::requests::WindowRequest;
@@ -64,6 +64,9 @@ impl MainWindow {
                 self.dialogs.push(Dialog::Keep(edge::KeepDialog::default()))
             }
             WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),
+            WindowRequest::LooksDialog => {
+                self.dialogs.push(Dialog::Looks(Box::new(looks::LooksDialog::new(ctx))))
+            }
             WindowRequest::Paste(to) => self.paste(to),
             WindowRequest::Palette => {
                 self.dialogs.push(Dialog::Palette(palette::CommandPalette::default()))

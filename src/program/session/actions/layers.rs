@@ -2,6 +2,7 @@
 //! (`document::edit`, `document::several`), new layers (`new`).
 
 mod flattening;
+mod looks;
 mod new;
 mod refusal;
 mod steps;
@@ -53,6 +54,12 @@ actions! {
         "bake" Bake { layer: LayerPaths }
         /// A shading layer of a model, with the material it begins with.
         "add shading" AddShading { model: Model }
+        /// A look that comes with the program, by its key, on top of all layers.
+        "look" Look { name: String }
+        /// A ball that comes with the program, by its key, for a layer of lit spheres.
+        "painted ball" PaintedBall { layer: LayerPath, name: String, hollows: bool }
+        /// Opens a ball of a layer of lit spheres as a document of its own.
+        "paint ball" PaintBall { layer: LayerPath, hollows: bool }
         /// A layer that adjusts the colours beneath it.
         "add adjustment" AddAdjustment { adjustment: ColorAdjustment }
         /// The paint of layers is adjusted for good, within the selection; shown only, until it is
@@ -120,6 +127,13 @@ impl LayerAction {
             pieces: Vec::new(),
         };
         session.drop_gesture();
+        if let LayerAction::PaintBall { layer, hollows } = self {
+            let found = session.active().and_then(|open| layer.find(open.document()));
+            return found
+                .map(|layer| layer.id)
+                .into_iter()
+                .for_each(|id| session.paint_ball(id, *hollows));
+        }
         let target = session.tools.transform.target;
         let Some(open) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
@@ -159,7 +173,7 @@ impl LayerAction {
                 open.repair();
             }
             LayerAction::Pivot { at } => open.set_pivot(target, *at),
-            LayerAction::Unadjust {} => {}
+            LayerAction::Unadjust {} | LayerAction::PaintBall { .. } => {}
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 open.solo = if open.solo == id { None } else { id };
@@ -208,6 +222,11 @@ impl LayerAction {
                 ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }
             LayerAction::AddShading { model } => added(open, lit_layer(*model, document))?,
+            LayerAction::Look { name } => looks::dressed(document, name)?,
+            LayerAction::PaintedBall { layer: path, name, hollows } => {
+                let layer = layer(path)?;
+                looks::with_ball(document, &layer, name, *hollows)?
+            }
             LayerAction::AddAdjustment { adjustment } => {
                 let name = document.free_layer_name(adjustment.label());
                 added(open, Layer::new(name, adjustment.clone()))?
@@ -306,6 +325,7 @@ impl LayerAction {
             | LayerAction::Unadjust {}
             | LayerAction::TakeAlong { .. }
             | LayerAction::Pivot { .. }
+            | LayerAction::PaintBall { .. }
             | LayerAction::Set { .. } => return None,
         };
         Some(Edit { label, document, select })

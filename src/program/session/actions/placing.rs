@@ -104,7 +104,7 @@ pub fn of_picture(name: &str, picture: Picture) -> Document {
 }
 
 /// A file name that no other picture of the document has.
-pub(super) fn free_file(document: &Document, name: &str) -> String {
+pub(in crate::session) fn free_file(document: &Document, name: &str) -> String {
     let taken =
         |name: &str| document.walk().iter().any(|(_, layer)| layer.content.files().contains(&name));
     let path = Path::new(name);

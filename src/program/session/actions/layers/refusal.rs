@@ -52,6 +52,9 @@ impl LayerAction {
                     false => Err("There is no group among the selected layers."),
                 })
             }
+            LayerAction::Look { .. } if document.surface.is_none() => {
+                Err("A look needs a shape: give the drawing one first.")
+            }
             LayerAction::Home { layer, part } => {
                 chosen(layer).and_then(|ids| homed(document, &ids, part.as_deref()).map(drop))
             }

@@ -1,0 +1,36 @@
+//! Looks and painted balls that come with the program, put into a document.
+//! Floor 6. Not here: what they are (`io::recipe::looks`).
+
+use super::steps::EditStep;
+use crate::document::{Content, Document, Layer, Live};
+use crate::io::recipe::{LiveLook, PaintedBall};
+use crate::shading::{LitSphere, Model};
+
+/// The step that puts a document in a look: its name, the document, and what is chosen then.
+pub(super) fn dressed(document: &Document, name: &str) -> Option<EditStep> {
+    document.surface.as_ref()?;
+    let next = LiveLook::of_key(name)?.on(document).ok()?;
+    let chosen = next.layers.last().map(|layer| layer.id);
+    Some(("Look", next, chosen.into_iter().collect()))
+}
+
+/// The step that gives a layer a ball, whose strokes stay whole from then on.
+pub(super) fn with_ball(
+    document: &Document,
+    layer: &Layer,
+    name: &str,
+    hollows: bool,
+) -> Option<EditStep> {
+    let Content::Shading(live) = &layer.content else { return None };
+    let ball = PaintedBall::of_key(name)?;
+    let sphere = Some(LitSphere::new(ball.file(), ball.picture().ok()?));
+    let mut shading = live.params().clone();
+    match hollows {
+        true => shading.sphere_concave = sphere,
+        false => shading.sphere = sphere,
+    }
+    shading.strokes.on |= shading.model == Model::LitSphere;
+    let content = Content::Shading(Live::new(shading));
+    let next = document.with_layer(layer.id, |layer| layer.content = content)?;
+    Some(("Painted ball", next, vec![layer.id]))
+}

@@ -1,0 +1,78 @@
+//! The looks that come with the program, each on the user's own drawing. Floor 7.
+
+use super::{DialogAnswer, close};
+use crate::io::recipe::LiveLook;
+use crate::look_pictures::LookPictures;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::LayerAction;
+use crate::session::{Action, Session};
+use crate::widgets::named;
+use eframe::egui::{self, ScrollArea, Ui, vec2};
+
+/// The longer side of a picture, points.
+const SHOWN_PT: f32 = 112.0;
+
+pub struct LooksDialog {
+    looks: Vec<LiveLook>,
+    pictures: LookPictures,
+}
+
+impl LooksDialog {
+    pub fn new(ctx: &egui::Context) -> Self {
+        Self { looks: LiveLook::all().collect(), pictures: LookPictures::new(ctx.clone()) }
+    }
+
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        requests: &mut UiRequests,
+    ) -> DialogAnswer {
+        ui.set_width(640.0);
+        ui.heading("Looks");
+        ui.weak("A look is a group of live layers, which you can change afterwards.");
+        if let Some(open) = session.active() {
+            self.pictures.follow(ui.ctx(), open.document());
+        }
+        if let Some(error) = self.pictures.trouble.take() {
+            requests.request(WindowRequest::Say(error.to_string()));
+        }
+        let mut chosen = None;
+        let height = ui.ctx().content_rect().height() * 0.6;
+        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for look in &self.looks {
+                    if self.button(ui, look) {
+                        chosen = Some(look.key);
+                    }
+                }
+            });
+        });
+        match chosen {
+            Some(key) => {
+                requests.act(Action::Layer(LayerAction::Look { name: key.to_owned() }));
+                DialogAnswer::Close
+            }
+            None => close(ui),
+        }
+    }
+
+    /// A look as a button; whether it was clicked.
+    fn button(&self, ui: &mut Ui, look: &LiveLook) -> bool {
+        let clicked = ui.vertical(|ui| {
+            ui.set_width(SHOWN_PT + 8.0);
+            let response = match self.pictures.picture(look.key) {
+                Some((texture, size)) => {
+                    let shown = size * (SHOWN_PT / size.max_elem().max(1.0));
+                    ui.add(egui::Button::image(egui::load::SizedTexture::new(texture, shown)))
+                }
+                None => ui.add_sized(vec2(SHOWN_PT, SHOWN_PT), egui::Button::new("…")),
+            };
+            let response = response.on_hover_text(&look.about);
+            named(&response, &format!("Look: {}", look.name));
+            ui.small(&look.name);
+            response.clicked()
+        });
+        clicked.inner
+    }
+}
