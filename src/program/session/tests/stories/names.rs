@@ -75,6 +75,6 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         ShadingModel { .. } | Lights { .. } | InMood { .. } | Shadowed { .. } => &["material"],
         Ambient { .. } | Diffuse { .. } | Specular { .. } | Painted { .. } => &["material"],
         Shininess { .. } | Bands { .. } | Exponent { .. } => &["material"],
-        Anisotropy { .. } | RefractiveIndex { .. } => &["material"],
+        Anisotropy { .. } | RefractiveIndex { .. } | BallMarks { .. } => &["material"],
     }
 }
