@@ -278,7 +278,7 @@ impl Shading {
     }
 
     /// Whether its spheres' brush marks stay whole.
-    pub fn shows_strokes(&self) -> bool {
+    pub fn has_strokes(&self) -> bool {
         self.model == Model::LitSphere && self.strokes.on
     }
 
@@ -289,7 +289,7 @@ impl Shading {
             false => 0,
         };
         let contact = usize::from(self.model == Model::Painter);
-        let strokes = usize::from(self.shows_strokes());
+        let strokes = usize::from(self.has_strokes());
         ((lamps + contact) * Surface::SHADOW_BYTES + strokes * Surface::BALL_PLACE_BYTES) as u64
     }
 

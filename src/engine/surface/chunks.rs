@@ -237,7 +237,7 @@ impl<'a> ChunkMaps<'a> {
         let (w, h) = (size.width as usize, size.height as usize);
         let reached = |on: bool| {
             step(from, on)
-                .filter(|to| to.0 < w && to.1 < h && self.ways.reaches(from, *to))
+                .filter(|to| to.0 < w && to.1 < h && self.ways.is_reached(from, *to))
                 .map(|(x, y)| self.looked_up(x, y))
         };
         let here = self.looked_up(from.0, from.1);
@@ -272,7 +272,7 @@ impl<'a> ChunkMaps<'a> {
         let seed = self.seed(&grid, cell, part)?;
         let place = seed.place(vec2(x as f32 + 0.5, y as f32 + 0.5));
         let is_taken = self.settings.is_near(place, self.nbar(x, y), self.seen[2].at(x, y))
-            && self.ways.reaches(seed.pixel(), (x, y));
+            && self.ways.is_reached(seed.pixel(), (x, y));
         is_taken.then(|| (place, grid.chunk(cell)))
     }
 }

@@ -42,7 +42,7 @@ impl LooksDialog {
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for look in &self.looks {
-                    if self.button(ui, look) {
+                    if self.is_clicked(ui, look) {
                         chosen = Some(look.key);
                     }
                 }
@@ -58,7 +58,7 @@ impl LooksDialog {
     }
 
     /// A look as a button; whether it was clicked.
-    fn button(&self, ui: &mut Ui, look: &LiveLook) -> bool {
+    fn is_clicked(&self, ui: &mut Ui, look: &LiveLook) -> bool {
         let clicked = ui.vertical(|ui| {
             ui.set_width(SHOWN_PT + 8.0);
             let response = match self.pictures.picture(look.key) {

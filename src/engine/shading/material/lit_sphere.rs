@@ -50,7 +50,7 @@ fn convex(shading: &Shading) -> &LitSphere {
 fn lights(shading: &Shading) -> [Option<&SphereLight>; 2] {
     let spheres = [Some(convex(shading)), shading.sphere_concave.as_ref()];
     spheres.map(|sphere| {
-        sphere.map(|sphere| match shading.shows_strokes() {
+        sphere.map(|sphere| match shading.has_strokes() {
             true => sphere.light_at(shading.strokes.size),
             false => sphere.light(),
         })

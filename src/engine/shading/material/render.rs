@@ -172,7 +172,7 @@ impl<'a> RowShader<'a> {
         Self {
             shading,
             painter,
-            places: if shading.shows_strokes() { shading.strokes.places(surface) } else { None },
+            places: if shading.has_strokes() { shading.strokes.places(surface) } else { None },
             lights,
             terms,
             samples,

@@ -228,7 +228,7 @@ impl CellBlock {
             let at = (x + lane, y);
             taken[lane] = taken[lane]
                 && maps.part(at.0, at.1) == self.part
-                && maps.ways.reaches(self.seeds[found[lane] as usize].pixel(), at);
+                && maps.ways.is_reached(self.seeds[found[lane] as usize].pixel(), at);
         }
     }
 }

@@ -59,7 +59,7 @@ fn averaged(maps: &ChunkMaps, joined: &BallPlaces, (x, y): (usize, usize), bits:
         let (dx, dy) = SEAM_STEPS[bit];
         let other = ((x as i32 + dx * step) as usize, (y as i32 + dy * step) as usize);
         let [px, py] = joined.beside(x, y, bit).map(|step| step / joined.steps);
-        maps.settings.is_near(vec2(px, py), nbar, nz) && maps.ways.reaches((x, y), other)
+        maps.settings.is_near(vec2(px, py), nbar, nz) && maps.ways.is_reached((x, y), other)
     };
     let is_kept = |bit: &usize| bits >> bit & 1 != 0 && is_averaged(*bit);
     (0..SEAM_STEPS.len()).filter(is_kept).fold(0, |kept, bit| kept | 1 << bit)

@@ -38,7 +38,7 @@ impl WayCounts {
 
     /// Whether one of the two ways with one corner joins two pixels.
     #[inline(always)]
-    pub fn reaches(&self, from: (usize, usize), to: (usize, usize)) -> bool {
+    pub fn is_reached(&self, from: (usize, usize), to: (usize, usize)) -> bool {
         let ((x0, y0), (x1, y1)) = (from, to);
         let along = |y: usize| self.across.at(x0, y) == self.across.at(x1, y);
         let upright = |x: usize| self.down.at(x, y0) == self.down.at(x, y1);
