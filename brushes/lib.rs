@@ -3,14 +3,15 @@
 //! (`docs/RECIPES.md`); that of a look has layers (`docs/LOOKS.md`). A ball is a picture, with the
 //! recipe that it was painted by beside it.
 
+/// The texts of a folder (`""`: this one), each with its key.
 macro_rules! table {
-    ($($key:literal),* $(,)?) => {
-        [$(($key, include_str!(concat!($key, ".json")))),*]
+    ($folder:literal: $($key:literal),* $(,)?) => {
+        [$(($key, include_str!(concat!($folder, $key, ".json")))),*]
     };
 }
 
 /// Every brush: its key and its file, in the order of the list.
-pub const BRUSHES: &[(&str, &str)] = &table![
+pub const BRUSHES: &[(&str, &str)] = &table!["":
     "pencil-hb",
     "pencil-2b",
     "pencil-mechanical",
@@ -62,14 +63,8 @@ pub const BRUSHES: &[(&str, &str)] = &table![
     "clone-stamp",
 ];
 
-macro_rules! looks {
-    ($($key:literal),* $(,)?) => {
-        [$(($key, include_str!(concat!("looks/", $key, ".json")))),*]
-    };
-}
-
 /// Every look: its key and its file, in the order of the list.
-pub const LOOKS: &[(&str, &str)] = &looks![
+pub const LOOKS: &[(&str, &str)] = &table!["looks/":
     "oil-sketch",
     "palette-knife",
     "gouache",

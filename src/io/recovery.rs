@@ -145,16 +145,7 @@ impl RecoveryLog {
     pub fn close(mut self) -> Result<()> {
         self.given_up.store(true, Ordering::Relaxed);
         self.stop();
-        for extension in ["new", "log", "lock"] {
-            let path = self.path.with_extension(extension);
-            match self.fs.remove(&path) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                    return Err(Error::io(path, e));
-                }
-                _ => {}
-            }
-        }
-        Ok(())
+        remove_files(&*self.fs, &self.path, &["new", "log", "lock"])
     }
 
     fn send(&self, task: RecoveryTask) {
@@ -171,6 +162,18 @@ impl RecoveryLog {
             let _ = worker.join();
         }
     }
+}
+
+/// Deletes what there is of a session, by the extensions.
+fn remove_files(fs: &dyn Fs, path: &Path, extensions: &[&str]) -> Result<()> {
+    for extension in extensions {
+        let path = path.with_extension(extension);
+        match fs.remove(&path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(path, e)),
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 impl Drop for RecoveryLog {

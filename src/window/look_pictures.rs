@@ -2,8 +2,9 @@
 //! Floor 7. Not here: what a look is (`io::recipe::looks`).
 
 use super::jobs;
+use super::mood_pictures::image_of;
 use crate::Error;
-use crate::document::{Document, DocumentReducer, Progress, flatten};
+use crate::document::{Document, DocumentReducer};
 use crate::io::recipe::LiveLook;
 use eframe::egui::{self, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2};
 use std::collections::HashMap;
@@ -63,8 +64,5 @@ impl LookPictures {
 
 /// A small document in a look.
 fn painted(small: &Document, look: &LiveLook) -> Option<ColorImage> {
-    let dressed = look.on(small).ok()?;
-    let grid = flatten(&dressed, &Progress::default())?;
-    let size = [dressed.size.width as usize, dressed.size.height as usize];
-    Some(ColorImage::from_rgba_unmultiplied(size, &grid.to_straight_rgba(dressed.size.rect())))
+    image_of(&look.on(small).ok()?)
 }

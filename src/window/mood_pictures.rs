@@ -106,10 +106,14 @@ fn painted(document: &Document, layer: LayerId) -> Vec<(Mood, ColorImage)> {
                 layer.content = Content::Shading(Live::new(mood.on(live.params())));
             }
         })?;
-        let grid = flatten(&lit, &Progress::default())?;
-        let size = [lit.size.width as usize, lit.size.height as usize];
-        let pixels = grid.to_straight_rgba(lit.size.rect());
-        Some((mood, ColorImage::from_rgba_unmultiplied(size, &pixels)))
+        Some((mood, image_of(&lit)?))
     };
     Mood::ALL.iter().filter_map(|(mood, _)| in_mood(*mood)).collect()
+}
+
+/// What a document shows, as an image of its size.
+pub fn image_of(document: &Document) -> Option<ColorImage> {
+    let pixels = flatten(document, &Progress::default())?.to_straight_rgba(document.size.rect());
+    let size = [document.size.width as usize, document.size.height as usize];
+    Some(ColorImage::from_rgba_unmultiplied(size, &pixels))
 }

@@ -277,6 +277,19 @@ impl Shading {
         next
     }
 
+    /// Its lit sphere, or the one for hollows.
+    pub fn ball(&self, hollows: bool) -> Option<&LitSphere> {
+        if hollows { self.sphere_concave.as_ref() } else { self.sphere.as_ref() }
+    }
+
+    /// With another lit sphere, or another one for hollows.
+    pub fn with_ball(self, hollows: bool, ball: LitSphere) -> Self {
+        match hollows {
+            true => Self { sphere_concave: Some(ball), ..self },
+            false => Self { sphere: Some(ball), ..self },
+        }
+    }
+
     /// Whether its spheres' brush marks stay whole.
     pub fn has_strokes(&self) -> bool {
         self.model == Model::LitSphere && self.strokes.on

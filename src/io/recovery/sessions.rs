@@ -162,15 +162,6 @@ impl LostSession {
     /// Deletes what the session left: only if the user says so, or once the drawing is safe in
     /// another session.
     pub fn discard(self) -> Result<()> {
-        for extension in ["trying", "new", "log", "lock"] {
-            let path = self.path.with_extension(extension);
-            match self.fs.remove(&path) {
-                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                    return Err(Error::io(path, e));
-                }
-                _ => {}
-            }
-        }
-        Ok(())
+        super::remove_files(&*self.fs, &self.path, &["trying", "new", "log", "lock"])
     }
 }

@@ -8,7 +8,7 @@ use crate::io::recipe::{RecipeSource, read_value};
 use crate::io::{Budget, UserFiles};
 use crate::math::{Size, Vec2, srgb, vec2};
 use crate::raster::{Picture, TileGrid};
-use crate::shading::{LitSphere, Model, Shading};
+use crate::shading::{LitSphere, Model};
 use serde_json::json;
 use std::path::Path;
 
@@ -28,10 +28,6 @@ pub struct BallLink {
     shown: Document,
     /// The figure after the last step that was made from here.
     made: Option<Document>,
-}
-
-fn sphere(shading: &Shading, hollows: bool) -> Option<&LitSphere> {
-    if hollows { shading.sphere_concave.as_ref() } else { shading.sphere.as_ref() }
 }
 
 /// The ball's document: its paint on a ball that fills the canvas.
@@ -80,17 +76,13 @@ impl BallLink {
     /// The figure with the ball as it is now.
     fn repainted(&self, figure: &Document, ball: &Document) -> Option<Document> {
         let Content::Shading(live) = &figure.layer(self.layer)?.content else { return None };
-        let mut shading = live.params().clone();
-        let own = sphere(&shading, self.hollows).map(|sphere| sphere.file.clone());
+        let own = live.params().ball(self.hollows).map(|ball| ball.file.clone());
         // A ball that came with the program, or with a file, is another one from now on.
         let file = own
             .filter(|_| self.made.is_some())
             .unwrap_or_else(|| free_file(figure, "painted-ball.png"));
-        let sphere = Some(LitSphere::new(file, picture(ball)?));
-        match self.hollows {
-            true => shading.sphere_concave = sphere,
-            false => shading.sphere = sphere,
-        }
+        let ball = LitSphere::new(file, picture(ball)?);
+        let shading = live.params().clone().with_ball(self.hollows, ball);
         let content = Content::Shading(Live::new(shading));
         figure.with_layer(self.layer, |layer| layer.content = content)
     }
@@ -115,7 +107,7 @@ impl Session {
             self.current = at;
             return;
         }
-        let ball = sphere(live.params(), hollows).unwrap_or(LitSphere::clay());
+        let ball = live.params().ball(hollows).unwrap_or(LitSphere::clay());
         let Some(document) = ball_document(ball) else { return };
         let open = OpenDocument::new("Ball", document, None);
         self.balls.push(BallLink {
@@ -166,7 +158,9 @@ mod tests {
     use super::*;
     use crate::session::Action;
     use crate::session::actions::{EditAction, FileAction, LayerAction, NewLayer};
+    use crate::session::replay::ReplayValue;
     use crate::session::{LayerPath, actions};
+    use crate::shading::Shading;
 
     /// A session with a canvas that has a lit-sphere layer, and the ball of it in front.
     fn painting() -> Session {
@@ -252,5 +246,27 @@ mod tests {
             fill(&mut session, srgb::Color::rgb(9, 9, 9));
             assert!(session.balls.is_empty() && session.active().unwrap().is_dirty());
         }
+    }
+
+    #[test]
+    fn a_ball_or_a_look_that_cannot_be_had_says_why() {
+        let mut session = painting();
+        let says = |session: &mut Session, action: LayerAction| {
+            session.said.clear();
+            act(session, action);
+            session.said.concat()
+        };
+        let layer = || LayerPath::read(&json!("0")).unwrap();
+        let bare = LayerAction::PaintBall { layer: layer(), hollows: false };
+        assert!(says(&mut session, bare).contains("lit sphere"), "the ball's own layer is paint");
+        session.current = 0;
+        let (name, hollows) = ("billiard".to_owned(), false);
+        let unknown = LayerAction::PaintedBall { layer: layer(), name, hollows };
+        assert!(says(&mut session, unknown).contains("No painted ball"));
+        let flat = says(&mut session, LayerAction::Look { name: "oil-sketch".into() });
+        assert!(flat.contains("needs a shape"), "{flat}");
+        session.current = 1;
+        let unknown = says(&mut session, LayerAction::Look { name: "cubism".into() });
+        assert!(unknown.contains("No look"), "{unknown}");
     }
 }

@@ -18,7 +18,8 @@ const QUERY: &str = "query";
 
 /// A line of the pipe.
 enum Request {
-    Act(Box<Action>),
+    /// An action, and the layer that it names.
+    Act(Box<Action>, Option<Value>),
     /// What the document in front holds.
     Describe,
 }
@@ -26,14 +27,15 @@ enum Request {
 impl ReplayValue for Request {
     fn written(&self) -> Value {
         match self {
-            Self::Act(action) => action.written(),
+            Self::Act(action, _) => action.written(),
             Self::Describe => json!({ "in": QUERY, "do": "document" }),
         }
     }
 
     fn read(value: &Value) -> std::result::Result<Self, String> {
         if value.get("in").and_then(Value::as_str) != Some(QUERY) {
-            return Action::read(value).map(|action| Self::Act(Box::new(action)));
+            let layer = value.get("layer").filter(|named| !named.is_null()).cloned();
+            return Action::read(value).map(|action| Self::Act(Box::new(action), layer));
         }
         match value.get("do").and_then(Value::as_str) {
             Some("document") => Ok(Self::Describe),
@@ -66,7 +68,9 @@ fn answer_all(session: &mut Session, mut from: impl BufRead, mut to: impl Write)
             continue;
         };
         refused += usize::from(!is_done);
-        reply.insert("notes".into(), std::mem::take(&mut session.notes).into());
+        let mut notes = std::mem::take(&mut session.notes);
+        notes.append(&mut session.said);
+        reply.insert("notes".into(), notes.into());
         match writeln!(to, "{}", Value::Object(reply)).and_then(|()| to.flush()) {
             // Who closed the pipe has read enough.
             Err(e) if e.kind() == ErrorKind::BrokenPipe => return Ok(()),
@@ -86,7 +90,7 @@ fn answer(session: &mut Session, number: usize, line: &str) -> Option<(bool, Map
     let done = match replay::line(line) {
         Ok(None) => return None,
         Ok(Some(Request::Describe)) => Ok(session.shown().map(description)),
-        Ok(Some(Request::Act(action))) => match missing_layer(session, line) {
+        Ok(Some(Request::Act(action, named))) => match missing_layer(session, named) {
             Some(reason) => Err(replay::refused(file, number, reason)),
             None => action.apply(session).map(|()| None),
         },
@@ -106,10 +110,9 @@ fn answer(session: &mut Session, number: usize, line: &str) -> Option<(bool, Map
 
 /// What is wrong with the layer that a line names. The window names none that is not there, so that
 /// an action on a missing one is nothing to it.
-fn missing_layer(session: &Session, line: &str) -> Option<String> {
-    let value: Value = serde_json::from_str(line).ok()?;
-    let named = value.get("layer").filter(|named| !named.is_null())?;
-    let paths = LayerPaths::read(named).ok()?;
+fn missing_layer(session: &Session, named: Option<Value>) -> Option<String> {
+    let named = named?;
+    let paths = LayerPaths::read(&named).ok()?;
     let is_there = session.active().is_some_and(|open| paths.find(open.document()).is_some());
     (!is_there).then(|| format!("“layer” is {named}, and there is no such layer"))
 }
@@ -185,11 +188,13 @@ mod tests {
             "\n",
             r#"{"in":"pointer","do":"press","tool":"brush","pen":[9,9],"px_per_pt":1}"#,
             "\n{\"in\":\"pointer\",\"do\":\"release\"}\n",
+            "{\"in\":\"layer\",\"do\":\"look\",\"name\":\"gold\"}\n",
         ));
         done.unwrap();
         let notes: Vec<usize> =
             replies.iter().map(|reply| reply["notes"].as_array().unwrap().len()).collect();
         assert_eq!(notes[..3], [0, 0, 0], "{replies:?}");
         assert!(notes[3] + notes[4] == 1, "{replies:?}");
+        assert!(replies[5]["notes"][0].as_str().unwrap().contains("needs a shape"), "{replies:?}");
     }
 }

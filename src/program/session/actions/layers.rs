@@ -60,7 +60,7 @@ actions! {
         "painted ball" PaintedBall { layer: LayerPath, name: String, hollows: bool }
         /// Opens a ball of a layer of lit spheres as a document of its own.
         "paint ball" PaintBall { layer: LayerPath, hollows: bool }
-        /// A layer that adjusts the colours beneath it.
+        /// A layer that adjusts the colors beneath it.
         "add adjustment" AddAdjustment { adjustment: ColorAdjustment }
         /// The paint of layers is adjusted for good, within the selection; shown only, until it is
         /// `done`.
@@ -128,11 +128,7 @@ impl LayerAction {
         };
         session.drop_gesture();
         if let LayerAction::PaintBall { layer, hollows } = self {
-            let found = session.active().and_then(|open| layer.find(open.document()));
-            return found
-                .map(|layer| layer.id)
-                .into_iter()
-                .for_each(|id| session.paint_ball(id, *hollows));
+            return self.paint_ball(session, layer, *hollows);
         }
         let target = session.tools.transform.target;
         let Some(open) = session.active_mut() else { return };
@@ -191,6 +187,15 @@ impl LayerAction {
                     None => session.said.extend(refusal),
                 }
             }
+        }
+    }
+
+    fn paint_ball(&self, session: &mut Session, layer: &LayerPath, hollows: bool) {
+        let Some(document) = session.active().map(OpenDocument::document) else { return };
+        let (refusal, found) = (self.refusal(document), layer.find(document).map(|found| found.id));
+        match (refusal, found) {
+            (Some(why), _) => session.say(why),
+            (None, found) => found.into_iter().for_each(|id| session.paint_ball(id, hollows)),
         }
     }
 

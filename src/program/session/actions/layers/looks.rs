@@ -23,12 +23,8 @@ pub(super) fn with_ball(
 ) -> Option<EditStep> {
     let Content::Shading(live) = &layer.content else { return None };
     let ball = PaintedBall::of_key(name)?;
-    let sphere = Some(LitSphere::new(ball.file(), ball.picture().ok()?));
-    let mut shading = live.params().clone();
-    match hollows {
-        true => shading.sphere_concave = sphere,
-        false => shading.sphere = sphere,
-    }
+    let sphere = LitSphere::new(ball.file(), ball.picture().ok()?);
+    let mut shading = live.params().clone().with_ball(hollows, sphere);
     shading.strokes.on |= shading.model == Model::LitSphere;
     let content = Content::Shading(Live::new(shading));
     let next = document.with_layer(layer.id, |layer| layer.content = content)?;

@@ -3,8 +3,11 @@
 
 use super::LayerAction;
 use super::steps::homed;
-use crate::document::{Document, LayerId, Mesh};
+use crate::document::{Content, Document, Layer, LayerId, Mesh};
+use crate::io::recipe::{LiveLook, PaintedBall};
 use crate::session::LayerPaths;
+use crate::shading::Model;
+use std::sync::Arc;
 
 impl LayerAction {
     /// Why there is nothing to act on, in a sentence for the user.
@@ -54,6 +57,22 @@ impl LayerAction {
             }
             LayerAction::Look { .. } if document.surface.is_none() => {
                 Err("A look needs a shape: give the drawing one first.")
+            }
+            LayerAction::Look { name } if LiveLook::of_key(name).is_none() => {
+                Err("No look has this name.")
+            }
+            LayerAction::PaintedBall { name, .. } if PaintedBall::of_key(name).is_none() => {
+                Err("No painted ball has this name.")
+            }
+            LayerAction::PaintedBall { layer, .. } | LayerAction::PaintBall { layer, .. } => {
+                let shows_ball = |layer: &Arc<Layer>| match &layer.content {
+                    Content::Shading(live) => live.params().model == Model::LitSphere,
+                    _ => false,
+                };
+                match layer.find(document).is_some_and(shows_ball) {
+                    true => Ok(()),
+                    false => Err("Select a shading layer of a lit sphere first."),
+                }
             }
             LayerAction::Home { layer, part } => {
                 chosen(layer).and_then(|ids| homed(document, &ids, part.as_deref()).map(drop))
