@@ -191,7 +191,11 @@ mod tests {
         let crowded = format!("[{}0]", "0,".repeat(5_000_000));
         assert!(error_of(&crowded).contains("values"));
         assert!(error_of(&format!("[{}0]", "{},".repeat(600_000))).contains("values"));
-        assert!(error_of(&" ".repeat(257 << 20)).contains("bytes"));
+        let small = Budget { json_bytes: 1000, ..Budget::default() };
+        let spaces = |count: usize| format!("0{}", " ".repeat(count - 1)).into_bytes();
+        let read = |count| parse(Path::new("r.json"), &spaces(count), &small);
+        assert!(read(1000).is_ok());
+        assert!(read(1001).unwrap_err().to_string().contains("bytes"));
     }
 
     #[test]
