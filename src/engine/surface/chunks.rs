@@ -44,7 +44,7 @@ const MOST_STRETCH: f32 = 4.0;
 /// The number of pixels that show what a lit sphere does.
 const LOOKED_UP: u8 = 1;
 
-/// A place on the ball, in steps of [`BallPlaces::steps`], and which chunk showed it.
+/// A place on the ball, in steps that `BallPlaces` gives, and which chunk showed it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BallPlace {
     /// From the upper left of the ball's square.

@@ -1,5 +1,5 @@
 //! Places over a whole map: tile by tile, the large chunks in lanes. Floor 2. The reference is
-//! [`ChunkMaps::place_at`].
+//! `ChunkMaps::place_at`, in the module above.
 
 use super::{
     BallPlace, BallPlaces, ChunkMaps, ChunkSettings, LOOKED_UP, Seed, SeedGrid, around, seams,

@@ -13,7 +13,7 @@ pub fn can_read(taps: &Taps, at: TapPositions) -> bool {
     all_within && std::arch::is_x86_feature_detected!("avx2")
 }
 
-/// As `Taps::singles`; call only where [`reads`] said so.
+/// As `Taps::singles`; call only where [`can_read`] said so.
 pub fn singles(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
     assert!(can_read(taps, at));
     // SAFETY: the processor has AVX2, and no index lies beyond `range`, whose texels are in the
@@ -27,7 +27,7 @@ pub fn singles(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
     }
 }
 
-/// As `Taps::means`; call only where [`reads`] said so.
+/// As `Taps::means`; call only where [`can_read`] said so.
 pub fn means(taps: &Taps, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
     assert!(can_read(taps, at));
     // SAFETY: as above.
@@ -40,7 +40,7 @@ pub fn means(taps: &Taps, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]
     }
 }
 
-/// As `Taps::group_means`; call only where [`reads`] said so.
+/// As `Taps::group_means`; call only where [`can_read`] said so.
 pub fn group_means(taps: &Taps, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
     assert!(can_read(taps, at));
     // SAFETY: as above.
