@@ -33,6 +33,25 @@ fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
     assert!(harness.query_all_by_label("Roughness").count() > 0);
 }
 
+#[test]
+fn every_look_is_offered_within_the_window_and_dresses_the_drawing() {
+    let mut harness = window();
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/sample_normals/moonlight.json");
+    drop_files(&mut harness, &[sample.as_ref()]);
+    until(&mut harness, |harness| session(harness).shown().unwrap().surface.is_some());
+    let (before, names) = (layers(&harness).len(), ["Oil sketch", "Gold", "Moonlight"]);
+    command(&mut harness, "Looks…");
+    let whole = harness.ctx.content_rect();
+    let places = names.map(|name| harness.get_by_label(&format!("Look: {name}")).rect());
+    for place in places {
+        assert!(place.left() >= whole.left() && place.right() <= whole.right(), "{place:?}");
+    }
+    assert!(places[0].top() < places[1].top(), "the looks stand in rows");
+    press(&mut harness, "Look: Oil sketch");
+    assert_eq!(layers(&harness).len(), before + 1);
+    assert_eq!(session(&harness).layer().unwrap().name, "Oil sketch");
+}
+
 fn environment(harness: &Story) -> Option<String> {
     match &session(harness).layer().unwrap().content {
         Content::Shading(live) => {

@@ -11,6 +11,8 @@ use eframe::egui::{self, ScrollArea, Ui, vec2};
 
 /// The longer side of a picture, points.
 const SHOWN_PT: f32 = 112.0;
+/// Pictures side by side.
+const IN_A_ROW: usize = 5;
 
 pub struct LooksDialog {
     looks: Vec<LiveLook>,
@@ -40,13 +42,15 @@ impl LooksDialog {
         let mut chosen = None;
         let height = ui.ctx().content_rect().height() * 0.6;
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                for look in &self.looks {
-                    if self.is_clicked(ui, look) {
-                        chosen = Some(look.key);
+            for row in self.looks.chunks(IN_A_ROW) {
+                ui.horizontal_top(|ui| {
+                    for look in row {
+                        if self.is_clicked(ui, look) {
+                            chosen = Some(look.key);
+                        }
                     }
-                }
-            });
+                });
+            }
         });
         match chosen {
             Some(key) => {
