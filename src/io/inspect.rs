@@ -2,7 +2,7 @@
 //! Floor 5. `info` prints it; a dialog that opens a file shows it. Conventions are `maps`' work.
 
 use super::maps::{MapRole, fitting};
-use super::{Budget, bitmap, exr::ExrFile};
+use super::{Budget, bitmap, exr::ExrFile, svg};
 use crate::Result;
 use crate::math::{Size, vec3};
 use std::path::Path;
@@ -48,6 +48,8 @@ pub struct FileDescription {
 pub fn describe(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     if ExrFile::is_exr(bytes) {
         describe_exr(file, bytes, budget)
+    } else if svg::is_svg(bytes) {
+        describe_svg(file, bytes, budget)
     } else {
         describe_bitmap(file, bytes, budget)
     }
@@ -72,6 +74,24 @@ fn describe_exr(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescri
         is_grey: exr.channels().len() == 1,
         looks_like_normals: false,
         warning: None,
+    })
+}
+
+/// An SVG drawing, at its own size.
+fn describe_svg(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
+    let painted = svg::painted(file, bytes, 0, 0, budget)?;
+    Ok(FileDescription {
+        format: "SVG",
+        size: painted.size,
+        channels: ["r", "g", "b", "a"].map(String::from).into(),
+        bits: 8,
+        layers: Vec::new(),
+        compression: None,
+        normals: Vec::new(),
+        depths: Vec::new(),
+        is_grey: false,
+        looks_like_normals: false,
+        warning: painted.warning,
     })
 }
 

@@ -13,6 +13,7 @@ mod snapping;
 mod soft;
 mod steps;
 pub(in crate::session) mod stories;
+mod svg;
 mod targets;
 mod transforming;
 mod unwrapped;

@@ -132,7 +132,10 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
         image.write_to(&mut bytes, ImageFormat::Png).unwrap();
         bytes.into_inner()
     };
-    all.into_iter().map(|(name, image)| (name.to_owned(), encoded(image))).collect()
+    let drawing = br##"<svg xmlns="http://www.w3.org/2000/svg" width="40" height="30">
+        <circle cx="14" cy="15" r="11" fill="#d08030"/><text x="4" y="22">Ab</text></svg>"##;
+    let encoded = all.into_iter().map(|(name, image)| (name.to_owned(), encoded(image)));
+    encoded.chain([("drawing.svg".to_owned(), drawing.to_vec())]).collect()
 }
 
 /// A document with most kinds of layers.
