@@ -109,8 +109,8 @@ fn runs(count: usize, mut work: impl FnMut()) -> Vec<f64> {
 fn fills() {
     let side = LARGE.width as usize;
     let is_island = |x: usize, y: usize| hash::unit(3, (x / 24) as u32, (y / 24) as u32) < 0.3;
-    let grey = |i: usize| if is_island(i % side, i / side) { 40 } else { 200 };
-    let rgba: Vec<u8> = (0..LARGE.area()).flat_map(|i| [grey(i), grey(i), grey(i), 255]).collect();
+    let gray = |i: usize| if is_island(i % side, i / side) { 40 } else { 200 };
+    let rgba: Vec<u8> = (0..LARGE.area()).flat_map(|i| [gray(i), gray(i), gray(i), 255]).collect();
     let blots = TileGrid::from_straight_rgba(&rgba, side, side, 0, 0);
     let start = (0..4096)
         .map(|x| vec2(x as f32, 2000.0))

@@ -332,7 +332,7 @@ fn a_mirror_of_nothing_is_refused_rather_than_painted_black() {
 }
 
 #[test]
-fn a_part_whose_place_has_another_colour_is_told_when_it_is_rendered() {
+fn a_part_whose_place_has_another_color_is_told_when_it_is_rendered() {
     let desk = Desk::with(
         r##"{ "format": "rilievo", "version": 2, "canvas": { "width": 100, "height": 70 },
         "surface": { "parts": [{ "id": "eye", "name": "Eye", "kind": "inflate",

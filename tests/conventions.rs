@@ -169,10 +169,10 @@ fn every_layout_of_exr_is_read() {
         (["VRayNormals.R", "VRayNormals.G", "VRayNormals.B"], "VRayZDepth.Y"),
     ];
     for (normals, depth) in layouts {
-        let colour = plane(&|n, _| n.z * 0.5, 0.0);
+        let color = plane(&|n, _| n.z * 0.5, 0.0);
         let mut channels: Vec<(&str, Vec<f32>)> = normals.into_iter().zip(xyz.clone()).collect();
         channels.push((depth, z.clone()));
-        channels.extend(["R", "G", "B"].map(|c| (c, colour.clone())));
+        channels.extend(["R", "G", "B"].map(|c| (c, color.clone())));
         let files = Memory::new([("g.exr", exr_bytes(&channels, None))]);
         let import = import(&source(map("g.exr"), map("g.exr"), false), &files, &Budget::default());
         let import = import.unwrap_or_else(|e| panic!("{depth}: {e}"));
@@ -257,7 +257,7 @@ fn every_convention_of_depth_comes_back_as_the_same_depth() {
         ("1/z found", &|_, _, z| 1.0 / z, 0.0, auto(), 1e-3),
         ("1/z told", &|_, _, z| 1.0 / z, 0.0, told(Inverse, None), 1e-3),
         ("disparity", &|_, _, z| 7.0 - 0.02 * z, 0.0, told(Disparity, None), 1e-3),
-        ("millimetres", &|_, _, z| (z * 10.0).round(), 0.0, auto(), 2e-3),
+        ("millimeters", &|_, _, z| (z * 10.0).round(), 0.0, auto(), 2e-3),
         ("along the ray", &|x, y, z| ray(x, y, z), 0.0, told(RayDistance, Some(50.0)), 1e-4),
     ];
     for (name, store, outside, convention, granted) in cases {
@@ -366,7 +366,7 @@ fn a_hole_in_a_ring_is_background_where_the_depth_says_so_and_a_plate_at_the_bor
 fn maps_that_do_not_fit_get_a_sentence() {
     let ball = Ball::new();
     let small = super::maps::png_of(SIDE / 2, 8, |_, _| [0.5, 0.5, 1.0, 1.0]);
-    let grey = png(8, |x, _| {
+    let gray = png(8, |x, _| {
         let v = x as f32 / SIDE as f32;
         [v, v, v, 1.0]
     });
@@ -374,7 +374,7 @@ fn maps_that_do_not_fit_get_a_sentence() {
     let files = Memory::new([
         ("n.png", ball.normal_png()),
         ("s.png", small),
-        ("g.png", grey),
+        ("g.png", gray),
         ("e.exr", empty),
     ]);
     let cases = [

@@ -56,7 +56,7 @@ fn strokes_are_painted_on_waves_and_kept() {
 }
 
 #[test]
-fn a_drawing_in_flat_colours_becomes_a_lit_shape() {
+fn a_drawing_in_flat_colors_becomes_a_lit_shape() {
     let picture = drawn(|file| shape_from_drawing::shape(file).unwrap());
     assert_eq!(picture.get_pixel(2, 2).0[3], 0, "nothing beside the drawing");
     // Lit from the upper right: one flat color is brighter there than at the lower left.

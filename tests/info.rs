@@ -15,7 +15,7 @@ fn info(folder: &std::path::Path, args: &[&str]) -> Output {
 }
 
 #[test]
-fn a_set_is_recognised_and_its_convention_told_as_json() {
+fn a_set_is_recognized_and_its_convention_told_as_json() {
     let (ball, folder) = (Ball::new(), tempfile::tempdir().unwrap());
     let normal =
         png(8, |x, y| ball.at(x, y).map_or([0.5, 0.5, 1.0, 1.0], |(n, _)| encode(n.x, -n.y, n.z)));

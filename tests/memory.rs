@@ -98,9 +98,9 @@ fn files_that_pack_well_open() {
     let size = Size::new(6000, 4000);
     let palette = png_of(size, png::ColorType::Indexed, png::BitDepth::One, &[]);
     assert!(palette.len() < 12_000, "{} bytes", palette.len());
-    let grey = png_of(size, png::ColorType::Grayscale, png::BitDepth::One, &[]);
+    let gray = png_of(size, png::ColorType::Grayscale, png::BitDepth::One, &[]);
     for (name, bytes, pixel) in
-        [("palette.png", palette, [255, 0, 0, 255]), ("grey.png", grey, [0, 0, 0, 255])]
+        [("palette.png", palette, [255, 0, 0, 255]), ("gray.png", gray, [0, 0, 0, 255])]
     {
         let file = folder.path().join(name);
         std::fs::write(&file, bytes).unwrap();

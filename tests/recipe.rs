@@ -1,6 +1,7 @@
 //! Recipes: every kind of layer read with its defaults, refused with the path of what is wrong, and
 //! written back.
 
+mod former;
 mod mutations;
 mod refusals;
 
@@ -110,7 +111,7 @@ fn what_is_not_said_takes_its_default() {
 }
 
 #[test]
-fn an_operator_without_anchors_is_pinned_at_the_centre_of_the_placement() {
+fn an_operator_without_anchors_is_pinned_at_the_center_of_the_placement() {
     let anchors = |anchors: Value| {
         let mut layer = json!({ "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "normal" },
             "placement": { "center": [3, 4] } });

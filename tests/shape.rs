@@ -21,7 +21,7 @@ fn shape(desk: &Desk, file: &str, more: &[&str]) -> Output {
 }
 
 #[test]
-fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
+fn a_shape_has_a_part_for_each_color_or_place_and_tells_what_has_none() {
     let desk = Desk::with(PHOTO);
     let picture = image::RgbaImage::from_fn(800, 600, |x, y| {
         let within =
@@ -61,7 +61,7 @@ fn a_shape_has_a_part_for_each_colour_or_place_and_tells_what_has_none() {
 }
 
 #[test]
-fn a_drawing_of_one_colour_or_of_nothing_is_refused_for_what_it_is() {
+fn a_drawing_of_one_color_or_of_nothing_is_refused_for_what_it_is() {
     let desk = Desk::with(PHOTO);
     let pictures = [
         ("red", [200, 30, 30, 255]),

@@ -107,7 +107,7 @@ fn a_folder_gets_every_view_and_a_file_the_sheet() {
         .map(|e| e.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    let all = "clay contours curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask \
+    let all = "clay contours curvature-gray curvature depth directions flow-depth flow-normals flow-operator lit mask \
                normals objects weights";
     let mut expected: Vec<String> = all.split(' ').map(|name| format!("{name}.png")).collect();
     expected.sort();
@@ -117,7 +117,7 @@ fn a_folder_gets_every_view_and_a_file_the_sheet() {
 }
 
 #[test]
-fn the_weights_of_a_layer_have_a_colour_for_each_anchor() {
+fn the_weights_of_a_layer_have_a_color_for_each_anchor() {
     let desk = Desk::new();
     let weights = desk.shown(&["r.json"], &["--show", "weights", "--layer", "ramp"]);
     let (Rgba([r0, _, b0, _]), Rgba([_, g1, b1, _])) =

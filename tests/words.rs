@@ -104,6 +104,71 @@ const RETURN_BOOL: &[&str] = &[
 /// What a suffix of functions was replaced by.
 const SUFFIXES: &[(&str, &str)] = &[("_telling", "_with_progress")];
 
+/// Roots of words that are spelled otherwise in American English.
+const BRITISH: &[&str] = &[
+    "behaviour",
+    "cancelled",
+    "cancelling",
+    "catalogue",
+    "centre",
+    "colour",
+    "equalis",
+    "favour",
+    "grey",
+    "initialis",
+    "labelled",
+    "millimetre",
+    "neighbour",
+    "normalis",
+    "optimis",
+    "organis",
+    "posteris",
+    "quantis",
+    "rasteris",
+    "recognis",
+    "serialis",
+    "stabilis",
+    "travelled",
+    "vectoris",
+];
+
+/// Where such a word is not ours: the end of the file's path, and the text around the word.
+const SPELLED_BY_OTHERS: &[(&str, &str)] = &[
+    // The toolkit's function.
+    (".rs", ".labelled_by("),
+    // A layer of an OpenEXR file.
+    ("src/io/picture/light.rs", "\"colour\""),
+    // Names that documents of version 0.1 hold.
+    ("src/engine/math/named.rs", "\"grey\""),
+    ("src/engine/math/named.rs", "\"posterise\""),
+    ("src/engine/math/named.rs", "\"curvature-grey\""),
+    ("src/engine/math/named.rs", "\"watercolour-"),
+    ("src/window/theme.rs", "from_name(\"grey\")"),
+    ("tests/recipe/former.rs", ""),
+    // What Blender's operators return.
+    ("dist/blender/rilievo.py", "{\"CANCELLED\"}"),
+    // What people type who look for a command.
+    ("src/window/dialogs/palette/find.rs", "(\"colour\""),
+    ("src/window/dialogs/palette/find.rs", "(\"grey\""),
+    ("src/window/dialogs/palette/find.rs", "\"rasterise\""),
+    ("src/window/dialogs/palette/find.rs", "\"stabilis"),
+    // This list.
+    ("tests/words.rs", ""),
+];
+
+/// Words of a line that are not spelled as in American English.
+fn british(place: &str, line: &str) -> Vec<&'static str> {
+    let mut line = line.to_owned();
+    for (_, around) in SPELLED_BY_OTHERS.iter().filter(|(end, _)| place.ends_with(end)) {
+        if around.is_empty() {
+            return Vec::new();
+        }
+        line = line.replace(around, "");
+    }
+    line.make_ascii_lowercase();
+    BRITISH.iter().copied().filter(|root| line.contains(root)).collect()
+}
+
 /// The functions and modules that a text defines.
 fn defined(text: &str) -> Vec<(Named, &str)> {
     text.lines().filter_map(definition).collect()
@@ -215,4 +280,42 @@ fn functions_that_return_bool_are_found_however_they_are_written() {
                 -> bool\n    where\n        T: D,\n    {\n}\nfn c(x: impl Fn() -> bool) {}\nfn f() -> impl Fn() \
                 -> bool {\n}\n// fn e() -> bool {\n#[cfg(test)]\nmod tests {\n    fn d() -> bool {}\n";
     assert_eq!(returning_bool(text), ["is_a", "b"]);
+}
+
+#[test]
+fn every_word_is_spelled_as_in_american_english() {
+    let (mut wrong, mut count) = (Vec::new(), 0);
+    let folders = [
+        "src",
+        "tests",
+        "benches",
+        "examples",
+        "sample_normals",
+        "brushes",
+        "fuzz",
+        "docs",
+        "dist",
+    ];
+    let kinds = ["rs", "md", "py", "toml"];
+    for path in kinds
+        .into_iter()
+        .flat_map(|kind| folders.iter().flat_map(move |folder| files(folder, kind)))
+    {
+        count += 1;
+        let place = path.display().to_string();
+        for (line, number) in fs::read_to_string(&path).unwrap().lines().zip(1..) {
+            wrong.extend(
+                british(&place, line).into_iter().map(|root| format!("{place}:{number}: {root}")),
+            );
+        }
+    }
+    assert!(count > 1000, "only {count} files were found");
+    assert!(wrong.is_empty(), "spell these otherwise: {}", wrong.join("\n"));
+}
+
+#[test]
+fn a_british_spelling_is_found_in_any_name() {
+    assert_eq!(british("src/a.rs", "fn is_grey(Colours: u8) {}"), ["colour", "grey"]);
+    assert_eq!(british("src/a.rs", "ui.add(px).labelled_by(label.id)"), [""; 0]);
+    assert_eq!(british("src/io/picture/light.rs", "[\"color\", \"colour\"]"), [""; 0]);
 }

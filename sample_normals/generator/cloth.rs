@@ -31,7 +31,7 @@ struct Spring {
 pub fn drapery() -> Sample {
     let turn = object_from_camera(24.0, 20.0, 0.0).transpose();
     let points: Vec<DVec3> = fallen().into_iter().map(|p| turn * p).collect();
-    let view = View { width: 496, height: 496, centre: DVec2::new(0.0, -0.22), half_width: 0.86 };
+    let view = View { width: 496, height: 496, center: DVec2::new(0.0, -0.22), half_width: 0.86 };
     let surface = Sheet::new(&points, SIDE, &view);
     Sample { name: "drapery", surface: Box::new(surface), view }
 }

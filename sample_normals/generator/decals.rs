@@ -9,7 +9,7 @@ use crate::noise::{fbm2, hash};
 use crate::pictures::{painted, srgb};
 use crate::sdf::{segment2, smooth_step};
 
-/// An enamelled star in a gold ring, on a transparent ground.
+/// An enameled star in a gold ring, on a transparent ground.
 pub fn star() -> RgbaImage {
     const SIDE: u32 = 384;
     painted((SIDE, SIDE), 3, |p| {
@@ -29,17 +29,17 @@ pub fn star() -> RgbaImage {
         let enamel = srgb(0x1d3f8a) * (0.75 + 0.5 * smooth_step(0.9, 0.1, r));
         let ring = (r - 0.88).abs();
         let rays = 1.0 + 0.1 * (40.0 * angle).sin() * smooth_step(0.1, 0.8, r);
-        let mut colour = enamel * rays;
-        colour = colour.lerp(
+        let mut color = enamel * rays;
+        color = color.lerp(
             srgb(0xfff3cf) * 0.95,
             smooth_step(-0.03, -0.02, -inside.abs()) * smooth_step(0.8, 0.7, r),
         );
-        colour = if inside > 0.0 { gold * facet } else { colour };
-        colour = colour.lerp(
+        color = if inside > 0.0 { gold * facet } else { color };
+        color = color.lerp(
             srgb(0xf6d27a) * (1.15 - 60.0 * (ring - 0.02).powi(2)) * lit,
             smooth_step(0.062, 0.055, ring),
         );
-        colour.extend(smooth_step(0.945, 0.935, r))
+        color.extend(smooth_step(0.945, 0.935, r))
     })
 }
 
@@ -78,13 +78,13 @@ pub fn leaf() -> RgbaImage {
         }
         let stalk = segment2(q, DVec2::ZERO, DVec2::new(0.06, -0.55)) - 0.016;
         let cloud = fbm2(q * 3.0 + DVec2::splat(9.0), 5, 0, 3);
-        let colour = srgb(0xb8331f)
+        let color = srgb(0xb8331f)
             .lerp(srgb(0xe8962e), smooth_step(-0.4, 0.5, cloud))
             .lerp(srgb(0x8c9a34), 0.6 * smooth_step(0.5, 0.0, q.length()));
-        let colour = colour * (1.0 + 0.25 * fbm2(q * 24.0, 3, 0, 9));
-        let colour = colour.lerp(srgb(0xf7dc98), 0.75 * smooth_step(0.017, 0.006, vein));
-        let colour = if stalk < 0.0 && blade > 0.0 { srgb(0x8a4a2a) } else { colour };
-        colour.extend(smooth_step(0.004, -0.004, blade.min(stalk)))
+        let color = color * (1.0 + 0.25 * fbm2(q * 24.0, 3, 0, 9));
+        let color = color.lerp(srgb(0xf7dc98), 0.75 * smooth_step(0.017, 0.006, vein));
+        let color = if stalk < 0.0 && blade > 0.0 { srgb(0x8a4a2a) } else { color };
+        color.extend(smooth_step(0.004, -0.004, blade.min(stalk)))
     })
 }
 

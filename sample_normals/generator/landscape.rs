@@ -145,8 +145,8 @@ fn grass(q: DVec2, drop: f64, sun: DVec3) -> DVec3 {
     let chosen = smooth_step(0.7, 0.72, flower.tag) * smooth_step(0.05, 0.14, drop);
     let size = 0.075 + 0.05 * hash((flower.tag * 1e6) as i64, 3, 1);
     let petals = chosen * smooth_step(size, size * 0.6, flower.nearest);
-    let colour = if flower.tag > 0.87 { srgb(0xf5e9d0) } else { srgb(0xe0552f) };
-    lit.lerp(colour * 0.9, petals * 0.9)
+    let color = if flower.tag > 0.87 { srgb(0xf5e9d0) } else { srgb(0xe0552f) };
+    lit.lerp(color * 0.9, petals * 0.9)
 }
 
 /// A mottled value in `[0, 1)` of the cell around `p`.
@@ -291,10 +291,10 @@ impl Tree {
     /// The leaves, clump by clump; in each the shaded ones first and the lit ones last.
     fn leaves_last(&mut self) {
         let clumps = std::mem::take(&mut self.clumps);
-        let centre = |points: &[DVec2]| points.iter().sum::<DVec2>() / points.len().max(1) as f64;
-        let centres: Vec<DVec2> = clumps.iter().map(|clump| centre(clump)).collect();
-        let crown = centre(&centres);
-        for (clump, middle) in clumps.iter().zip(&centres) {
+        let center = |points: &[DVec2]| points.iter().sum::<DVec2>() / points.len().max(1) as f64;
+        let centers: Vec<DVec2> = clumps.iter().map(|clump| center(clump)).collect();
+        let crown = center(&centers);
+        for (clump, middle) in clumps.iter().zip(&centers) {
             for pass in 0..5 {
                 for (i, twig) in clump.iter().enumerate() {
                     self.tuft(*twig, *middle, crown, (i as i64, pass));
@@ -320,11 +320,11 @@ impl Tree {
         }
     }
 
-    fn leaf(&mut self, at: DVec2, size: f64, turn: f64, colour: DVec3) {
+    fn leaf(&mut self, at: DVec2, size: f64, turn: f64, color: DVec3) {
         let axis = DVec2::from_angle(turn);
         self.stamp(at, size, |q| {
             let d = DVec2::new((q - at).dot(axis), axis.perp_dot(q - at) * 1.7) / size;
-            (colour * (1.0 + 0.25 * d.y), smooth_step(1.0, 0.75, d.length()))
+            (color * (1.0 + 0.25 * d.y), smooth_step(1.0, 0.75, d.length()))
         });
     }
 
@@ -340,11 +340,11 @@ impl Tree {
             for x in span(cx, self.width) {
                 let q =
                     DVec2::new((x as f64 + 0.5 - 1260.0) / SCALE, (975.0 - y as f64 - 0.5) / SCALE);
-                let (colour, cover) = paint(q);
+                let (color, cover) = paint(q);
                 let under = &mut self.points[y * self.width + x];
                 let total = cover + under.1 * (1.0 - cover);
                 if cover > 0.0 {
-                    *under = ((colour * cover + under.0 * under.1 * (1.0 - cover)) / total, total);
+                    *under = ((color * cover + under.0 * under.1 * (1.0 - cover)) / total, total);
                 }
             }
         }

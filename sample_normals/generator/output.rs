@@ -26,9 +26,9 @@ pub fn write_maps(folder: &Path, maps: &Maps) -> Outcome {
         .normal
         .iter()
         .flat_map(|n| n.to_array())
-        .map(|c| quantised(c * 0.5 + 0.5, NORMAL_BITS))
+        .map(|c| quantized(c * 0.5 + 0.5, NORMAL_BITS))
         .collect();
-    let depth: Vec<u16> = maps.depth.iter().map(|z| quantised(*z, DEPTH_BITS)).collect();
+    let depth: Vec<u16> = maps.depth.iter().map(|z| quantized(*z, DEPTH_BITS)).collect();
     let mask: Vec<u8> = maps.coverage.iter().map(|c| (c * 255.0).round() as u8).collect();
     let size = (maps.width as u32, maps.height as u32);
     write_png(&folder.join("normal.png"), &bytes(&normal), size, ExtendedColorType::Rgb16)?;
@@ -37,7 +37,7 @@ pub fn write_maps(folder: &Path, maps: &Maps) -> Outcome {
 }
 
 /// A value in `[0, 1]` as 16 bits, rounded to a multiple of `2^(16 − bits)`.
-fn quantised(value: f64, bits: u32) -> u16 {
+fn quantized(value: f64, bits: u32) -> u16 {
     let step = f64::from(1u32 << (16 - bits));
     ((value.clamp(0.0, 1.0) * 65535.0 / step).round() * step).min(65535.0) as u16
 }
@@ -46,10 +46,10 @@ fn bytes(values: &[u16]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_ne_bytes()).collect()
 }
 
-fn write_png(path: &Path, data: &[u8], (w, h): (u32, u32), colour: ExtendedColorType) -> Outcome {
+fn write_png(path: &Path, data: &[u8], (w, h): (u32, u32), color: ExtendedColorType) -> Outcome {
     let file = BufWriter::new(File::create(path)?);
     PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive)
-        .write_image(data, w, h, colour)?;
+        .write_image(data, w, h, color)?;
     Ok(())
 }
 

@@ -69,23 +69,23 @@ pub fn tiles() -> RgbaImage {
         let q = (p / f64::from(SIDE) * TILES).fract_gl() * 2.0 - 1.0;
         let (far, angle) = (q.length(), q.y.atan2(q.x));
         let corner = (DVec2::ONE - q.abs()).length();
-        let over = |under: DVec3, colour: DVec3, edge: f64| {
-            under.lerp(colour, 1.0 - smooth_step(-0.012, 0.012, edge))
+        let over = |under: DVec3, color: DVec3, edge: f64| {
+            under.lerp(color, 1.0 - smooth_step(-0.012, 0.012, edge))
         };
         let petals = 0.42 + 0.16 * (4.0 * angle).cos().abs();
         let leaves =
             far * (1.0 + 0.9 * ((2.0 * (angle + 0.5 * FRAC_PI_2)).cos().abs() - 1.0).abs()) - 0.9;
-        let mut colour = over(white, pale, leaves);
-        colour = over(colour, white, far - petals - 0.06);
-        colour = over(colour, blue, far - petals);
-        colour = over(colour, pale, far - petals * 0.62);
-        colour = over(colour, white, far - 0.14);
-        colour = over(colour, blue, far - 0.08);
+        let mut color = over(white, pale, leaves);
+        color = over(color, white, far - petals - 0.06);
+        color = over(color, blue, far - petals);
+        color = over(color, pale, far - petals * 0.62);
+        color = over(color, white, far - 0.14);
+        color = over(color, blue, far - 0.08);
         for (ring, width) in [(0.52, 0.07), (0.36, 0.03)] {
-            colour = over(colour, blue, (corner - ring).abs() - width);
+            color = over(color, blue, (corner - ring).abs() - width);
         }
-        colour = over(colour, pale, corner - 0.2);
+        color = over(color, pale, corner - 0.2);
         let joint = 1.0 - q.abs().max_element();
-        (colour * (0.72 + 0.28 * smooth_step(0.0, 0.035, joint))).extend(1.0)
+        (color * (0.72 + 0.28 * smooth_step(0.0, 0.035, joint))).extend(1.0)
     })
 }

@@ -61,13 +61,13 @@ pub fn rolled_off(c: DVec3) -> DVec3 {
 pub fn painted(
     (width, height): (u32, u32),
     fine: u32,
-    colour: impl Fn(DVec2) -> DVec4 + Sync,
+    color: impl Fn(DVec2) -> DVec4 + Sync,
 ) -> RgbaImage {
     let pixel = |i: usize| {
         let corner = DVec2::new((i % width as usize) as f64, (i / width as usize) as f64);
         let mut sum = DVec4::ZERO;
         for k in 0..fine * fine {
-            let c = colour(
+            let c = color(
                 corner
                     + DVec2::new(f64::from(k % fine) + 0.5, f64::from(k / fine) + 0.5)
                         / f64::from(fine),
@@ -251,7 +251,7 @@ fn sphere_ink() -> RgbaImage {
 }
 
 /// A sphere seen from the front, its color from its normal (y up).
-fn lit_sphere(colour: impl Fn(DVec3) -> DVec3 + Sync) -> RgbaImage {
+fn lit_sphere(color: impl Fn(DVec3) -> DVec3 + Sync) -> RgbaImage {
     const SIDE: f64 = 192.0;
     painted((SIDE as u32, SIDE as u32), 3, |q| {
         let (x, y) = (q.x / SIDE * 2.0 - 1.0, 1.0 - q.y / SIDE * 2.0);
@@ -259,6 +259,6 @@ fn lit_sphere(colour: impl Fn(DVec3) -> DVec3 + Sync) -> RgbaImage {
         // The contour's color continues beyond it, under a soft edge.
         let (x, y) = if r > 0.999 { (x / r * 0.999, y / r * 0.999) } else { (x, y) };
         let n = v(x, y, (1.0 - x * x - y * y).max(0.0).sqrt());
-        colour(n).extend(1.0 - smooth_step(1.0, 1.01, r))
+        color(n).extend(1.0 - smooth_step(1.0, 1.01, r))
     })
 }

@@ -148,7 +148,7 @@ pub struct View {
     pub width: usize,
     pub height: usize,
     /// The model point at the picture's center.
-    pub centre: DVec2,
+    pub center: DVec2,
     /// Half the picture's width, in model units.
     pub half_width: f64,
 }
@@ -157,7 +157,7 @@ impl View {
     /// The model point at picture position (x, y), in pixels with y down.
     fn model_from_pixel(&self, x: f64, y: f64) -> DVec2 {
         let scale = 2.0 * self.half_width / self.width as f64;
-        self.centre + DVec2::new(x - self.width as f64 * 0.5, self.height as f64 * 0.5 - y) * scale
+        self.center + DVec2::new(x - self.width as f64 * 0.5, self.height as f64 * 0.5 - y) * scale
     }
 }
 
@@ -212,7 +212,7 @@ impl<'a> Scene<'a> {
 pub fn render(surface: &dyn Surface, view: &View) -> Maps {
     let (w, h) = (view.width, view.height);
     let scene = Scene::new(surface, view);
-    let centres: Vec<Option<Hit>> = (0..w * h)
+    let centers: Vec<Option<Hit>> = (0..w * h)
         .into_par_iter()
         .with_min_len(w / 4)
         .map(|i| scene.hit((i % w) as f64 + 0.5, (i / w) as f64 + 0.5))
@@ -222,8 +222,8 @@ pub fn render(surface: &dyn Surface, view: &View) -> Maps {
         .into_par_iter()
         .with_min_len(w / 4)
         .map(|i| {
-            if is_smooth(&centres, w, h, i, jump) {
-                centres[i].map_or(EMPTY, |hit| Pixel {
+            if is_smooth(&centers, w, h, i, jump) {
+                centers[i].map_or(EMPTY, |hit| Pixel {
                     coverage: 1.0,
                     z: hit.z,
                     normal: hit.normal,

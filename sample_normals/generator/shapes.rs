@@ -27,10 +27,10 @@ pub fn framed(
     name: &'static str,
     surface: impl Surface + 'static,
     (width, height): (usize, usize),
-    centre: DVec2,
+    center: DVec2,
     half_width: f64,
 ) -> Sample {
-    Sample { name, surface: Box::new(surface), view: View { width, height, centre, half_width } }
+    Sample { name, surface: Box::new(surface), view: View { width, height, center, half_width } }
 }
 
 pub fn traced(
@@ -324,7 +324,7 @@ pub fn moon() -> Sample {
 }
 
 struct Crater {
-    centre: DVec3,
+    center: DVec3,
     /// Angular radius, radians.
     radius: f64,
 }
@@ -332,7 +332,7 @@ struct Crater {
 impl Crater {
     /// Bowl, rim and a central peak for the large ones.
     fn height(&self, dir: DVec3) -> f64 {
-        let apart = dir.distance_squared(self.centre) / (self.radius * self.radius);
+        let apart = dir.distance_squared(self.center) / (self.radius * self.radius);
         if apart > 2.2 * 2.2 {
             return 0.0;
         }
@@ -354,8 +354,8 @@ fn craters() -> Vec<Crater> {
             let ring = (1.0 - z * z).sqrt();
             let angle = TAU * pick(2);
             let radius = (0.028 * (1.0 - 0.985 * pick(3)).powf(-0.55)).min(0.26);
-            Crater { centre: v(ring * angle.cos(), ring * angle.sin(), z), radius }
+            Crater { center: v(ring * angle.cos(), ring * angle.sin(), z), radius }
         })
-        .filter(|crater| crater.centre.z > -0.6)
+        .filter(|crater| crater.center.z > -0.6)
         .collect()
 }

@@ -27,7 +27,7 @@ impl Sheet {
     pub fn new(points: &[DVec3], side: usize, view: &View) -> Self {
         let scale = (view.width * SUB) as f64 / (2.0 * view.half_width);
         let (width, height) = (view.width * SUB, view.height * SUB);
-        let corner = view.centre + DVec2::new(-(width as f64), height as f64) / (2.0 * scale);
+        let corner = view.center + DVec2::new(-(width as f64), height as f64) / (2.0 * scale);
         let mut sheet = Self { width, height, scale, corner, samples: vec![None; width * height] };
         let across = (side - 3) * FINE + 1;
         let row =

@@ -56,7 +56,7 @@ pub fn scales() -> RgbaImage {
                 DVec2::new(q.x - shift - column as f64 - 0.5, (q.y - row as f64) * 0.5 + 0.12);
             let rim = scale_outline(local);
             if rim < 0.0 && local.y > -0.5 {
-                return scale_colour(
+                return scale_color(
                     local,
                     rim,
                     column.rem_euclid(ACROSS as i64),
@@ -79,7 +79,7 @@ fn scale_outline(q: DVec2) -> f64 {
     if q.y > 0.62 { 1.0 } else { (q.x.abs() - width).max(-1.0) }
 }
 
-fn scale_colour(q: DVec2, rim: f64, column: i64, row: i64, p: DVec2) -> DVec3 {
+fn scale_color(q: DVec2, rim: f64, column: i64, row: i64, p: DVec2) -> DVec3 {
     let tag = hash(column, row, 3);
     let ground = srgb(0x1f5a4c).lerp(srgb(0x6f8a3c), tag * 0.7);
     let gold = srgb(0xd8b45a);

@@ -67,11 +67,11 @@ impl Tube {
             let points = (0..=SAMPLES_PER_SPAN).map(|i| i as f64 / SAMPLES_PER_SPAN as f64);
             let points: Vec<DVec4> = points.map(|t| tube.jet(span, t).0).collect();
             let hull = &tube.control[span..span + 4];
-            let centre = hull.iter().map(|c| c.truncate()).sum::<DVec3>() / 4.0;
+            let center = hull.iter().map(|c| c.truncate()).sum::<DVec3>() / 4.0;
             let reach =
-                points.iter().map(|s| s.truncate().distance(centre) + s.w).fold(0.0, f64::max);
+                points.iter().map(|s| s.truncate().distance(center) + s.w).fold(0.0, f64::max);
             // Between samples the curve leaves their hull by less than this share.
-            tube.bounds.push((centre, reach * 1.05));
+            tube.bounds.push((center, reach * 1.05));
             tube.samples.extend(points);
         }
         tube

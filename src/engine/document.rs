@@ -53,7 +53,7 @@ pub use flatten::{
 pub use frame_box::FrameBox;
 pub use guides::Guides;
 pub use histogram::Histogram;
-pub use history::{EditLabel, History, LabelledLayer};
+pub use history::{EditLabel, History, LabeledLayer};
 pub use layer::{
     AdjustedPlace, Adjustment, BackdropMeter, Content, DerivedMask, DetailSource, EncodedPixels,
     Group, InkLayer, Layer, LayerCache, LayerId, LayerLabel, LayerLock, LayerMap, LayerMask,

@@ -4,7 +4,7 @@
 pub mod conjugate_gradients;
 pub mod fast;
 pub mod hash;
-mod named;
+pub mod named;
 pub mod noise;
 pub mod plane_map;
 pub mod range;

@@ -3,7 +3,7 @@
 //!
 //! [`scaling`] is the paper's function σ; [`radiance`] applies it to the layers beneath,
 //! [`material`] to each term of a lit material. [`features`] selects the curvature that drives it.
-//! Colours are linear light inside.
+//! Colors are linear light inside.
 
 mod ball_strokes;
 pub mod environment;

@@ -55,7 +55,7 @@ pub use reach::DabReach;
 pub use scene::Scene;
 pub use support::SupportBounds;
 
-use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
+use crate::math::{Size, Vec2, Vec3, srgb::quantize, vec2, vec3};
 use crate::raster::Plane;
 use contours::{ContourMaps, FarSide, Found};
 use derived::DerivedCaches;
@@ -104,7 +104,7 @@ pub struct Surface {
     coverage: Plane<u8>,
     /// From where it was seen.
     eye: Eye,
-    /// Which neighbours belong to the same piece of surface (`links`).
+    /// Which neighbors belong to the same piece of surface (`links`).
     links: Plane<u8>,
     /// The same without those across creases; absent where there are none.
     smooth_links: Option<Arc<Plane<u8>>>,
@@ -148,7 +148,7 @@ fn split_normals(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
 }
 
 impl Surface {
-    /// Normalises the normals, drops what is not finite, grows the valid values outward and finds
+    /// Normalizes the normals, drops what is not finite, grows the valid values outward and finds
     /// the depth jumps.
     pub fn new(maps: Maps) -> Result<Self, SurfaceError> {
         Self::with_depth_range(maps, None)
@@ -178,7 +178,7 @@ impl Surface {
                 && n.is_finite()
                 && n.length() > 1e-6
         });
-        // A partly covered pixel at the rim without a normal takes its neighbour's; further inside
+        // A partly covered pixel at the rim without a normal takes its neighbor's; further inside
         // it is a hole.
         nearest_feature::punch_holes(&mut coverage, &valid);
         if valid.values().iter().any(|valid| !valid) {

@@ -247,11 +247,11 @@ impl Sprite<'_> {
     fn rgba(&self, pixels: &[u8], is_background: bool) -> Vec<u8> {
         match self.bytes_a_pixel {
             1 => {
-                let colour = |&index: &u8| match index == self.clear && !is_background {
+                let color = |&index: &u8| match index == self.clear && !is_background {
                     true => [0; 4],
                     false => self.palette[usize::from(index)],
                 };
-                pixels.iter().flat_map(colour).collect()
+                pixels.iter().flat_map(color).collect()
             }
             2 => pixels.as_chunks().0.iter().flat_map(|&[v, a]| [v, v, v, a]).collect(),
             _ => pixels.to_vec(),
@@ -418,10 +418,10 @@ mod tests {
     }
 
     #[test]
-    fn indexed_pixels_have_the_colours_of_the_palette_and_later_frames_are_named() {
+    fn indexed_pixels_have_the_colors_of_the_palette_and_later_frames_are_named() {
         let numbers = [3u32, 1, 2].map(u32::to_le_bytes).concat();
-        let colours = [0, 0, 9, 8, 7, 255, 0, 0, 5, 6, 7, 255];
-        let palette = chunk(0x2019, &[&numbers[..], &[0; 8], &colours].concat());
+        let colors = [0, 0, 9, 8, 7, 255, 0, 0, 5, 6, 7, 255];
+        let palette = chunk(0x2019, &[&numbers[..], &[0; 8], &colors].concat());
         let chunks =
             [layer(1, 0, 0, 0, 255, "a"), cel(0, [1, 0], 255, [3, 1], &[1, 0, 2]), palette];
         let contents = opened(&sprite(8, 5, &chunks));

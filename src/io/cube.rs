@@ -46,15 +46,15 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ColorTable> {
                         "line {number}: there are colors before the size"
                     )));
                 };
-                let colour: Option<Vec<u16>> = line.split_whitespace().map(entry).collect();
-                let colour = colour.filter(|colour| colour.len() == 3);
-                let Some(colour) = colour else {
+                let color: Option<Vec<u16>> = line.split_whitespace().map(entry).collect();
+                let color = color.filter(|color| color.len() == 3);
+                let Some(color) = color else {
                     return Err(refused(format!("line {number}: is not three numbers")));
                 };
                 if values.len() == 3 * entries {
                     return Err(refused(format!("it has more than {entries} colors")));
                 }
-                values.extend(colour);
+                values.extend(color);
             }
         }
     }
@@ -85,8 +85,8 @@ mod tests {
 
     #[test]
     fn a_table_is_read_with_its_title() {
-        let colours = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1.5 1 -3\n";
-        let table = read(&format!("# made\nTITLE \"Warm\"\nLUT_3D_SIZE 2\n\n{colours}")).unwrap();
+        let colors = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1.5 1 -3\n";
+        let table = read(&format!("# made\nTITLE \"Warm\"\nLUT_3D_SIZE 2\n\n{colors}")).unwrap();
         assert_eq!((table.title(), table.side(), table.is_separate()), ("Warm", 2, false));
         assert_eq!(table.values()[21..], [65535, 65535, 0]);
         let table = read("LUT_1D_SIZE 2\nDOMAIN_MAX 1 1 1\n0 0 0\n0.5 1 1e0").unwrap();

@@ -222,9 +222,9 @@ fn lay_on(rgba: &mut [u8], background: Color) {
         let alpha = a + under[3] * (1.0 - a);
         for (c, below) in pixel.iter_mut().zip(under).take(3) {
             let premultiplied = f32::from(*c) / 255.0 * a + below * (1.0 - a);
-            *c = if alpha > 0.0 { srgb::quantise(premultiplied / alpha) } else { 0 };
+            *c = if alpha > 0.0 { srgb::quantize(premultiplied / alpha) } else { 0 };
         }
-        pixel[3] = srgb::quantise(alpha);
+        pixel[3] = srgb::quantize(alpha);
     }
 }
 
@@ -233,10 +233,10 @@ fn tiff(file: &Path, rgba: Vec<u8>, size: Size) -> Result<Vec<u8>> {
     deep::tiff(file, image.map(image::DynamicImage::ImageRgba8))
 }
 
-/// Pixels a metre.
+/// Pixels a meter.
 fn png_resolution(dots_per_inch: f32) -> png::PixelDimensions {
-    let per_metre = (dots_per_inch / 0.0254).round() as u32;
-    png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
+    let per_meter = (dots_per_inch / 0.0254).round() as u32;
+    png::PixelDimensions { xppu: per_meter, yppu: per_meter, unit: png::Unit::Meter }
 }
 
 /// Straight RGBA of 8 bits, or of 16 with the larger byte first, a few rows at a time.

@@ -36,7 +36,7 @@ pub struct FileDescription {
     /// The depth of each channel.
     pub depths: Vec<String>,
     /// No two color channels differ.
-    pub is_grey: bool,
+    pub is_gray: bool,
     /// Whether it is a color picture whose texels, read as normals, have length 1.
     pub looks_like_normals: bool,
     /// A defect that could be worked around.
@@ -71,7 +71,7 @@ fn describe_exr(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescri
         compression: Some(exr.compression()),
         normals: fitting(&exr, MapRole::Normals),
         depths: fitting(&exr, MapRole::Depth),
-        is_grey: exr.channels().len() == 1,
+        is_gray: exr.channels().len() == 1,
         looks_like_normals: false,
         warning: None,
     })
@@ -89,7 +89,7 @@ fn describe_svg(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescri
         compression: None,
         normals: Vec::new(),
         depths: Vec::new(),
-        is_grey: false,
+        is_gray: false,
         looks_like_normals: false,
         warning: painted.warning,
     })
@@ -98,25 +98,25 @@ fn describe_svg(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescri
 fn describe_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     let bitmap = bitmap::decode(file, bytes, budget)?;
     let image = &bitmap.image;
-    let colour = image.color();
-    let names: &[&str] = if colour.has_color() { &["r", "g", "b", "a"] } else { &["y", "a"] };
+    let color = image.color();
+    let names: &[&str] = if color.has_color() { &["r", "g", "b", "a"] } else { &["y", "a"] };
     let texels = texels(image);
-    let is_grey = texels.iter().all(|[r, g, b]| r == g && g == b);
+    let is_gray = texels.iter().all(|[r, g, b]| r == g && g == b);
     Ok(FileDescription {
         format: bitmap.format,
         size: Size::new(image.width(), image.height()),
         channels: names
             .iter()
-            .take(colour.channel_count().into())
+            .take(color.channel_count().into())
             .map(ToString::to_string)
             .collect(),
-        bits: (colour.bits_per_pixel() / u16::from(colour.channel_count())) as u8,
+        bits: (color.bits_per_pixel() / u16::from(color.channel_count())) as u8,
         layers: Vec::new(),
         compression: None,
         normals: Vec::new(),
         depths: Vec::new(),
-        is_grey,
-        looks_like_normals: !is_grey && length_error(&texels) < 0.06,
+        is_gray,
+        looks_like_normals: !is_gray && length_error(&texels) < 0.06,
         warning: bitmap.warning,
     })
 }
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_normals_where_they_have_length_1_and_a_finished_picture_is_none() {
+    fn colors_are_normals_where_they_have_length_1_and_a_finished_picture_is_none() {
         let rgb = ["R", "G", "B"];
         let signed = described(rgb, |i| dome(i).unwrap_or(Vec3::ZERO));
         let biased = described(rgb, |i| dome(i).unwrap_or(Vec3::Z) * 0.5 + 0.5);

@@ -93,7 +93,7 @@ fn read(
 ) -> Result<Option<ImportedSurface>> {
     let is_over = || {
         progress.step();
-        progress.is_cancelled()
+        progress.is_canceled()
     };
     let files = &CachedFiles::new(files);
     let mut findings = Findings::default();
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cancelled_is_not_read_to_its_end() {
+    fn what_is_canceled_is_not_read_to_its_end() {
         let map = |file: &str| MapSource { file: file.into(), ..MapSource::default() };
         let source = SurfaceSource { normal: Some(map("n.png")), ..SurfaceSource::default() };
         let progress = Progress::default();

@@ -160,18 +160,18 @@ fn strips(image: &DynamicImage) -> impl Iterator<Item = DynamicImage> {
 }
 
 fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
-    srgb::quantise(srgb::luminance(r, g, b) * a)
+    srgb::quantize(srgb::luminance(r, g, b) * a)
 }
 
 /// Straight RGBA bytes in the colors of an ICC profile as sRGB; unchanged if `through_profile`
 /// finds nothing to do.
 ///
-/// * `is_grey`: red, green and blue are equal, and the profile is one of gray.
-pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> {
+/// * `is_gray`: red, green and blue are equal, and the profile is one of gray.
+pub fn to_srgb(size: Size, rgba: Vec<u8>, is_gray: bool, icc: &[u8]) -> Vec<u8> {
     let Some(image) = image::RgbaImage::from_raw(size.width, size.height, rgba) else {
         return Vec::new();
     };
-    let image = if is_grey {
+    let image = if is_gray {
         let two = image.pixels().flat_map(|pixel| [pixel[0], pixel[3]]).collect();
         image::ImageBuffer::from_raw(size.width, size.height, two)
             .map(DynamicImage::ImageLumaA8)
@@ -186,9 +186,9 @@ pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> 
 }
 
 /// The same for straight values of 16 bits.
-pub fn to_srgb_deep(size: Size, texels: Vec<[u16; 4]>, is_grey: bool, icc: &[u8]) -> Vec<[u16; 4]> {
-    let image = if is_grey {
-        let two = texels.iter().flat_map(|[grey, .., alpha]| [*grey, *alpha]).collect();
+pub fn to_srgb_deep(size: Size, texels: Vec<[u16; 4]>, is_gray: bool, icc: &[u8]) -> Vec<[u16; 4]> {
+    let image = if is_gray {
+        let two = texels.iter().flat_map(|[gray, .., alpha]| [*gray, *alpha]).collect();
         image::ImageBuffer::from_raw(size.width, size.height, two).map(DynamicImage::ImageLumaA16)
     } else {
         let four = texels.as_flattened().to_vec();
@@ -203,14 +203,14 @@ pub fn to_srgb_deep(size: Size, texels: Vec<[u16; 4]>, is_grey: bool, icc: &[u8]
 /// bytes), does not belong to the image's kind of color, or cannot be used.
 fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
     let profile = ColorProfile::new_from_slice(icc).ok()?;
-    let grey = matches!(
+    let gray = matches!(
         image,
         DynamicImage::ImageLuma8(_)
             | DynamicImage::ImageLumaA8(_)
             | DynamicImage::ImageLuma16(_)
             | DynamicImage::ImageLumaA16(_)
     );
-    let layout = match (profile.color_space, grey) {
+    let layout = match (profile.color_space, gray) {
         (DataColorSpace::Rgb, false) => Layout::Rgba,
         (DataColorSpace::Gray, true) => Layout::GrayAlpha,
         _ => return None,
@@ -226,14 +226,14 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
     let probe = probe(layout);
     let moved = run(&probe)?.as_chunks::<4>().0.iter().zip(probe.chunks(layout.channels())).any(
         |(to, from)| {
-            let from = if grey { [from[0]; 3] } else { [from[0], from[1], from[2]] };
+            let from = if gray { [from[0]; 3] } else { [from[0], from[1], from[2]] };
             (0..3).any(|c| byte(to[c]).abs_diff(byte(from[c])) > 1)
         },
     );
     moved.then_some(())?;
     let mut texels = Vec::with_capacity(image.width() as usize * image.height() as usize);
     for strip in strips(image) {
-        let source = if grey {
+        let source = if gray {
             strip.into_luma_alpha16().into_raw()
         } else {
             strip.into_rgba16().into_raw()

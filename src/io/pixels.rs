@@ -69,7 +69,7 @@ struct PngKind {
 impl PngKind {
     const RGBA8: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Eight };
     const RGBA16: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Sixteen };
-    const GREY8: PngKind =
+    const GRAY8: PngKind =
         PngKind { color: png::ColorType::Grayscale, depth: png::BitDepth::Eight };
 
     /// Of a pixel.
@@ -90,7 +90,7 @@ pub fn strips(rect: Rect) -> impl Iterator<Item = Rect> {
 
 /// A mask as a gray PNG.
 pub fn encode_coverage(file: &Path, plane: &Plane<u8>) -> Result<Asset> {
-    checked(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), PngKind::GREY8)
+    checked(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), PngKind::GRAY8)
 }
 
 /// Straight RGBA texels as a PNG, the colors of transparent ones kept.

@@ -34,7 +34,7 @@ mod tests;
 mod thumbnail;
 
 pub use archive::Archive;
-pub use layer_preview::Cancellable;
+pub use layer_preview::Cancelable;
 pub use open::{ProjectContents, read, read_back};
 pub use thumbnail::{SmallPicture, stored_thumbnail};
 
@@ -62,7 +62,7 @@ const MERGED: &str = "mergedimage.png";
 /// The bytes of a project; `None` if canceled. `file` is for messages.
 ///
 /// The same document gives the same bytes, and so does the document read back from them.
-pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {
+pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelable<Vec<u8>> {
     let items = plan::plan(document, FormatSupport::OPENRASTER);
     let paint = layer_preview::encode_paint(file, document)?;
     let Some(previews) = layer_preview::render(file, document, &items, progress)? else {

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `cursor`, `descriptor` | numbers, sections and named values read from bytes, never beyond their end |
 //! | `channel` | planes of bytes or 16 bits, plain, PackBits or ZIP |
-//! | `colours` | what planes mean, as sRGB |
+//! | `colors` | what planes mean, as sRGB |
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `adjustments` | what adjustment layers do |
@@ -27,7 +27,7 @@ mod adjustments;
 mod alpha_channels;
 mod blocks;
 pub(super) mod channel;
-mod colours;
+mod colors;
 mod compare;
 pub(super) mod cursor;
 pub(super) mod descriptor;

@@ -148,7 +148,7 @@ impl ReplaceJob<'_> {
             let _ = self.fs.copy_ownership(target, &part.path);
         }
         for chunk in self.bytes.chunks(CHUNK) {
-            if self.progress.is_cancelled() {
+            if self.progress.is_canceled() {
                 return Ok(false);
             }
             part.handle.write_all(chunk).map_err(failed)?;
@@ -168,7 +168,7 @@ impl ReplaceJob<'_> {
         let mut buffer = vec![0; CHUNK];
         let mut rest = self.bytes;
         loop {
-            if self.progress.is_cancelled() {
+            if self.progress.is_canceled() {
                 return Ok(false);
             }
             let n = read_some(&mut *handle, &mut buffer).map_err(failed)?;

@@ -34,7 +34,7 @@ use crate::io::fs::Disk;
 use crate::io::recipe::{BrushPreset, presets};
 use crate::io::replace::is_same_file;
 use crate::io::{Overwrite, Terms};
-use crate::math::{Vec2, srgb::Color};
+use crate::math::{Vec2, named::current_name, srgb::Color};
 use crate::surface::Operator;
 use crate::surface::operator::UnwrapSettings;
 use crate::tools::snap::{SnapLines, ViewAids};
@@ -43,7 +43,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use storage::OpenedFile;
 
-/// The number of recent colours.
+/// The number of recent colors.
 const RECENT: usize = 16;
 
 /// Everything except the window.
@@ -60,7 +60,7 @@ pub struct Session {
     pub preset: String,
     /// The settings of the tools, the current brush among them.
     pub tools: ToolSettings,
-    /// The last colours painted with, newest first.
+    /// The last colors painted with, newest first.
     pub recent_colors: Vec<Color>,
     /// The outline of the selection is not drawn.
     pub hides_selection: bool,
@@ -259,6 +259,7 @@ impl Session {
     /// Selects a brush by its key. A brush made for an operator selects it too; others leave the
     /// operator as it is.
     pub fn take_preset(&mut self, key: &str) {
+        let key = current_name(key);
         let Some(preset) = self.presets.iter().find(|preset| preset.key == key) else { return };
         if preset.operator != Operator::None {
             self.tools.operator = preset.operator;
@@ -282,7 +283,7 @@ impl Session {
         }
     }
 
-    /// Moves the current colour to the front of the recent ones.
+    /// Moves the current color to the front of the recent ones.
     fn remember_color(&mut self) {
         let color = self.tools.color;
         self.recent_colors.retain(|known| *known != color);

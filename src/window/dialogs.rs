@@ -164,7 +164,7 @@ fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
     answers(ui, yes, "Cancel", can)
 }
 
-/// The same with a special name for cancelling.
+/// The same with a special name for canceling.
 fn answers(ui: &mut Ui, yes: &str, no: &str, can: bool) -> Option<bool> {
     let mut answer = None;
     ui.add_space(4.0);

@@ -13,7 +13,7 @@ const NEVER_SHOWN: Duration = Duration::from_millis(500);
 /// The result of the system's dialog.
 pub enum FileAnswer {
     File(PathBuf),
-    Cancelled,
+    Canceled,
     /// The system has no such dialog.
     Nowhere,
 }
@@ -54,6 +54,6 @@ fn system_dialog(purpose: FilePurpose, name: &str) -> FileAnswer {
     match file {
         Some(file) => FileAnswer::File(file),
         None if asked.elapsed() < NEVER_SHOWN => FileAnswer::Nowhere,
-        None => FileAnswer::Cancelled,
+        None => FileAnswer::Canceled,
     }
 }

@@ -17,7 +17,7 @@ pub struct JobResult<W> {
     then: Option<Continuation<W>>,
     /// Whether something comes in front that nobody waits for: a document, or a dialog about one.
     pub comes_in_front: bool,
-    /// Whether it counts even if the job was cancelled meanwhile: a file is written already.
+    /// Whether it counts even if the job was canceled meanwhile: a file is written already.
     is_final: bool,
 }
 
@@ -29,7 +29,7 @@ pub trait JobWindow: 'static {
 }
 
 impl<W: JobWindow> JobResult<W> {
-    /// Nothing to do, as after a cancelled job.
+    /// Nothing to do, as after a canceled job.
     pub fn nothing() -> Self {
         Self { then: None, comes_in_front: false, is_final: false }
     }
@@ -66,7 +66,7 @@ impl<W: JobWindow> JobResult<W> {
         Self { comes_in_front: true, ..self }
     }
 
-    pub fn even_if_cancelled(self) -> Self {
+    pub fn even_if_canceled(self) -> Self {
         Self { is_final: true, ..self }
     }
 
@@ -105,14 +105,14 @@ pub enum PinPosition {
 /// What the user can do while a job runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JobKind {
-    /// It can be cancelled.
+    /// It can be canceled.
     Working,
     /// It edits the document in front, so no other edits are possible meanwhile. It can be
-    /// cancelled.
+    /// canceled.
     Editing,
     /// It waits for another program: a dialog of the system.
     Asking,
-    /// It reads what a dialog will show, which the user asked for. It can be cancelled.
+    /// It reads what a dialog will show, which the user asked for. It can be canceled.
     Looking,
 }
 
@@ -201,14 +201,14 @@ impl<W: JobWindow> Jobs<W> {
         Some(sentence)
     }
 
-    /// The results since the last call. Cancelled jobs have none, unless they were already done.
+    /// The results since the last call. Canceled jobs have none, unless they were already done.
     pub fn finished(&mut self) -> Vec<JobResult<W>> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
-            let is_cancelled =
-                self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
+            let is_canceled =
+                self.under_way.iter().any(|job| job.key == key && job.progress.is_canceled());
             self.under_way.retain(|job| job.key != key);
-            if !is_cancelled || done.is_final {
+            if !is_canceled || done.is_final {
                 finished.push(done);
             }
         }

@@ -92,7 +92,7 @@ fn lit(form: &Form) -> ColorImage {
         let at = |v: usize, n: usize, all: u32| (((v as f32 + 0.5) / n as f32) * all as f32) as i32;
         let (x, y) = (at(i % width, width, size.width), at(i / width, height, size.height));
         let normal = form.normals.clamped(x, y);
-        let shade = srgb::quantise(srgb::encode(0.06 + 0.8 * normal.dot(light).max(0.0)));
+        let shade = srgb::quantize(srgb::encode(0.06 + 0.8 * normal.dot(light).max(0.0)));
         Color32::from_rgba_unmultiplied(shade, shade, shade, form.coverage.clamped(x, y))
     };
     ColorImage::new([width, height], (0..width * height).map(texel).collect())

@@ -20,8 +20,8 @@ pub fn open() -> Result<OpenedFile> {
         from: vec2(0.0, 0.0),
         to: vec2(0.0, SIDE as f32),
         stops: vec![
-            GradientStop { t: 0.0, color: grey(0x3a) },
-            GradientStop { t: 1.0, color: grey(0x24) },
+            GradientStop { t: 0.0, color: gray(0x3a) },
+            GradientStop { t: 1.0, color: gray(0x24) },
         ],
         operator: Operator::None,
         filter: ImageFilter::Antialias,
@@ -56,7 +56,7 @@ pub fn open() -> Result<OpenedFile> {
     })
 }
 
-fn grey(v: u8) -> Color {
+fn gray(v: u8) -> Color {
     Color { r: v, g: v, b: v, a: 255 }
 }
 

@@ -21,7 +21,7 @@ pub enum WriteResult {
     ExportedMaps(Vec<PathBuf>),
     /// Something would be lost that the user was not asked about; why.
     Refused(Pending, String),
-    Cancelled,
+    Canceled,
     Failed(Error),
 }
 
@@ -50,7 +50,7 @@ enum SaveStep {
     Saved(FileStamp),
     /// The user must be told first what is lost.
     Loses,
-    Cancelled,
+    Canceled,
 }
 
 impl Saving {
@@ -58,7 +58,7 @@ impl Saving {
         match self.attempt(progress) {
             Ok(SaveStep::Saved(stamp)) => WriteResult::Saved(Box::new(self), stamp),
             Ok(SaveStep::Loses) => WriteResult::Loses(Box::new(self)),
-            Ok(SaveStep::Cancelled) => WriteResult::Cancelled,
+            Ok(SaveStep::Canceled) => WriteResult::Canceled,
             Err(error) => refused(error, || Pending::Save(Box::new(self))),
         }
     }
@@ -70,13 +70,13 @@ impl Saving {
             Some(encoded) => Some(encoded),
             None => encode(&self.document, &self.file, progress)?,
         };
-        let Some(encoded) = encoded else { return Ok(SaveStep::Cancelled) };
+        let Some(encoded) = encoded else { return Ok(SaveStep::Canceled) };
         let encoded = self.encoded.insert(encoded);
         if !self.knows_losses {
             return Ok(SaveStep::Loses);
         }
         let saved = encoded.save(&self.file, &self.terms, progress)?;
-        Ok(saved.map_or(SaveStep::Cancelled, |saved| SaveStep::Saved(saved.stamp)))
+        Ok(saved.map_or(SaveStep::Canceled, |saved| SaveStep::Saved(saved.stamp)))
     }
 }
 
@@ -91,7 +91,7 @@ impl Exporting {
             None => export(&self.document, &self.file, &self.options, terms, progress),
         };
         match written {
-            Ok(_) if progress.is_cancelled() => WriteResult::Cancelled,
+            Ok(_) if progress.is_canceled() => WriteResult::Canceled,
             Ok(notes) => WriteResult::Exported(self.file, notes),
             Err(error) => refused(error, || Pending::Export(Box::new(self))),
         }

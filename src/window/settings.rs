@@ -253,7 +253,7 @@ mod tests {
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
         let mut settings =
-            Settings { look: Look::Grey, layout, is_hint_done: true, aids, ..Settings::default() };
+            Settings { look: Look::Gray, layout, is_hint_done: true, aids, ..Settings::default() };
         (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
         settings.write(&file).unwrap();
         let read = Settings::read(&file).unwrap();

@@ -1,6 +1,7 @@
 //! The theme: neutral grays, so that the window does not affect the perception of the picture's
 //! colors, and one accent. Floor 7.
 
+use crate::math::named::current_name;
 use eframe::egui::{self, Color32, CornerRadius, Stroke, Style, TextStyle, Theme, Visuals, vec2};
 
 /// What is selected or held.
@@ -19,20 +20,21 @@ pub enum Look {
     #[default]
     Dark,
     /// Middle gray, for judging colors.
-    Grey,
+    Gray,
     Light,
 }
 
 impl Look {
     /// With the names that settings store.
     pub const ALL: [(Self, &'static str); 3] =
-        [(Self::Dark, "dark"), (Self::Grey, "grey"), (Self::Light, "light")];
+        [(Self::Dark, "dark"), (Self::Gray, "gray"), (Self::Light, "light")];
 
     pub fn name(self) -> &'static str {
         Self::ALL[self as usize].1
     }
 
     pub fn from_name(name: &str) -> Option<Self> {
+        let name = current_name(name);
         Self::ALL.iter().find(|(_, known)| *known == name).map(|(look, _)| *look)
     }
 
@@ -41,17 +43,17 @@ impl Look {
         Self::ALL[(self as usize + 1) % Self::ALL.len()].0
     }
 
-    fn greys(self) -> &'static Greys {
+    fn grays(self) -> &'static Grays {
         match self {
             Self::Dark => &DARK,
-            Self::Grey => &GREY,
+            Self::Gray => &GRAY,
             Self::Light => &LIGHT,
         }
     }
 
     /// The look that is shown.
     fn of(visuals: &Visuals) -> Self {
-        let is_shown = |look: Self| visuals.panel_fill == Color32::from_gray(look.greys().panel);
+        let is_shown = |look: Self| visuals.panel_fill == Color32::from_gray(look.grays().panel);
         Self::ALL.into_iter().map(|(look, _)| look).find(|look| is_shown(*look)).unwrap_or_default()
     }
 
@@ -59,21 +61,21 @@ impl Look {
     pub fn show(self, ctx: &egui::Context) {
         // The toolkit has two themes; gray takes the place of the dark one.
         let (theme, visuals) = match self {
-            Self::Dark | Self::Grey => (Theme::Dark, Visuals::dark()),
+            Self::Dark | Self::Gray => (Theme::Dark, Visuals::dark()),
             Self::Light => (Theme::Light, Visuals::light()),
         };
-        ctx.style_mut_of(theme, |style| apply_style(style, visuals, self.greys()));
+        ctx.style_mut_of(theme, |style| apply_style(style, visuals, self.grays()));
         ctx.set_theme(theme);
     }
 }
 
 /// What surrounds the canvas.
 pub fn surround(visuals: &Visuals) -> Color32 {
-    Color32::from_gray(Look::of(visuals).greys().surround)
+    Color32::from_gray(Look::of(visuals).grays().surround)
 }
 
 /// Shades of gray, from the deepest ground to the text. `weak`: hints and what is said about a row.
-struct Greys {
+struct Grays {
     surround: u8,
     deepest: u8,
     panel: u8,
@@ -91,7 +93,7 @@ struct Greys {
     selected: f32,
 }
 
-const DARK: Greys = Greys {
+const DARK: Grays = Grays {
     surround: 0x1e,
     deepest: 0x1a,
     panel: 0x2b,
@@ -106,7 +108,7 @@ const DARK: Greys = Greys {
     strong: 0xf4,
     selected: 0.5,
 };
-const GREY: Greys = Greys {
+const GRAY: Grays = Grays {
     surround: 0x77,
     deepest: 0x3c,
     panel: 0x4c,
@@ -121,7 +123,7 @@ const GREY: Greys = Greys {
     strong: 0xff,
     selected: 0.35,
 };
-const LIGHT: Greys = Greys {
+const LIGHT: Grays = Grays {
     surround: 0xa8,
     deepest: 0xf6,
     panel: 0xdc,
@@ -169,8 +171,8 @@ fn mix(ground: Color32, over: Color32, share: f32) -> Color32 {
 
 /// A box or a ring to tick has an outline while it is empty, unlike buttons.
 pub fn outline(ui: &mut egui::Ui) {
-    let grey = Color32::from_gray(Look::of(ui.visuals()).greys().outline);
-    ui.visuals_mut().widgets.inactive.bg_stroke = Stroke::new(1.0, grey);
+    let gray = Color32::from_gray(Look::of(ui.visuals()).grays().outline);
+    ui.visuals_mut().widgets.inactive.bg_stroke = Stroke::new(1.0, gray);
 }
 
 /// On the ground of a selected row, hints are as strong as its name: fainter ones are not legible.
@@ -179,37 +181,37 @@ pub fn strengthen_hints(ui: &mut egui::Ui) {
     ui.visuals_mut().weak_text_color = Some(strong);
 }
 
-fn apply_style(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
-    let grey = Color32::from_gray;
+fn apply_style(style: &mut Style, mut visuals: Visuals, grays: &Grays) {
+    let gray = Color32::from_gray;
     let radius = CornerRadius::same(4);
-    visuals.panel_fill = grey(greys.panel);
-    visuals.window_fill = grey(greys.window);
-    visuals.window_stroke = Stroke::new(1.0, grey(greys.line));
-    visuals.extreme_bg_color = grey(greys.deepest);
-    visuals.faint_bg_color = grey(greys.panel.saturating_add(4));
-    visuals.weak_text_color = Some(grey(greys.weak));
-    visuals.selection.bg_fill = mix(grey(greys.panel), ACCENT, greys.selected);
-    visuals.selection.stroke = Stroke::new(1.0, grey(greys.strong));
+    visuals.panel_fill = gray(grays.panel);
+    visuals.window_fill = gray(grays.window);
+    visuals.window_stroke = Stroke::new(1.0, gray(grays.line));
+    visuals.extreme_bg_color = gray(grays.deepest);
+    visuals.faint_bg_color = gray(grays.panel.saturating_add(4));
+    visuals.weak_text_color = Some(gray(grays.weak));
+    visuals.selection.bg_fill = mix(gray(grays.panel), ACCENT, grays.selected);
+    visuals.selection.stroke = Stroke::new(1.0, gray(grays.strong));
     visuals.window_corner_radius = CornerRadius::same(8);
     visuals.menu_corner_radius = CornerRadius::same(6);
     let widgets = &mut visuals.widgets;
     for (widget, fill, text) in [
-        (&mut widgets.noninteractive, greys.panel, greys.text),
-        (&mut widgets.inactive, greys.idle, greys.text),
-        (&mut widgets.hovered, greys.hovered, greys.strong),
-        (&mut widgets.active, greys.pressed, greys.strong),
-        (&mut widgets.open, greys.idle, greys.strong),
+        (&mut widgets.noninteractive, grays.panel, grays.text),
+        (&mut widgets.inactive, grays.idle, grays.text),
+        (&mut widgets.hovered, grays.hovered, grays.strong),
+        (&mut widgets.active, grays.pressed, grays.strong),
+        (&mut widgets.open, grays.idle, grays.strong),
     ] {
-        (widget.bg_fill, widget.weak_bg_fill) = (grey(fill), grey(fill));
+        (widget.bg_fill, widget.weak_bg_fill) = (gray(fill), gray(fill));
         widget.bg_stroke = Stroke::NONE;
-        widget.fg_stroke = Stroke::new(1.0, grey(text));
+        widget.fg_stroke = Stroke::new(1.0, gray(text));
         widget.corner_radius = radius;
         widget.expansion = 0.0;
     }
-    let alarm = if greys.text > 0x80 { &WARM } else { &COLD };
+    let alarm = if grays.text > 0x80 { &WARM } else { &COLD };
     (visuals.error_fg_color, visuals.warn_fg_color, visuals.hyperlink_color) = *alarm;
     let widgets = &mut visuals.widgets;
-    widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(greys.line));
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, gray(grays.line));
     style.visuals = visuals;
     // A drag that misses a slider would select the text next to it.
     style.interaction.selectable_labels = false;
@@ -289,9 +291,9 @@ mod tests {
     #[test]
     fn the_outline_of_an_empty_box_is_seen() {
         for (look, name) in Look::ALL {
-            let greys = look.greys();
-            for ground in [greys.panel, greys.window] {
-                let found = contrast(Color32::from_gray(greys.outline), Color32::from_gray(ground));
+            let grays = look.grays();
+            for ground in [grays.panel, grays.window] {
+                let found = contrast(Color32::from_gray(grays.outline), Color32::from_gray(ground));
                 assert!(found >= 3.0, "{name}: {found:.2}");
             }
         }
@@ -305,5 +307,6 @@ mod tests {
             look.show(&ctx);
             assert_eq!(Look::of(&ctx.global_style().visuals), look);
         }
+        assert_eq!(Look::from_name("grey"), Some(Look::Gray), "as settings of 0.1 spell it");
     }
 }

@@ -130,12 +130,12 @@ impl Thumbnails {
             let step = size.width.max(size.height).div_ceil(SIDE).max(1);
             let (width, height) =
                 (size.width.div_ceil(step) as usize, size.height.div_ceil(step) as usize);
-            let grey = |i: usize| {
+            let gray = |i: usize| {
                 let at = |v: usize| (v as u32 * step + step / 2) as i32;
                 let v = coverage.clamped(at(i % width), at(i / width));
                 Color32::from_gray(if *invert { 255 - v } else { v })
             };
-            let image = ColorImage::new([width, height], (0..width * height).map(grey).collect());
+            let image = ColorImage::new([width, height], (0..width * height).map(gray).collect());
             let texture =
                 ctx.load_texture(format!("mask {:?}", layer.id), image, TextureOptions::LINEAR);
             self.masks.insert(layer.id, (Arc::downgrade(coverage), *invert, texture));

@@ -313,7 +313,7 @@ fn tips() -> Vec<Case> {
     tips.into_iter().map(case).collect()
 }
 
-/// A stroke that varies with the pen, in size, flow, place and colour, and one that takes away.
+/// A stroke that varies with the pen, in size, flow, place and color, and one that takes away.
 fn stroke() -> Case {
     let pen: Vec<[f32; 3]> = (0..=12)
         .map(|i| [8.0 + 5.0 * i as f32, 20.0 + 3.0 * ((i * i) % 11) as f32, i as f32 / 12.0])

@@ -89,6 +89,6 @@ fn dot(x: u32, y: u32) -> [u8; 4] {
 
 /// Gray from left to right, with a hole.
 fn mask(x: u32, y: u32) -> [u8; 4] {
-    let grey = if x.abs_diff(50) < 9 && y.abs_diff(30) < 12 { 0 } else { 3 * x as u8 };
-    [grey, grey, grey, 255]
+    let gray = if x.abs_diff(50) < 9 && y.abs_diff(30) < 12 { 0 } else { 3 * x as u8 };
+    [gray, gray, gray, 255]
 }

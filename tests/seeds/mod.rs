@@ -70,25 +70,25 @@ fn bitmaps() -> Vec<Seed> {
         Image::ImageRgb16(rgba.to_rgb16()),
         Image::ImageRgba16(rgba.to_rgba16()),
     ];
-    let grey = [Image::ImageLuma8(rgba.to_luma8()), Image::ImageLumaA8(rgba.to_luma_alpha8())];
+    let gray = [Image::ImageLuma8(rgba.to_luma8()), Image::ImageLumaA8(rgba.to_luma_alpha8())];
     let float = Image::ImageRgb32F(rgba.to_rgb32f());
-    let all = || [&rgba, &rgb, &grey[0], &grey[1], &deep[0], &deep[1], &deep[2], &deep[3]];
+    let all = || [&rgba, &rgb, &gray[0], &gray[1], &deep[0], &deep[1], &deep[2], &deep[3]];
     let mut seeds: Vec<Seed> = Vec::new();
     for (i, image) in all().into_iter().enumerate() {
         seeds.push((format!("{i}.png"), encoded(image.clone(), Png)));
     }
-    for (i, image) in [&rgb, &rgba, &grey[0], &deep[0], &deep[2], &float].into_iter().enumerate() {
+    for (i, image) in [&rgb, &rgba, &gray[0], &deep[0], &deep[2], &float].into_iter().enumerate() {
         seeds.push((format!("{i}.tif"), encoded(image.clone(), Tiff)));
     }
     for (name, image, format) in [
         ("rgb.jpg", &rgb, Jpeg),
-        ("grey.jpg", &grey[0], Jpeg),
+        ("gray.jpg", &gray[0], Jpeg),
         ("rgb.webp", &rgb, WebP),
         ("rgba.webp", &rgba, WebP),
         ("rgb.bmp", &rgb, Bmp),
         ("rgba.bmp", &rgba, Bmp),
         ("rgba.tga", &rgba, Tga),
-        ("grey.tga", &grey[0], Tga),
+        ("gray.tga", &gray[0], Tga),
         ("light.hdr", &float, Hdr),
     ] {
         seeds.push((name.into(), encoded(image.clone(), format)));
@@ -115,9 +115,9 @@ fn palettes() -> Vec<Seed> {
         out
     };
     let indexed = depths.map(|d| (format!("palette-{}.png", d as u8), one(ColorType::Indexed, d)));
-    let grey = [depths[0], depths[2]]
-        .map(|d| (format!("grey-{}.png", d as u8), one(ColorType::Grayscale, d)));
-    [indexed.to_vec(), grey.to_vec()].concat()
+    let gray = [depths[0], depths[2]]
+        .map(|d| (format!("gray-{}.png", d as u8), one(ColorType::Grayscale, d)));
+    [indexed.to_vec(), gray.to_vec()].concat()
 }
 
 /// EXR of every compression that is read, plain and tiled.

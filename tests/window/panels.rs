@@ -88,7 +88,7 @@ fn a_click_in_the_history_goes_there_and_one_in_the_navigator_looks_there() {
 }
 
 #[test]
-fn colours_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
+fn colors_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
     let mut harness = window();
     press(&mut harness, "Hex color");
     key(&mut harness, Modifiers::COMMAND, Key::A);

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// A head on a body, each of a flat colour with soft edges, on a transparent ground.
+/// A head on a body, each of a flat color with soft edges, on a transparent ground.
 fn drawing(folder: &TempDir) -> PathBuf {
     let disc = |x: f32, y: f32, cx: f32, cy: f32, r: f32| {
         (r + 0.5 - (x - cx).hypot(y - cy)).clamp(0.0, 1.0)

@@ -184,7 +184,7 @@ impl Composer<'_> {
         }
         match node.has_deep_paint(at) {
             true => pixels.to_tile(true),
-            false => pixels.quantised(),
+            false => pixels.quantized(),
         }
         .map(Arc::new)
     }

@@ -1,4 +1,4 @@
-//! Flattening: composes the layers of a document into one picture, tile by tile, in f32, quantised
+//! Flattening: composes the layers of a document into one picture, tile by tile, in f32, quantized
 //! once. Floor 4. Tiles are independent, so they are composed in parallel, and the bytes do not
 //! depend on the number of threads.
 
@@ -13,7 +13,7 @@ use crate::memory::filled_or_unwind;
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
-/// Flattens the whole document; `None` if cancelled.
+/// Flattens the whole document; `None` if canceled.
 pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
@@ -23,7 +23,7 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
 const DEEP_AT_A_TIME: usize = 256;
 
 /// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row;
-/// colours are above their alpha where `highlights` are kept. `None` if cancelled.
+/// colors are above their alpha where `highlights` are kept. `None` if canceled.
 pub fn flatten_deep(
     document: &Document,
     highlights: Highlights,
@@ -51,14 +51,14 @@ pub fn flatten_deep(
 
 /// Flattens the whole document to bytes that are rounded once, at the end: live layers are composed
 /// in floats. As [`flatten`] where rounding them in between changes nothing by more than two
-/// levels. `None` if cancelled.
+/// levels. `None` if canceled.
 pub fn flatten_rounding_once(document: &Document, progress: &Progress) -> Option<TileGrid> {
     if !document.is_rounding_visible() {
         return flatten(document, progress);
     }
     let prepared = PreparedDocument::new(document, progress)?;
     flatten_in_floats(&prepared, document, progress, |at, deep| {
-        prepared.compose_tile(at, Some(deep)).quantised().map(Arc::new)
+        prepared.compose_tile(at, Some(deep)).quantized().map(Arc::new)
     })
 }
 
@@ -82,14 +82,14 @@ fn flatten_in_floats(
 
 /// Flattens the whole document to what a paint layer holds: composed without rounding live layers,
 /// with 16 bits where it is soft ([`PlanarTile::to_tile_over`]), and where placed pictures of more than 8
-/// are seen. `None` if cancelled.
+/// are seen. `None` if canceled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
     flatten_in_floats(&prepared, document, progress, |at, deep| prepared.paint_tile(at, deep))
 }
 
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of
-/// the groups around it. It sees the same surface as in the document. `None` if cancelled or if
+/// the groups around it. It sees the same surface as in the document. `None` if canceled or if
 /// there is no such layer.
 pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> Option<TileGrid> {
     flatten_layers(document, &[id], progress)
@@ -176,7 +176,7 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<V
 impl PreparedDocument {
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
-        self.alone_in_tile(at).or_else(|| self.compose_tile(at, None).quantised().map(Arc::new))
+        self.alone_in_tile(at).or_else(|| self.compose_tile(at, None).quantized().map(Arc::new))
     }
 
     /// The tile of the topmost layer where nothing else is seen: what composing would give, to the
@@ -231,7 +231,7 @@ impl PreparedDocument {
         pixels
     }
 
-    /// The picture with some of its tiles composed again; `None` if cancelled.
+    /// The picture with some of its tiles composed again; `None` if canceled.
     pub fn flatten_tiles(
         &self,
         old: &TileGrid,

@@ -5,7 +5,7 @@ use super::compose::{ComposeFlow, Composer};
 use super::prepare::PreparedDocument;
 use super::progress::in_parallel;
 use super::{Document, LayerId, Progress, Role};
-use crate::math::srgb::quantise;
+use crate::math::srgb::quantize;
 use crate::raster::{PlanarTile, TileAt};
 
 /// Counts of each byte of red, green and blue, and of all three together.
@@ -55,7 +55,7 @@ impl Histogram {
         for row in pixels.rows() {
             for (x, &a) in row.a.iter().enumerate().filter(|(_, a)| **a >= 0.5) {
                 for (channel, counts) in row.rgb.iter().zip(&mut self.channels) {
-                    let byte = usize::from(quantise(channel[x] / a));
+                    let byte = usize::from(quantize(channel[x] / a));
                     counts[byte] += 1;
                     self.all[byte] += 1;
                 }

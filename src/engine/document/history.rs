@@ -26,12 +26,12 @@ pub struct EditLabel {
     /// Its name, the same for all edits of its kind.
     pub name: String,
     /// The one layer that it was done to, if there is one.
-    pub layer: Option<LabelledLayer>,
+    pub layer: Option<LabeledLayer>,
 }
 
 /// The layer that an edit was done to, by the name that it had then.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LabelledLayer {
+pub enum LabeledLayer {
     /// A layer by its name.
     Changed(String),
     /// Added to the layers, or deleted from them.

@@ -199,7 +199,7 @@ fn hidden_beneath(
         for tile in [left.as_ref(), Some(&**own)].into_iter().flatten() {
             both.blend(Mix::default(), TilePaint::of(tile), &TileCoverage::FULL);
         }
-        left = both.quantised();
+        left = both.quantized();
     }
     left.map(Arc::new)
 }

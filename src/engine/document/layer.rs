@@ -157,7 +157,7 @@ crate::named! {
         Brown = "brown",
         Red = "red",
         Purple = "purple",
-        Grey = "grey",
+        Gray = "gray",
     }
 }
 
@@ -173,7 +173,7 @@ impl LayerLabel {
             LayerLabel::Brown => [165, 110, 70],
             LayerLabel::Red => [228, 70, 66],
             LayerLabel::Purple => [175, 110, 205],
-            LayerLabel::Grey => [130, 130, 130],
+            LayerLabel::Gray => [130, 130, 130],
         };
         Some(Color { r: rgb[0], g: rgb[1], b: rgb[2], a: 255 })
     }

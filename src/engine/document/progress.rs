@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Progress {
     done: AtomicU64,
     total: AtomicU64,
-    cancelled: AtomicBool,
+    canceled: AtomicBool,
     stage: Mutex<&'static str>,
 }
 
@@ -46,12 +46,12 @@ impl Progress {
 
     /// Cancels the work: it ends soon, without a result.
     pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        self.canceled.store(true, Ordering::Relaxed);
     }
 
     /// Whether the work was canceled.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+    pub fn is_canceled(&self) -> bool {
+        self.canceled.load(Ordering::Relaxed)
     }
 }
 
@@ -63,7 +63,7 @@ pub(super) fn in_parallel<T: Send>(
 ) -> Option<Vec<T>> {
     progress.add_total(tiles.len() as u64);
     let each = |&at: &TileAt| {
-        let result = (!progress.is_cancelled()).then(|| work(at))?;
+        let result = (!progress.is_canceled()).then(|| work(at))?;
         progress.step();
         Some(result)
     };

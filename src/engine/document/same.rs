@@ -56,7 +56,7 @@ fn surface(a: &Document, b: &Document) -> Option<String> {
                 (Some(source), Some(other)) => {
                     x.size() == y.size() && are_same_maps(a, source, b, other)
                 }
-                // One that came from no file is stored as maps made of it, which are normalised
+                // One that came from no file is stored as maps made of it, which are normalized
                 // when they are read.
                 (None, _) => x.size() == y.size(),
                 (Some(_), None) => false,

@@ -14,7 +14,7 @@ pub use unwrapped::{UnwrapOptions, UnwrappedPicture, placed_over, unwrapped};
 pub use weights::color_of as anchor_color;
 
 use super::{Document, Layer, Progress};
-use crate::math::{Size, srgb::quantise};
+use crate::math::{Size, srgb::quantize};
 use crate::raster::{Picture, Plane};
 use crate::surface::{Bend, Surface};
 
@@ -33,7 +33,7 @@ crate::named! {
         /// Convex blue, concave red, flat yellow.
         Curvature = "curvature",
         /// Convex light, concave dark.
-        CurvatureGrey = "curvature-grey",
+        CurvatureGray = "curvature-gray",
         /// Lines along the direction that curves most.
         Directions = "directions",
         /// A layer's anchors and how they share the surface (SF fig. 9).
@@ -122,7 +122,7 @@ pub fn draw(
         SurfaceView::Mask => maps::mask(surface()?),
         SurfaceView::Objects => maps::objects(surface()?),
         SurfaceView::Curvature => maps::curvature(surface()?, options),
-        SurfaceView::CurvatureGrey => maps::curvature_grey(surface()?, options),
+        SurfaceView::CurvatureGray => maps::curvature_gray(surface()?, options),
         SurfaceView::Lit => maps::lit(surface()?),
         SurfaceView::Clay => maps::clay(surface()?),
         SurfaceView::Contours => maps::contours(surface()?),
@@ -181,7 +181,7 @@ fn painted(
     color: impl Fn(usize, usize) -> [f32; 3] + Sync,
 ) -> Picture {
     let texels = Plane::from_fn(size, |x, y| {
-        let [r, g, b] = color(x, y).map(quantise);
+        let [r, g, b] = color(x, y).map(quantize);
         [r, g, b, coverage.map_or(255, |s| s.coverage(x, y))]
     });
     Picture::srgb8(size, texels.into_values()).expect("a canvas has pixels, and each got its color")

@@ -1,5 +1,5 @@
 //! Powers, logarithms, tanh, acos and atan2 for inner loops: polynomials of bounded error that the
-//! compiler vectorises. Floor 0. The references are std's; the bounds below are tests. The
+//! compiler vectorizes. Floor 0. The references are std's; the bounds below are tests. The
 //! approximations of sRGB are in `srgb`, next to the curve.
 
 /// The larger of two numbers; `b` where `a` is NaN. One instruction, where `f32::max` needs three.

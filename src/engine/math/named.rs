@@ -1,5 +1,24 @@
 //! Enums whose choices have names in documents: choices and names in one place. Floor 0.
 
+/// Names and keys that documents of version 0.1 spell otherwise, and their spelling now.
+const FORMER_NAMES: [(&str, &str); 5] = [
+    ("grey", "gray"),
+    ("posterise", "posterize"),
+    ("curvature-grey", "curvature-gray"),
+    ("watercolour-wash", "watercolor-wash"),
+    ("watercolour-pool", "watercolor-pool"),
+];
+
+/// How a name is spelled now, if documents of version 0.1 spell it otherwise; else the name.
+pub fn current_name(name: &str) -> &str {
+    FORMER_NAMES.iter().find(|(former, _)| *former == name).map_or(name, |(_, current)| current)
+}
+
+/// How documents of version 0.1 spell a name, if they spell it otherwise.
+pub fn former_name(name: &str) -> Option<&'static str> {
+    FORMER_NAMES.iter().find(|(_, current)| *current == name).map(|(former, _)| *former)
+}
+
 /// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`. If
 /// the window has other names for them, `label` (and `LABELS`), and if it explains them, `hint`:
 ///
@@ -62,10 +81,25 @@ macro_rules! named {
                 match self { $($type::$choice => $name),+ }
             }
 
-            /// The choice of a name; `None` if there is none of it.
+            /// The choice of a name, which may be spelled as it was in version 0.1; `None` if there
+            /// is none of it.
             pub fn from_name(name: &str) -> Option<Self> {
+                let name = $crate::math::named::current_name(name);
                 Self::ALL.iter().find(|(_, known)| *known == name).map(|(choice, _)| *choice)
             }
         }
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_former_name_leads_to_the_current_one_and_back() {
+        for (former, current) in FORMER_NAMES {
+            assert_eq!((current_name(former), former_name(current)), (current, Some(former)));
+            assert_eq!((current_name(current), former_name(former)), (current, None));
+        }
+    }
 }

@@ -8,7 +8,7 @@
 /// Wraps functions so that their body is compiled for the baseline and for AVX2, and the processor
 /// picks.
 ///
-/// The body must be plain loops over slices or arrays, which the compiler vectorises, and call only
+/// The body must be plain loops over slices or arrays, which the compiler vectorizes, and call only
 /// `#[inline(always)]` functions.
 ///
 /// ```

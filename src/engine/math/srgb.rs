@@ -106,7 +106,7 @@ pub fn decode_u8(encoded: u8) -> f32 {
 /// Nearest byte of a value in `[0, 1]`; out of range clamps, NaN becomes 0. The only quantization
 /// to bytes.
 #[inline(always)]
-pub fn quantise(value: f32) -> u8 {
+pub fn quantize(value: f32) -> u8 {
     // `max` first: for NaN and 0 it is 0.
     let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 255.0 + 0.5;
     // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorized: 4 ns a pixel
@@ -116,7 +116,7 @@ pub fn quantise(value: f32) -> u8 {
 
 /// The same to 16 bits.
 #[inline(always)]
-pub fn quantise_deep(value: f32) -> u16 {
+pub fn quantize_deep(value: f32) -> u16 {
     let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 65535.0 + 0.5;
     // SAFETY: in [0.5, 65535.5] by the line above: at this size a float still holds halves.
     unsafe { scaled.to_int_unchecked::<i32>() as u16 }
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn every_byte_survives_decode_and_encode() {
         for b in 0..=255u8 {
-            assert_eq!(quantise(encode(decode_u8(b))), b);
+            assert_eq!(quantize(encode(decode_u8(b))), b);
         }
     }
 
@@ -250,19 +250,19 @@ mod tests {
     }
 
     #[test]
-    fn quantising_nan_gives_black_not_garbage() {
-        assert_eq!(quantise(f32::NAN), 0);
-        assert_eq!(quantise(7.0), 255);
+    fn quantizing_nan_gives_black_not_garbage() {
+        assert_eq!(quantize(f32::NAN), 0);
+        assert_eq!(quantize(7.0), 255);
     }
 
     #[test]
     fn values_of_16_bits_are_their_own() {
-        assert!((0..=u16::MAX).all(|v| quantise_deep(f32::from(v) / 65535.0) == v));
-        assert_eq!([f32::NAN, -1.0, 7.0].map(quantise_deep), [0, 0, 65535]);
+        assert!((0..=u16::MAX).all(|v| quantize_deep(f32::from(v) / 65535.0) == v));
+        assert_eq!([f32::NAN, -1.0, 7.0].map(quantize_deep), [0, 0, 65535]);
     }
 
     #[test]
-    fn colours_read_back_as_written() {
+    fn colors_read_back_as_written() {
         for text in ["#c08060", "#01020304"] {
             assert_eq!(Color::parse(text).unwrap().to_string(), text);
         }

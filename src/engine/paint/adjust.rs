@@ -58,7 +58,7 @@ impl Adjust {
         } else {
             Picture::srgb8(
                 picture.size,
-                texels.into_iter().map(|t| t.map(srgb::quantise)).collect(),
+                texels.into_iter().map(|t| t.map(srgb::quantize)).collect(),
             )
         };
         adjusted.unwrap_or_else(|| picture.clone())
@@ -162,26 +162,26 @@ fn map(v: Vec3, f: impl Fn(f32) -> f32) -> Vec3 {
 
 /// Each column weighs one channel of the luminance, so `M c` is the gray of `c` (Rec. 709, on
 /// encoded values).
-fn grey_matrix() -> Mat3 {
+fn gray_matrix() -> Mat3 {
     Mat3::from_cols(Vec3::splat(0.2126), Vec3::splat(0.7152), Vec3::splat(0.0722))
 }
 
 /// Gray plus `factor` times the distance from it.
 fn saturation_matrix(factor: f32) -> Mat3 {
-    grey_matrix() * (1.0 - factor) + Mat3::IDENTITY * factor
+    gray_matrix() * (1.0 - factor) + Mat3::IDENTITY * factor
 }
 
 /// Turns the colors about the gray axis, keeping the gray of each (Filter Effects, `hue-rotate`).
 ///
 /// gray + cos · (identity − gray) + sin · S, where S turns by a quarter.
 fn hue_matrix(angle: f32) -> Mat3 {
-    let grey = grey_matrix();
+    let gray = gray_matrix();
     let quarter = Mat3::from_cols(
         vec3(-0.213, 0.143, -0.787),
         vec3(-0.715, 0.140, 0.715),
         vec3(0.928, -0.283, 0.072),
     );
-    grey + (Mat3::IDENTITY - grey) * angle.cos() + quarter * angle.sin()
+    gray + (Mat3::IDENTITY - gray) * angle.cos() + quarter * angle.sin()
 }
 
 /// A Gaussian blur of premultiplied values, so that color under transparent texels does not
@@ -235,9 +235,9 @@ mod tests {
     }
 
     #[test]
-    fn saturation_zero_is_the_luma_and_contrast_turns_about_mid_grey() {
-        let grey = one(Adjust { saturation: 0.0, ..Adjust::default() }, [255, 0, 0, 255]);
-        assert_eq!(grey, [54, 54, 54, 255]);
+    fn saturation_zero_is_the_luma_and_contrast_turns_about_mid_gray() {
+        let gray = one(Adjust { saturation: 0.0, ..Adjust::default() }, [255, 0, 0, 255]);
+        assert_eq!(gray, [54, 54, 54, 255]);
         assert_eq!(
             one(Adjust { contrast: 0.0, ..Adjust::default() }, [9, 200, 77, 255]),
             [128, 128, 128, 255]
@@ -253,12 +253,12 @@ mod tests {
     }
 
     #[test]
-    fn a_full_turn_of_the_hue_changes_nothing_and_greys_never_turn() {
+    fn a_full_turn_of_the_hue_changes_nothing_and_grays_never_turn() {
         let red = [200, 40, 30, 255];
         let turned = one(Adjust { hue: 360.0, ..Adjust::default() }, red);
         assert!((0..4).all(|c| turned[c].abs_diff(red[c]) <= 1), "{turned:?}");
-        let grey = one(Adjust { hue: 77.0, ..Adjust::default() }, [120, 120, 120, 255]);
-        assert!(grey[..3].iter().all(|v| v.abs_diff(120) <= 1), "{grey:?}");
+        let gray = one(Adjust { hue: 77.0, ..Adjust::default() }, [120, 120, 120, 255]);
+        assert!(gray[..3].iter().all(|v| v.abs_diff(120) <= 1), "{gray:?}");
         let [r, g, ..] = one(Adjust { hue: 120.0, ..Adjust::default() }, red);
         assert!(g > r, "a third of a turn from red is green");
     }
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn blurring_keeps_the_mean_and_spreads_no_hidden_colour() {
+    fn blurring_keeps_the_mean_and_spreads_no_hidden_color() {
         let size = Size::new(40, 40);
         // Green is hidden under alpha 0 in the left half.
         let texels = (0..1600)

@@ -32,8 +32,9 @@ pub use mixing::{
 pub use parameters::{NumberParameter, ParameterName, ParameterVisitor};
 pub use rows::LiveAdjustment;
 pub use table::ColorTable;
-pub use tones::{BrightnessContrast, Curves, Exposure, Invert, Levels, LevelsRange, Posterise};
+pub use tones::{BrightnessContrast, Curves, Exposure, Invert, Levels, LevelsRange, Posterize};
 
+use crate::math::named::current_name;
 use parameters::{Holder, Parameters};
 
 /// Declares the enum of adjustments with the table of their names.
@@ -96,7 +97,7 @@ adjustments! {
     ChannelMixer = "channel-mixer" => ("Channel mixer", "Each channel as a sum of all three"),
     ColorLookup = "color-lookup" => ("Color look-up", "The colors of a .cube file"),
     Invert = "invert" => ("Invert", "Light becomes dark, and each color its complement"),
-    Posterise = "posterise" => ("Posterize", "A few tones of each channel"),
+    Posterize = "posterize" => ("Posterize", "A few tones of each channel"),
     Threshold = "threshold" => ("Threshold", "Black and white only"),
     GradientMap = "gradient-map" => ("Gradient map", "A color of a gradient for each brightness"),
     SelectiveColor = "selective-color"
@@ -106,6 +107,7 @@ adjustments! {
 impl ColorAdjustment {
     /// As it begins, by its name in documents.
     pub fn from_name(name: &str) -> Option<Self> {
+        let name = current_name(name);
         Self::all().into_iter().find(|adjustment| adjustment.name() == name)
     }
 
@@ -135,7 +137,7 @@ impl ColorAdjustment {
             Self::BrightnessContrast(own) => rgb.map(own.tone()),
             Self::Exposure(own) => rgb.map(|v| own.tone(v)),
             Self::Invert(_) => rgb.map(Invert::tone),
-            Self::Posterise(own) => rgb.map(|v| own.tone(v)),
+            Self::Posterize(own) => rgb.map(|v| own.tone(v)),
             Self::HueSaturation(own) => own.color()(rgb),
             Self::ColorBalance(own) => own.color(rgb),
             Self::Vibrance(own) => own.color(rgb),

@@ -52,7 +52,7 @@ pub struct Brush {
     pub size_jitter: f32,
     /// How dabs are displaced from the stroke.
     pub offset: Offset,
-    /// How far the colour of each dab strays.
+    /// How far the color of each dab strays.
     pub jitter: ColorJitter,
     /// How the stroke blends with its layer.
     pub blend: BlendMode,
@@ -182,12 +182,12 @@ impl BrushMode {
     }
 }
 
-/// How far a dab's colour may be from the stroke's, either way; drawn for each dab.
+/// How far a dab's color may be from the stroke's, either way; drawn for each dab.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct ColorJitter {
     /// `[0, 180]`.
     pub hue_degrees: f32,
-    /// `[0, 1]`, of the colour's saturation and value (HSV).
+    /// `[0, 1]`, of the color's saturation and value (HSV).
     pub saturation: f32,
     /// `[0, 1]`, as for the saturation.
     pub value: f32,
@@ -253,8 +253,8 @@ pub enum Tip {
     Bristles(Bristles),
     /// Specks.
     Noise(Noise),
-    /// A picture whose longer side is the diameter. An opaque grey picture is coverage, white
-    /// covering fully; any other is a stamp in its own colours.
+    /// A picture whose longer side is the diameter. An opaque gray picture is coverage, white
+    /// covering fully; any other is a stamp in its own colors.
     Picture(PictureSource),
     /// One of several pictures each time.
     Hose(Hose),
@@ -388,7 +388,7 @@ impl Brush {
     }
 
     /// Without paint to work on it would leave next to nothing: it retouches, or paints more with
-    /// what it picks up than with its own colour.
+    /// what it picks up than with its own color.
     pub fn is_dependent_on_paint(&self) -> bool {
         self.mode.is_retouching() || (self.mode == BrushMode::Paint && self.pickup.amount > 0.5)
     }

@@ -360,7 +360,7 @@ impl<'f> DeformationField<'f> {
     }
 
     #[inline(always)]
-    fn around(&self, span: PixelSpan) -> SpanNeighbours<'f> {
+    fn around(&self, span: PixelSpan) -> SpanNeighbors<'f> {
         let start = |y: i32| {
             (y - self.corner.1) as usize * self.width + (span.x - 1 - self.corner.0) as usize
         };
@@ -370,13 +370,13 @@ impl<'f> DeformationField<'f> {
         };
         let linked =
             &self.surface.smooth_links_plane().row(span.y as usize)[span.x as usize..][..span.n];
-        SpanNeighbours { above: row(span.y - 1), row: row(span.y), below: row(span.y + 1), linked }
+        SpanNeighbors { above: row(span.y - 1), row: row(span.y), below: row(span.y + 1), linked }
     }
 }
 
 /// D of a span's pixels, of one more at each end, and of the rows above and below; (x, y) each.
 #[derive(Clone, Copy)]
-struct SpanNeighbours<'f> {
+struct SpanNeighbors<'f> {
     above: (&'f [f32], &'f [f32]),
     row: (&'f [f32], &'f [f32]),
     below: (&'f [f32], &'f [f32]),

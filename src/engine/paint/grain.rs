@@ -17,7 +17,7 @@ pub use tile::{GrainTile, StrokeGrain};
 
 use super::image::PictureSource;
 use super::pattern::Pattern;
-use super::tip::texture::grey;
+use super::tip::texture::gray;
 use crate::math::Range;
 use crate::memory::made_once;
 use crate::raster::{Plane, Texture};
@@ -123,11 +123,11 @@ impl BrushGrain {
         match &self.source {
             GrainSource::Pattern { pattern, seed } => {
                 let side = Pattern::side_of(self.size_px);
-                let make = || of_greys(&pattern.plane(*seed, side), self.levels);
+                let make = || of_grays(&pattern.plane(*seed, side), self.levels);
                 made_once(&MADE, KEPT, (*pattern, *seed, levels, side), make)
             }
             GrainSource::Picture(source) => {
-                let make = || of_greys(&luminance(source.texture()), self.levels);
+                let make = || of_grays(&luminance(source.texture()), self.levels);
                 made_once(source.stamps().grains(), KEPT, levels, make)
             }
         }
@@ -141,16 +141,16 @@ fn square(v: u8) -> u8 {
     ((u32::from(v) * u32::from(v) + 127) / 255) as u8
 }
 
-fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
+fn of_grays(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
     let span = (high - low).max(1.0 / 256.0);
-    let mut picture = grey(&plane.map(|v| (v - low) / span));
+    let mut picture = gray(&plane.map(|v| (v - low) / span));
     // The channels: red is the gray, green its square, alpha whether there is any.
     if let crate::raster::picture::Texels::Srgb8(texels) = &picture.texels {
-        let greys: Vec<[u8; 4]> = texels
+        let grays: Vec<[u8; 4]> = texels
             .iter()
             .map(|&[v, ..]| [v, square(v), 0, if v < BLACK { 0 } else { 255 }])
             .collect();
-        picture.texels = crate::raster::picture::Texels::Srgb8(greys.into());
+        picture.texels = crate::raster::picture::Texels::Srgb8(grays.into());
     }
     Texture::new(&picture)
 }
@@ -158,10 +158,10 @@ fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
 /// From premultiplied texels: a light but transparent texel counts as dark.
 fn luminance(texture: &Texture) -> Plane<f32> {
     let level = &texture.levels()[0];
-    let grey = |&[r, g, b, _]: &[u8; 4]| {
+    let gray = |&[r, g, b, _]: &[u8; 4]| {
         (0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)) / 255.0
     };
-    let values = level.texels.iter().map(grey).collect();
+    let values = level.texels.iter().map(gray).collect();
     Plane::from_values(level.size, values).unwrap_or_else(|| Plane::filled(level.size, 1.0))
 }
 

@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn halfway_between_two_stops_stands_the_mean_of_their_straight_colours() {
+    fn halfway_between_two_stops_stands_the_mean_of_their_straight_colors() {
         let ramp = Ramp::new(&[stop(0.0, "#ff000000"), stop(1.0, "#00ff00ff")]).unwrap();
         assert_near(ramp.at(0.5), [0.25, 0.25, 0.0, 0.5], 1e-6);
         assert_near(ramp.at(-3.0), [0.0; 4], 0.0);
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn stops_out_of_order_are_sorted_and_one_stop_is_a_plain_colour() {
+    fn stops_out_of_order_are_sorted_and_one_stop_is_a_plain_color() {
         let sorted =
             Ramp::new(&[stop(0.0, "#000000"), stop(0.5, "#ff0000"), stop(1.0, "#ffffff")]).unwrap();
         let mixed =
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn no_place_and_no_width_gives_a_value_that_is_not_a_colour() {
+    fn no_place_and_no_width_gives_a_value_that_is_not_a_color() {
         let ramp = Ramp::new(&[stop(0.0, "#ff000000"), stop(1.0, "#00ff00ff")]).unwrap();
         for t in [f32::NAN, f32::INFINITY, -f32::INFINITY, 1e30] {
             for width in [f32::NAN, 0.0, 1.0, f32::INFINITY] {

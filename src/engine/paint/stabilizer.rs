@@ -1,4 +1,4 @@
-//! The stabiliser: turns the pen's samples into a smoother line as they arrive, and completes the
+//! The stabilizer: turns the pen's samples into a smoother line as they arrive, and completes the
 //! line when the pen lifts. Floor 3.
 
 use super::brush::{Brush, Stabilizer};
@@ -21,7 +21,7 @@ const MEASURED_PX: f32 = 4.0;
 /// The most steps between two samples: a pen that jumps leaves a straighter line.
 const MOST_PULLS: f32 = 4096.0;
 
-/// The stabilised pen: a line that follows the pen.
+/// The stabilized pen: a line that follows the pen.
 #[derive(Clone)]
 pub struct StabilizedPen {
     stabilizer: Stabilizer,
@@ -37,7 +37,7 @@ impl StabilizedPen {
         Self { stabilizer, measured: None, line: None }
     }
 
-    /// The stabiliser of a brush, with lengths in px of what the brush measures them on.
+    /// The stabilizer of a brush, with lengths in px of what the brush measures them on.
     pub fn of_brush(brush: &Brush, operator: Operator, scene: &Scene) -> Self {
         let measured = SurfaceMetric::of(scene, operator)
             .filter(|_| brush.stabilizer_on == DistanceMetric::Surface);
@@ -145,7 +145,7 @@ mod tests {
     use crate::surface::{Maps, Surface};
     use std::sync::Arc;
 
-    /// The complete stabilised line of a pen.
+    /// The complete stabilized line of a pen.
     fn line(stabilizer: Stabilizer, pens: &[Vec2]) -> Vec<Vec2> {
         let mut stabilized = StabilizedPen::new(stabilizer);
         let mut line: Vec<Vec2> =

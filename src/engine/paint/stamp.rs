@@ -66,7 +66,7 @@ const SIGMA_TEXELS: f32 = 8.0;
 impl TipStamp {
     fn new(tip: &Texture, softness: f32) -> Self {
         let size = tip.size();
-        let is_colored = !is_grey(&tip.levels()[0]);
+        let is_colored = !is_gray(&tip.levels()[0]);
         let mut sigma = SIGMA_RATIO * softness * 0.5 * size.longer_side();
         let mut level = &tip.levels()[0];
         for coarser in tip.levels().iter().skip(1) {
@@ -90,7 +90,7 @@ impl TipStamp {
 }
 
 /// Opaque and gray everywhere: a picture of coverage.
-fn is_grey(level: &MipLevel) -> bool {
+fn is_gray(level: &MipLevel) -> bool {
     level.texels.iter().all(|&[r, g, b, a]| r == g && g == b && a == 255)
 }
 
@@ -142,12 +142,12 @@ mod tests {
     }
 
     #[test]
-    fn an_opaque_grey_picture_is_coverage_and_any_other_a_coloured_stamp() {
-        let grey = source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255])
+    fn an_opaque_gray_picture_is_coverage_and_any_other_a_colored_stamp() {
+        let gray = source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255])
             .stamp(0.0);
-        assert!(!grey.is_colored);
+        assert!(!gray.is_colored);
         assert_eq!(
-            grey.texture().levels()[0].texels[3],
+            gray.texture().levels()[0].texels[3],
             [90; 4],
             "premultiplied white of alpha 90"
         );

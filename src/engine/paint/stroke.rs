@@ -246,7 +246,7 @@ impl Stroke {
 ///
 /// Each stroke accumulates in f32; the tile is quantized once.
 pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<Tile> {
-    render_pixels(strokes, scene, at)?.quantised()
+    render_pixels(strokes, scene, at)?.quantized()
 }
 
 /// The same before it is quantized; `None` if no stroke touches the tile.

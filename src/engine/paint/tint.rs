@@ -5,7 +5,7 @@ use super::brush::Brush;
 use super::dynamics::{DabInputs, Dynamics, Property};
 use crate::math::{
     hash,
-    srgb::{Color, quantise},
+    srgb::{Color, quantize},
 };
 
 /// Whether dabs of this brush differ in color.
@@ -33,7 +33,7 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     } else {
         [h, s, v]
     };
-    let [r, g, b] = rgb(lit).map(quantise);
+    let [r, g, b] = rgb(lit).map(quantize);
     Color { r, g, b, ..color }
 }
 
@@ -81,10 +81,10 @@ mod tests {
     use crate::paint::{ColorJitter, Curve, Dynamics, Input};
 
     #[test]
-    fn colours_go_to_hsv_and_back() {
+    fn colors_go_to_hsv_and_back() {
         for text in ["#000000", "#ffffff", "#ff0000", "#123456", "#fe01a0", "#80ff7f", "#0000ff"] {
             let color = Color::parse(text).unwrap();
-            let [r, g, b] = rgb(hsv(color)).map(quantise);
+            let [r, g, b] = rgb(hsv(color)).map(quantize);
             assert_eq!([r, g, b], [color.r, color.g, color.b], "{text}");
         }
     }
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn lightness_goes_to_white_and_black_by_way_of_the_colour() {
+    fn lightness_goes_to_white_and_black_by_way_of_the_color() {
         let lit = |by: f32| {
             let added = Curve::added(vec![vec2(0.0, by)]).unwrap();
             let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, added);
@@ -134,8 +134,8 @@ mod tests {
             .to_string()
         };
         assert_eq!([0.5, 0.25, -0.25, -0.5].map(lit), ["#ffffff", "#ff8080", "#800000", "#000000"]);
-        let grey = Curve::added(vec![vec2(0.0, 0.2)]).unwrap();
-        let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, grey);
+        let gray = Curve::added(vec![vec2(0.0, 0.2)]).unwrap();
+        let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, gray);
         let lit = of(&Brush { dynamics, ..Brush::default() }, Color::BLACK, &DabInputs::default());
         assert_eq!(lit.to_string(), "#333333");
     }

@@ -140,7 +140,7 @@ mod tests {
     const LINES: LineStyle = LineStyle { grain_px: 1.0, reach_px: 12.0 };
 
     #[test]
-    fn grey_changes_little_along_a_line_and_much_across() {
+    fn gray_changes_little_along_a_line_and_much_across() {
         let field = Plane::filled(Size::new(80, 60), vec2(0.6, 0.8));
         let lines = smeared_noise(&field, LINES, |_, _| true);
         assert!(mean_change(&lines, 3, 4) < 0.5 * mean_change(&lines, 4, 3));
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn the_noise_fills_the_greys_without_clipping_much() {
+    fn the_noise_fills_the_grays_without_clipping_much() {
         let lines = smeared_noise(&Plane::filled(Size::new(128, 128), Vec2::X), LINES, |_, _| true);
         let clipped = lines.values().iter().filter(|&&v| v <= 0.0 || v >= 1.0).count();
         assert!(clipped < 128 * 128 / 20, "{clipped}");

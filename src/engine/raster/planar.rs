@@ -4,7 +4,7 @@
 
 use super::tile::deep::{self, DeepRow};
 use super::tile::{TILE, TILE_AREA, Tile, TileF32};
-use crate::math::srgb::quantise;
+use crate::math::srgb::quantize;
 
 /// A premultiplied pixel brought into range: alpha in `[0, 1]`, colors in `[0, alpha]`, NaN 0.
 #[inline(always)]
@@ -116,9 +116,9 @@ impl PlanarTile {
     }
 
     /// Rounds to bytes; `None` where the tile is wholly transparent.
-    pub fn quantised(&self) -> Option<Tile> {
+    pub fn quantized(&self) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
-        quantise_rows(&self.rows, &mut bytes);
+        quantize_rows(&self.rows, &mut bytes);
         if bytes.chunks_exact(4).all(|p| p[3] == 0) {
             return None;
         }
@@ -136,10 +136,10 @@ impl PlanarTile {
     pub fn to_tile(&self, was_deep: bool) -> Option<Tile> {
         let put = |y: usize, deep: &mut DeepRow| {
             let PixelRow { rgb: [r, g, b], a } = &self.rows[y];
-            deep::quantise_row([r, g, b, a], deep);
+            deep::quantize_row([r, g, b, a], deep);
         };
         if self.rows.len() != TILE || !(was_deep || deep::is_soft(put)) {
-            return self.quantised();
+            return self.quantized();
         }
         let mut rows = deep::clear_rows();
         rows.iter_mut().enumerate().for_each(|(y, row)| put(y, row));
@@ -164,7 +164,7 @@ impl PixelRow {
 
 crate::widest! {
     /// Rounds rows to premultiplied bytes, `4 · TILE` a row.
-    fn quantise_rows(rows: &[PixelRow], bytes: &mut [u8]) {
+    fn quantize_rows(rows: &[PixelRow], bytes: &mut [u8]) {
         for (row, bytes) in rows.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
             let PixelRow { rgb: [r, g, b], a } = row;
             let mut packed = [0u32; TILE];
@@ -180,7 +180,7 @@ crate::widest! {
 
 #[inline(always)]
 fn byte(value: f32) -> u32 {
-    u32::from(quantise(value))
+    u32::from(quantize(value))
 }
 
 #[cfg(test)]
@@ -198,7 +198,7 @@ mod tests {
             .collect();
         let pixels: Box<TileF32> = pixels.into_boxed_slice().try_into().unwrap();
         let planar = PlanarTile::from_pixels(&pixels);
-        let tile = planar.quantised().unwrap();
+        let tile = planar.quantized().unwrap();
         for (i, p) in tile.bytes().chunks_exact(4).enumerate() {
             assert_eq!(p[3], byte(i, 3));
             assert_eq!(p[0], byte(i, 0).min(byte(i, 3)));
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn nan_and_colours_beyond_their_alpha_do_not_get_in() {
+    fn nan_and_colors_beyond_their_alpha_do_not_get_in() {
         let mut pixels = super::super::tile::transparent_f32();
         pixels[0] = [f32::NAN, f32::INFINITY, -1.0, 0.5];
         pixels[1] = [0.5, 0.5, 0.5, f32::NAN];

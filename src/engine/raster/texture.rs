@@ -102,8 +102,8 @@ impl Texture {
             Texels::Linear(t) => t
                 .par_iter()
                 .map(|&[r, g, b, a]| {
-                    let e = |v: f32| srgb::quantise(srgb::encode(v).min(1.0) * a);
-                    [e(r), e(g), e(b), srgb::quantise(a)]
+                    let e = |v: f32| srgb::quantize(srgb::encode(v).min(1.0) * a);
+                    [e(r), e(g), e(b), srgb::quantize(a)]
                 })
                 .collect(),
         };
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_level_is_the_mean_colour() {
+    fn the_last_level_is_the_mean_color() {
         let texels = (0..15).map(|i| [i * 16, 0, 0, 255]).collect();
         let t = Texture::new(&Picture::srgb8(Size::new(5, 3), texels).unwrap());
         let last = t.levels().last().unwrap();

@@ -4,7 +4,7 @@
 
 pub mod deep;
 
-use crate::math::{Rect, srgb::quantise};
+use crate::math::{Rect, srgb::quantize};
 use deep::DeepRow;
 use tiny_skia::Pixmap;
 
@@ -95,9 +95,9 @@ impl Tile {
     }
 
     /// Quantizes a tile; `None` if it is wholly transparent.
-    pub fn quantised(pixels: &TileF32) -> Option<Tile> {
+    pub fn quantized(pixels: &TileF32) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
-        quantise_pixels(pixels, &mut bytes);
+        quantize_pixels(pixels, &mut bytes);
         Tile::from_pixels(bytes)
     }
 
@@ -195,10 +195,10 @@ crate::widest! {
     }
 
     /// Rounds premultiplied f32 pixels to bytes; `bytes` holds four for each pixel.
-    pub fn quantise_pixels(pixels: &[[f32; 4]], bytes: &mut [u8]) {
+    pub fn quantize_pixels(pixels: &[[f32; 4]], bytes: &mut [u8]) {
         for (p, b) in pixels.iter().zip(bytes.chunks_exact_mut(4)) {
             for c in 0..4 {
-                b[c] = quantise(p[c]);
+                b[c] = quantize(p[c]);
             }
         }
     }
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_never_exceed_their_alpha() {
+    fn colors_never_exceed_their_alpha() {
         let tile = Tile::from_bytes([200, 100, 0, 128].repeat(TILE_AREA)).unwrap();
         assert_eq!(&tile.bytes()[..4], &[128, 100, 0, 128]);
         assert!(!tile.is_opaque());

@@ -25,7 +25,7 @@ use super::tile::{TILE, Tile, TileAt, TileF32, transparent_f32};
 use super::{Plane, TileGrid};
 use crate::math::fast::{max, min};
 use crate::math::plane_map::PixelMove;
-use crate::math::srgb::{quantise, quantise_deep};
+use crate::math::srgb::{quantize, quantize_deep};
 use crate::math::{Mat2, Rect, Size, Vec2};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -114,7 +114,7 @@ pub fn warped_tile_within(
         within_range(row, &mut pixels[y * TILE + x..][..row.len()]);
     });
     let is_deep = grid.is_deep_at(wanted);
-    let tile = if is_deep { Tile::from_deep(deep_rows(&pixels)) } else { Tile::quantised(&pixels) };
+    let tile = if is_deep { Tile::from_deep(deep_rows(&pixels)) } else { Tile::quantized(&pixels) };
     tile.map(Arc::new)
 }
 
@@ -125,7 +125,7 @@ fn deep_rows(pixels: &TileF32) -> Box<[DeepRow]> {
         pixels
             .iter()
             .enumerate()
-            .for_each(|(x, pixel)| deep::put(row, x, pixel.map(quantise_deep)));
+            .for_each(|(x, pixel)| deep::put(row, x, pixel.map(quantize_deep)));
     }
     rows
 }
@@ -232,7 +232,7 @@ impl<S: PixelSource> Warp<'_, S> {
     fn values(&self, block: Rect) -> Vec<(i32, i32, u8)> {
         let mut out = Vec::with_capacity(block.width() * block.height());
         self.block(block, &mut |x, y, row| {
-            out.extend((x..).zip(row).map(|(x, value)| (x, y, quantise(value[3]))));
+            out.extend((x..).zip(row).map(|(x, value)| (x, y, quantize(value[3]))));
         });
         out
     }

@@ -12,9 +12,9 @@ use std::sync::Arc;
 pub struct Light {
     /// Where it is.
     pub kind: LightKind,
-    /// Its colour; alpha is ignored.
+    /// Its color; alpha is ignored.
     pub color: Color,
-    /// Factor of the colour in linear light, `≥ 0`.
+    /// Factor of the color in linear light, `≥ 0`.
     pub intensity: f32,
 }
 
@@ -55,7 +55,7 @@ impl Default for Light {
 pub struct RowLight {
     /// ℓ, unit, camera space.
     pub direction: [RowValues; 3],
-    /// Colour × intensity, linear.
+    /// Color × intensity, linear.
     pub radiance: [f32; 3],
     stands: RowLightPosition,
     /// What is seen of it, if it casts shadows.

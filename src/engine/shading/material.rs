@@ -68,10 +68,10 @@ impl Model {
     }
 }
 
-/// One term of a material: weight × colour × ρ × light, scaled by its own σ.
+/// One term of a material: weight × color × ρ × light, scaled by its own σ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
-    /// Its colour; alpha is ignored.
+    /// Its color; alpha is ignored.
     pub color: Color,
     /// `≥ 0`; 0 leaves the term out.
     pub weight: f32,
@@ -93,7 +93,7 @@ impl Term {
         !self.scaling.is_none()
     }
 
-    /// Weight × colour in linear light.
+    /// Weight × color in linear light.
     pub fn linear(&self) -> [f32; 3] {
         self.color.linear().map(|c| c * self.weight)
     }
@@ -131,7 +131,7 @@ pub struct Shading {
     pub nv: f32,
     /// Light from all directions; absent: none.
     pub environment: Option<Environment>,
-    /// Lit sphere; if there is a concave one too, this one is for convex features. `None`: grey
+    /// Lit sphere; if there is a concave one too, this one is for convex features. `None`: gray
     /// clay.
     pub sphere: Option<LitSphere>,
     /// The lit sphere of concave features.
@@ -249,7 +249,7 @@ impl Shading {
         shading
     }
 
-    /// Whether it lights the picture beneath it in place of a colour of its own.
+    /// Whether it lights the picture beneath it in place of a color of its own.
     pub fn is_lighting_beneath(&self) -> bool {
         self.model == Model::Painter && self.painter.beneath
     }

@@ -9,7 +9,7 @@ settings! {
     pub struct Painter {
         /// w: how far the key reaches beyond the terminator.
         wrap: "Soft edge", "How far the lamp's light reaches around the form", 0.0..=1.0, 0.12;
-        /// Of the key: 1 is lamplight, 0 the lamp's own colour, negative cool.
+        /// Of the key: 1 is lamplight, 0 the lamp's own color, negative cool.
         warmth: "Key warmth", "1 is warm lamplight, 0 the lamp's own color, −1 cool", -4.0..=4.0, 1.0;
         /// Cool light from above.
         fill: "Fill", "Cool light from above", 0.0..=10.0, 1.0;
@@ -30,7 +30,7 @@ settings! {
         /// Factor of all light.
         exposure: "Exposure", "Factor of all light", 0.0..=8.0, 1.0;
         and
-        /// Whether the picture beneath is lit, not a colour of its own.
+        /// Whether the picture beneath is lit, not a color of its own.
         beneath: bool = false;
         /// Of the fill.
         fill_color: Color = Color::rgb(0xd8, 0xe4, 0xff);
@@ -52,7 +52,7 @@ impl Painter {
     pub const RIM: f32 = 0.55;
     /// Contact shade for each unit of what stands higher, at 1.
     pub const CONTACT: f32 = 0.4;
-    /// The colour's share that the turning edge replaces, at 1.
+    /// The color's share that the turning edge replaces, at 1.
     pub const EDGE: f32 = 0.25;
     /// What warmth adds to each channel of a lamp, at 1.
     pub const WARM: [f32; 3] = [0.06, 0.0, -0.1];

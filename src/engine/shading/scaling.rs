@@ -75,7 +75,7 @@ impl Scaling {
     /// E = e^(−γκ) of [`Scaling::sigma_fast`].
     #[inline(always)]
     pub fn exponential(self, kappa: f32) -> f32 {
-        // Both are read first: a choice between two addresses would prevent vectorisation of loops.
+        // Both are read first: a choice between two addresses would prevent vectorization of loops.
         let Scaling { gamma_convex, gamma_concave, .. } = self;
         let gamma = if kappa > 0.0 { gamma_convex } else { gamma_concave };
         fast::exp(-gamma * kappa)

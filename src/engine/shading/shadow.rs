@@ -22,7 +22,7 @@ settings! {
         and
         /// Whether lamps cast shadows at all.
         on: bool = false;
-        /// The light that is left in a shadow takes this colour; black lets none in.
+        /// The light that is left in a shadow takes this color; black lets none in.
         color: Color = Color::BLACK;
         /// Rays to each lamp.
         rays: u32 = 32;

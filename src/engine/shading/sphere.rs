@@ -1,4 +1,4 @@
-//! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that gives the colour of every
+//! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that gives the color of every
 //! normal. Floor 3.
 
 use crate::math::{Size, Vec2, Vec3, Vec3A, fast, srgb, vec2, vec3};
@@ -54,7 +54,7 @@ impl LitSphere {
         crate::memory::once(&self.light[times], make)
     }
 
-    /// Grey clay under a window at the upper left: the sphere of a layer that names none.
+    /// Gray clay under a window at the upper left: the sphere of a layer that names none.
     pub fn clay() -> &'static LitSphere {
         static CLAY: LazyLock<LitSphere> = LazyLock::new(|| LitSphere::new(String::new(), clay()));
         &CLAY
@@ -64,7 +64,7 @@ impl LitSphere {
 /// Linear light of a sphere by its projected normal.
 pub struct SphereLight {
     size: Size,
-    /// Beyond the disc the nearest colour inside is repeated, so that lookups at the rim never read
+    /// Beyond the disc the nearest color inside is repeated, so that lookups at the rim never read
     /// the picture's background. Each takes 16 bytes, so that one instruction reads it.
     texels: Vec<Vec3A>,
     /// The greatest luminance on the disc.
@@ -98,7 +98,7 @@ impl SphereLight {
         Self { size, texels, brightest: self.brightest }
     }
 
-    /// The colour at ½ + ½ n̄ of the picture, bilinear, linear light (MATH 5). `nbar`: image axes
+    /// The color at ½ + ½ n̄ of the picture, bilinear, linear light (MATH 5). `nbar`: image axes
     /// (y down), length ≤ 1.
     #[inline(always)]
     pub fn at(&self, nbar: Vec2) -> [f32; 3] {
@@ -161,7 +161,7 @@ crate::widest! {
     }
 }
 
-/// The texel if it lies on the disc, else the nearest toward the centre that does.
+/// The texel if it lies on the disc, else the nearest toward the center that does.
 fn nearest_inside(picture: &Picture, x: usize, y: usize) -> [f32; 3] {
     let (w, h) = (picture.size.width as f32, picture.size.height as f32);
     // In units of the disc's radius, which may differ along x and y as the picture's sides do.
@@ -183,7 +183,7 @@ fn clay() -> Picture {
         let n = vec3(u, v, (1.0 - u * u - v * v).max(0.0).sqrt()).normalize_or(Vec3::Z);
         let matt = 0.05 + 0.1 * (0.5 + 0.5 * n.dot(sky)) + 0.55 * n.dot(key).max(0.0);
         let gloss = 0.25 * (key + Vec3::Z).normalize_or(Vec3::Z).dot(n).max(0.0).powf(40.0);
-        let byte = |tint: f32| srgb::quantise(srgb::encode(matt * tint + gloss));
+        let byte = |tint: f32| srgb::quantize(srgb::encode(matt * tint + gloss));
         [byte(1.0), byte(0.97), byte(0.93), 255]
     };
     let texels = (0..SIDE * SIDE).map(|i| color(i % SIDE, i / SIDE)).collect();

@@ -1,11 +1,11 @@
-//! Flats: drawings in flat colours, which areas they have, and whose pixels are whose. Floor 3. Not
+//! Flats: drawings in flat colors, which areas they have, and whose pixels are whose. Floor 3. Not
 //! here: how parts are made of them (`document::parts::from_flats`).
 //!
 //! `shares` says what each pixel is of: `picture` reads areas and mixed pixels, `palette` finds the
-//! colours, `ink` takes lines out, and `complete` gives what is left to the areas beside it.
+//! colors, `ink` takes lines out, and `complete` gives what is left to the areas beside it.
 //! `lifted_ink` takes the lines off the picture, `area_names` gives areas names. `places` tells the
-//! areas of one colour apart, `beneath` continues them under nearer ones;
-//! `areas` has walks over pixels, and `color_distance` says which colours are one.
+//! areas of one color apart, `beneath` continues them under nearer ones;
+//! `areas` has walks over pixels, and `color_distance` says which colors are one.
 
 pub mod area_names;
 pub mod areas;

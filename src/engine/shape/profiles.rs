@@ -10,7 +10,7 @@ use crate::raster::Plane;
 /// One shading of the drawing.
 pub struct ShadedDrawing {
     /// Linear light, `[0, 1]`.
-    pub grey: Plane<f32>,
+    pub gray: Plane<f32>,
     /// Unit, toward the light, camera space (y up).
     pub light: Vec3,
 }
@@ -37,9 +37,9 @@ const CLIPPED: (f32, f32) = (0.0016, 0.9984);
 /// equation is n·z ≥ 0, held faintly). `None` where the planes differ in size or there are fewer
 /// than two or more than five.
 pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormals> {
-    let size = profiles.first()?.grey.size();
+    let size = profiles.first()?.gray.size();
     let fits = (2..=MOST_PROFILES).contains(&profiles.len())
-        && profiles.iter().all(|p| p.grey.size() == size);
+        && profiles.iter().all(|p| p.gray.size() == size);
     if !fits {
         return None;
     }
@@ -54,8 +54,8 @@ pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormal
 /// ρn and the residual at a pixel; zero where they are unknown.
 fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     let told = |p: &&ShadedDrawing| {
-        let grey = p.grey.at(x, y);
-        grey > CLIPPED.0 && grey < CLIPPED.1
+        let gray = p.gray.at(x, y);
+        gray > CLIPPED.0 && gray < CLIPPED.1
     };
     let used: Vec<&ShadedDrawing> = profiles.iter().filter(told).collect();
     if used.len() < profiles.len().min(3) {
@@ -63,11 +63,11 @@ fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     }
     let outer = |l: Vec3| Mat3::from_cols(l * l.x, l * l.y, l * l.z);
     let mut normal = used.iter().fold(Mat3::ZERO, |m, p| m + outer(p.light));
-    let mut right = used.iter().fold(Vec3::ZERO, |v, p| v + p.light * p.grey.at(x, y));
+    let mut right = used.iter().fold(Vec3::ZERO, |v, p| v + p.light * p.gray.at(x, y));
     if used.len() < 3 {
         // Two planes meet in a line: the point of it that is nearest to the viewer's direction.
         const FAINT: f32 = 1e-3;
-        let mean = used.iter().map(|p| p.grey.at(x, y)).sum::<f32>() / used.len() as f32;
+        let mean = used.iter().map(|p| p.gray.at(x, y)).sum::<f32>() / used.len() as f32;
         normal += FAINT * outer(Vec3::Z);
         right += FAINT * mean * Vec3::Z;
     }
@@ -78,7 +78,7 @@ fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     if !found.is_finite() || found.length() < 1e-6 {
         return (Vec3::ZERO, 0.0);
     }
-    let left = used.iter().map(|p| (p.grey.at(x, y) - found.dot(p.light)).powi(2)).sum::<f32>();
+    let left = used.iter().map(|p| (p.gray.at(x, y) - found.dot(p.light)).powi(2)).sum::<f32>();
     (found, (left / used.len() as f32).sqrt())
 }
 
@@ -124,7 +124,7 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
 
 /// The size of all shadings; `None` if there are none.
 pub fn size_of(profiles: &[ShadedDrawing]) -> Option<Size> {
-    profiles.first().map(|p| p.grey.size())
+    profiles.first().map(|p| p.gray.size())
 }
 
 #[cfg(test)]
@@ -144,7 +144,7 @@ mod tests {
     fn five_shadings_of_a_ball_give_its_normals_back_and_shadows_hardly_harm_them() {
         let ball = Primitive::new(Body::Sphere, vec2(60.0, 60.0), 55.0).form(1 << 16).unwrap();
         let shaded = |light: Vec3| ShadedDrawing {
-            grey: ball.normals.map(|n| (0.8 * n.dot(light)).max(0.0).min(1.0)),
+            gray: ball.normals.map(|n| (0.8 * n.dot(light)).max(0.0).min(1.0)),
             light,
         };
         let profiles: Vec<ShadedDrawing> = lights().into_iter().map(shaded).collect();
@@ -175,9 +175,9 @@ mod tests {
         let n = vec3(0.3, 0.2, 0.9).normalize();
         let mut profiles: Vec<ShadedDrawing> = lights()
             .into_iter()
-            .map(|light| ShadedDrawing { grey: Plane::filled(size, 0.7 * n.dot(light)), light })
+            .map(|light| ShadedDrawing { gray: Plane::filled(size, 0.7 * n.dot(light)), light })
             .collect();
-        profiles[0].grey.set(2, 2, 0.9);
+        profiles[0].gray.set(2, 2, 0.9);
         let found = normals_from_profiles(&profiles).unwrap();
         assert!(found.residual.at(2, 2) > 0.05 && found.residual.at(0, 0) < 1e-4);
         assert!(normals_from_profiles(&profiles[..1]).is_none());

@@ -283,7 +283,7 @@ fn a_form_moves_with_its_outline_byte_for_byte() {
 }
 
 #[test]
-fn a_part_that_is_joined_runs_level_into_its_neighbour() {
+fn a_part_that_is_joined_runs_level_into_its_neighbor() {
     let w = 20.0f32;
     let corners =
         [vec2(2.0, 2.0), vec2(202.0, 2.0), vec2(202.0, 2.0 + 2.0 * w), vec2(2.0, 2.0 + 2.0 * w)];

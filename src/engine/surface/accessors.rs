@@ -17,8 +17,8 @@ impl Surface {
         for pixel in self.contours.pixels() {
             let (x, y) = (pixel.x as usize, pixel.y as usize);
             match (pixel.is_own_on_surface(), pixel.is_other_on_surface()) {
-                (true, false) => shares.set(x, y, quantise(pixel.share)),
-                (false, true) => shares.set(x, y, quantise(1.0 - pixel.share)),
+                (true, false) => shares.set(x, y, quantize(pixel.share)),
+                (false, true) => shares.set(x, y, quantize(1.0 - pixel.share)),
                 _ => (),
             }
         }

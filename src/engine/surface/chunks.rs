@@ -56,7 +56,7 @@ pub struct BallPlace {
 /// A seed: where a chunk lies on the surface, and on the ball.
 #[derive(Clone, Copy, Debug)]
 struct Seed {
-    /// Its pixel, px between corners of the canvas: the pixel's centre.
+    /// Its pixel, px between corners of the canvas: the pixel's center.
     at: Vec2,
     /// From places on the canvas to those on the ball's square, px, where chunks are not bent.
     offset: Vec2,

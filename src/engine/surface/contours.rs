@@ -49,16 +49,16 @@ pub struct ContourPixel {
     /// Which pixels of the window around it belong to the other population's piece of surface; none
     /// where it sees no surface.
     others: u64,
-    /// The middle of what the other population sees, from the pixel's centre, px: what is read for
+    /// The middle of what the other population sees, from the pixel's center, px: what is read for
     /// it is read there.
     other_at: Vec2,
-    /// How n̄ differs in the middle of what its own population sees from the pixel's centre.
+    /// How n̄ differs in the middle of what its own population sees from the pixel's center.
     own_turn: Vec2,
 }
 
 impl ContourPixel {
     /// The unit normal (camera space) in the middle of what the pixel's own population sees, from
-    /// that at its centre.
+    /// that at its center.
     pub fn own_normal(&self, center: Vec3) -> Vec3 {
         if self.own_turn == Vec2::ZERO || center.z <= 0.0 {
             return center;

@@ -165,7 +165,7 @@ impl<'a> Deformation<'a> {
     }
 
     /// The center of a pixel of the canvas.
-    fn centre(&self, x: i32, y: i32) -> Vec2 {
+    fn center(&self, x: i32, y: i32) -> Vec2 {
         vec2(x.wrapping_sub(self.origin.0) as f32, y.wrapping_sub(self.origin.1) as f32) + 0.5
     }
 
@@ -186,7 +186,7 @@ impl<'a> Deformation<'a> {
     ///
     /// MATH 2 (SF eq. 13, 15): `D(q) = q + Σ_i w_i(q) [ offset_i(q) + (s_i − q_i) ]`. Canvas px.
     pub fn at(&self, x: i32, y: i32) -> Vec2 {
-        let q = self.centre(x, y);
+        let q = self.center(x, y);
         if let Some((planes, (_, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
             return self.within_reach(q, planes.at(x, y));
         }
@@ -209,7 +209,7 @@ impl<'a> Deformation<'a> {
     ///
     /// `J = I + Σ_i [ w_i ∂offset_i/∂q + (offset_i + s_i − q_i) ∇w_iᵀ ]`.
     pub fn jacobian(&self, x: i32, y: i32) -> Mat2 {
-        let q = self.centre(x, y);
+        let q = self.center(x, y);
         if let Some((planes, (surface, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
             let near = DifferencePairs::linked(surface, x, y);
             let rows = [near.slope(|x, y| planes.at(x, y).x), near.slope(|x, y| planes.at(x, y).y)];
@@ -296,11 +296,11 @@ impl<'a> Deformation<'a> {
             Some(far) if y >= 0 => {
                 for (x, (q_x, q_y)) in (x..).zip(q_x.iter_mut().zip(q_y)) {
                     let (x, y) = far.canvas_pixel(x.max(0), y);
-                    (*q_x, *q_y) = self.centre(x, y).into();
+                    (*q_x, *q_y) = self.center(x, y).into();
                 }
             }
             _ => {
-                let first = self.centre(x, y);
+                let first = self.center(x, y);
                 q_x.iter_mut().enumerate().for_each(|(k, q)| *q = first.x + k as i32 as f32);
                 q_y.fill(first.y);
             }

@@ -40,7 +40,7 @@ pub fn depth_from_normals_while(
     if !go_on() {
         return None;
     }
-    centre_pieces(&mut heights, inside);
+    center_pieces(&mut heights, inside);
     let held = || heights.iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
     let (near, far) = held().fold(None, |r: Option<(f32, f32)>, z| {
         Some(r.map_or((z, z), |(a, b)| (a.min(z), b.max(z))))
@@ -68,7 +68,7 @@ fn heights(solver: &PoissonSolver, slopes: &Slopes, go_on: GoOn) -> Vec<f32> {
 }
 
 /// Gives every connected piece the mean 0: the equations leave a free constant per piece.
-fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
+fn center_pieces(heights: &mut [f32], inside: &Plane<bool>) {
     let (w, n) = (inside.width(), heights.len());
     let mut seen: Vec<bool> = inside.values().iter().map(|i| !i).collect();
     // Room for the largest piece there can be, so that it does not grow in steps; 32 bits count the

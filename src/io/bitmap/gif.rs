@@ -50,8 +50,8 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let mut pixels = vec![[0u8; 4]; area];
     for (row, line) in rows(h, frame.is_interlaced).zip(indices[..filled].chunks(w.max(1))) {
         for (i, &index) in line.iter().enumerate() {
-            let colour = frame.palette.as_chunks::<3>().0.get(usize::from(index));
-            if let (Some(&[r, g, b]), true) = (colour, frame.clear != Some(index)) {
+            let color = frame.palette.as_chunks::<3>().0.get(usize::from(index));
+            if let (Some(&[r, g, b]), true) = (color, frame.clear != Some(index)) {
                 pixels[(y + row) * size.width as usize + x + i] = [r, g, b, 255];
             }
         }

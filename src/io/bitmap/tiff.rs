@@ -24,7 +24,7 @@ use tiff::{ColorType, TiffError};
 /// The meaning of a pixel's samples, without extra samples.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ColorModel {
-    Grey,
+    Gray,
     /// Gray, 0 being white.
     Ink,
     Palette,
@@ -38,7 +38,7 @@ impl ColorModel {
     fn of(photometric: u16) -> Option<Self> {
         Some(match photometric {
             0 => ColorModel::Ink,
-            1 => ColorModel::Grey,
+            1 => ColorModel::Gray,
             2 => ColorModel::Rgb,
             3 => ColorModel::Palette,
             5 => ColorModel::Cmyk,
@@ -47,9 +47,9 @@ impl ColorModel {
         })
     }
 
-    fn colours(self) -> usize {
+    fn colors(self) -> usize {
         match self {
-            ColorModel::Grey | ColorModel::Ink | ColorModel::Palette => 1,
+            ColorModel::Gray | ColorModel::Ink | ColorModel::Palette => 1,
             ColorModel::Rgb | ColorModel::YCbCr => 3,
             ColorModel::Cmyk => 4,
         }
@@ -76,7 +76,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
     // The crate reads palettes and white-is-zero with alpha as plain gray. Their meaning is
     // restored here.
-    let as_grey = match meaning {
+    let as_gray = match meaning {
         ColorModel::Palette | ColorModel::Ink => Some(entry.with_value(bytes, 1)),
         _ => None,
     };
@@ -84,7 +84,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let most = usize::try_from(budget.area_px.saturating_mul(16)).unwrap_or(usize::MAX);
     let mut limits = Limits::default();
     (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (most, most);
-    let cursor = Cursor::new(as_grey.as_deref().unwrap_or(bytes));
+    let cursor = Cursor::new(as_gray.as_deref().unwrap_or(bytes));
     let mut decoder = Decoder::new(cursor).map_err(failed)?.with_limits(limits.clone());
     let (width, height) = decoder.dimensions().map_err(failed)?;
     let size = budget.size(file, width.into(), height.into())?;
@@ -105,14 +105,14 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     }
     parts(file, &mut decoder)?;
     let unpacked =
-        unpack::readable(file, as_grey.as_deref().unwrap_or(bytes), &mut decoder, budget)?;
+        unpack::readable(file, as_gray.as_deref().unwrap_or(bytes), &mut decoder, budget)?;
     if let Some(unpacked) = &unpacked {
         decoder = Decoder::new(Cursor::new(&unpacked[..])).map_err(failed)?.with_limits(limits);
     }
     let extra =
         decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
     let alpha = match extra.first() {
-        _ if samples(color) <= meaning.colours() => AlphaKind::None,
+        _ if samples(color) <= meaning.colors() => AlphaKind::None,
         Some(1) => AlphaKind::Associated,
         Some(2) => AlphaKind::Straight,
         None if meaning == ColorModel::Rgb => AlphaKind::Straight,
@@ -279,7 +279,7 @@ impl TiffLayout {
                 T::rgb_of_ycbcr(pixels).and_then(|rgb| T::image(self.size, channels, rgb))
             }
             ColorModel::Cmyk => T::image(self.size, channels - 1, self.printed(pixels)),
-            ColorModel::Grey | ColorModel::Ink | ColorModel::Rgb => {
+            ColorModel::Gray | ColorModel::Ink | ColorModel::Rgb => {
                 T::image(self.size, channels, self.straight(pixels))
             }
         }
@@ -287,7 +287,7 @@ impl TiffLayout {
     }
 
     fn channels(&self) -> usize {
-        self.meaning.colours() + usize::from(self.alpha != AlphaKind::None)
+        self.meaning.colors() + usize::from(self.alpha != AlphaKind::None)
     }
 
     /// The colors and the alpha of each pixel in turn, further samples left out; `None` where
@@ -309,13 +309,13 @@ impl TiffLayout {
     /// Converts to additive colors that are not multiplied by alpha.
     fn straight<T: TiffSample>(&self, mut pixels: Vec<T>) -> Vec<T> {
         for pixel in pixels.chunks_exact_mut(self.channels()) {
-            let (colours, alpha) = pixel.split_at_mut(self.meaning.colours());
-            for colour in colours {
+            let (colors, alpha) = pixel.split_at_mut(self.meaning.colors());
+            for color in colors {
                 if self.meaning == ColorModel::Ink {
-                    *colour = colour.inverted();
+                    *color = color.inverted();
                 }
                 if let (AlphaKind::Associated, Some(alpha)) = (self.alpha, alpha.first()) {
-                    *colour = colour.divided(*alpha);
+                    *color = color.divided(*alpha);
                 }
             }
         }
@@ -337,13 +337,13 @@ impl TiffLayout {
         let count = self.map.len() / 3;
         // Some programs wrote bytes where 16 bits are meant.
         let shift = if self.map.iter().any(|v| *v > 255) { 8 } else { 0 };
-        let colour = |i: usize, c: usize| {
+        let color = |i: usize, c: usize| {
             self.map.get(c * count + i.min(count - 1)).map_or(0, |v| (v >> shift) as u8)
         };
         let rgba = |pixel: &[T]| {
             let (index, alpha) =
                 (pixel[0].index(), pixel.get(1).map_or(255, |a| a.index().min(255) as u8));
-            [colour(index, 0), colour(index, 1), colour(index, 2), alpha]
+            [color(index, 0), color(index, 1), color(index, 2), alpha]
         };
         let out = pixels
             .chunks_exact(self.channels())

@@ -283,7 +283,7 @@ fn sampled(record: &mut ByteCursor, size: Size, bits: u16, compression: u8) -> O
         width: size.width as usize,
         height: size.height as usize,
         bits,
-        is_colour: true,
+        is_color: true,
         large: false,
     };
     // Of Photoshop's compressions, tips use only plain rows and run lengths.

@@ -72,7 +72,7 @@ pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<Gbr
 #[derive(Clone, Copy, PartialEq)]
 enum GbrDepth {
     /// A byte of coverage.
-    Grey,
+    Gray,
     /// Straight colors.
     Rgba,
     /// CinePaint's: the upper half of a 32-bit float.
@@ -82,7 +82,7 @@ enum GbrDepth {
 impl GbrDepth {
     fn of(version: u32, kind: u32) -> Option<Self> {
         match (version, kind) {
-            (1 | 2, 1) => Some(GbrDepth::Grey),
+            (1 | 2, 1) => Some(GbrDepth::Gray),
             (1 | 2, 4) => Some(GbrDepth::Rgba),
             (3, 18) => Some(GbrDepth::Half),
             _ => None,
@@ -91,7 +91,7 @@ impl GbrDepth {
 
     fn bytes(self) -> usize {
         match self {
-            GbrDepth::Grey => 1,
+            GbrDepth::Gray => 1,
             GbrDepth::Half => 2,
             GbrDepth::Rgba => 4,
         }
@@ -100,14 +100,14 @@ impl GbrDepth {
 
 /// Coverage becomes an opaque gray, which is how tips distinguish it from colors.
 fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
-    let grey = |v: u8| [v, v, v, 255];
+    let gray = |v: u8| [v, v, v, 255];
     match depth {
-        GbrDepth::Grey => bytes.iter().map(|&v| grey(v)).collect(),
+        GbrDepth::Gray => bytes.iter().map(|&v| gray(v)).collect(),
         GbrDepth::Rgba => bytes.as_chunks().0.to_vec(),
         GbrDepth::Half => {
             let value = |&[high, low]: &[u8; 2]| f32::from_be_bytes([high, low, 0, 0]);
             let byte = |v: f32| (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8;
-            bytes.as_chunks().0.iter().map(|half| grey(byte(value(half)))).collect()
+            bytes.as_chunks().0.iter().map(|half| gray(byte(value(half)))).collect()
         }
     }
 }

@@ -52,7 +52,7 @@ fn ramp(n: usize) -> Vec<u8> {
 }
 
 #[test]
-fn a_grey_gimp_brush_is_coverage_as_large_as_it_is() {
+fn a_gray_gimp_brush_is_coverage_as_large_as_it_is() {
     let brush = only("b.gbr", &gbr("Round Fuzzy", 3, 2, 1, 20, &[0, 10, 20, 30, 40, 255]));
     assert_eq!(brush.name, "Round Fuzzy");
     assert_eq!((brush.brush.size, brush.brush.spacing), (3.0, 0.2));
@@ -63,7 +63,7 @@ fn a_grey_gimp_brush_is_coverage_as_large_as_it_is() {
 }
 
 #[test]
-fn colours_and_older_and_newer_versions_are_read_too() {
+fn colors_and_older_and_newer_versions_are_read_too() {
     let colored = only("b.gbr", &gbr("Pepper", 1, 2, 4, 100, &[1, 2, 3, 4, 5, 6, 7, 8]));
     assert_eq!(texels(&tips(&colored)[0]), [[1, 2, 3, 4], [5, 6, 7, 8]]);
     let first = [&words(&[20 + 4, 1, 2, 1, 1])[..], b"Old\0", &[9, 200]].concat();
@@ -86,7 +86,7 @@ fn colours_and_older_and_newer_versions_are_read_too() {
 }
 
 #[test]
-fn a_grey_brush_before_a_pattern_takes_its_colours() {
+fn a_gray_brush_before_a_pattern_takes_its_colors() {
     let brush = gbr("P", 2, 1, 1, 10, &[100, 200]);
     let pattern =
         [&words(&[24 + 2, 1, 2, 1, 3])[..], b"GPAT", b"x\0", &[1, 2, 3, 4, 5, 6]].concat();

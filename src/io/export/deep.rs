@@ -6,7 +6,7 @@ use crate::document::{
     Document, Highlights, Progress, flatten, flatten_deep, flatten_rounding_once,
 };
 use crate::math::{Size, srgb};
-use crate::project::Cancellable;
+use crate::project::Cancelable;
 use crate::{Budget, Error, Result};
 use image::DynamicImage;
 use std::io::Cursor;
@@ -20,7 +20,7 @@ pub fn encode_document(
     options: &ExportOptions,
     budget: &Budget,
     progress: &Progress,
-) -> Cancellable<Vec<u8>> {
+) -> Cancelable<Vec<u8>> {
     let format = ExportFormat::of(file)?;
     if format.bits(file, options.bits)? == 8 {
         // Without room for textures of floats, layers are rounded to bytes one by one, as on the
@@ -50,7 +50,7 @@ pub(super) fn flattened(
     highlights: Highlights,
     budget: &Budget,
     progress: &Progress,
-) -> Cancellable<Vec<[f32; 4]>> {
+) -> Cancelable<Vec<[f32; 4]>> {
     let asked =
         document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64 + document.deep_bytes();
     budget.room(file, "a picture of more than 8 bits", asked)?;

@@ -5,7 +5,7 @@
 use super::deep::{flattened, light};
 use crate::document::{Document, Highlights, Progress};
 use crate::math::Size;
-use crate::project::Cancellable;
+use crate::project::Cancelable;
 use crate::{Budget, Error, Result};
 use exr::prelude::*;
 use std::collections::BTreeSet;
@@ -21,7 +21,7 @@ pub fn encode(
     bits: u8,
     budget: &Budget,
     progress: &Progress,
-) -> Cancellable<Vec<u8>> {
+) -> Cancelable<Vec<u8>> {
     let Some(document) = document.reshaped_with_progress(progress) else { return Ok(None) };
     let size = document.size;
     let seen = |document: &Document| flattened(file, document, Highlights::Kept, budget, progress);

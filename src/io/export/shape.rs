@@ -4,7 +4,7 @@
 use super::OutputFile;
 use crate::Terms;
 use crate::exr::encode_channels;
-use crate::math::{Size, srgb::quantise};
+use crate::math::{Size, srgb::quantize};
 use crate::surface::Surface;
 use crate::{Error, Result};
 use image::codecs::png::PngEncoder;
@@ -112,7 +112,7 @@ pub fn encode(
     let count = surface.size().area();
     match map {
         ShapeMap::Mask => {
-            let bytes: Vec<u8> = (0..count).map(|i| quantise(texel(i).1)).collect();
+            let bytes: Vec<u8> = (0..count).map(|i| quantize(texel(i).1)).collect();
             png(file, &bytes, surface.size(), ExtendedColorType::L8)
         }
         // Numbers are not shades: no bit may be lost, and most programs show 16 bits.
@@ -127,7 +127,7 @@ pub fn encode(
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::Rgba16)
         }
         ShapeMap::Normals => {
-            let bytes = (0..count).map(texel).flat_map(|([r, g, b], a)| [r, g, b, a].map(quantise));
+            let bytes = (0..count).map(texel).flat_map(|([r, g, b], a)| [r, g, b, a].map(quantize));
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::Rgba8)
         }
         ShapeMap::Depth | ShapeMap::Height if options.is_deep => {
@@ -136,7 +136,7 @@ pub fn encode(
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::La16)
         }
         ShapeMap::Depth | ShapeMap::Height => {
-            let bytes = (0..count).map(texel).flat_map(|([v, ..], a)| [v, a].map(quantise));
+            let bytes = (0..count).map(texel).flat_map(|([v, ..], a)| [v, a].map(quantize));
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::La8)
         }
     }

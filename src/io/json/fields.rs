@@ -1,6 +1,7 @@
 //! Reading values out of JSON: every value knows its path, so that every refusal can name it.
 //! Floor 5. Ranges are checked here, so that everything that was read is valid.
 
+use crate::math::named::{current_name, former_name};
 use crate::math::{COORDINATE, Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
 use serde_json::{Map, Value};
@@ -199,10 +200,11 @@ impl<'a> JsonNode<'a> {
         })
     }
 
-    /// One of the names of a table.
+    /// One of the names of a table, which may be spelled as it was in version 0.1.
     pub fn one_of<T: Copy>(&self, table: &[(T, &str)]) -> Result<T> {
         let text = self.text()?;
-        let found = table.iter().find(|(_, name)| *name == text).map(|(value, _)| *value);
+        let current = current_name(text);
+        let found = table.iter().find(|(_, name)| *name == current).map(|(value, _)| *value);
         found.ok_or_else(|| {
             let names: Vec<_> = table.iter().map(|(_, name)| *name).collect();
             self.refused(format!("is “{text}”; it must be one of {}", names.join(", ")))
@@ -224,8 +226,11 @@ impl<'a> Fields<'a> {
         &self.node
     }
 
-    /// A field, where it is there.
+    /// A field, where it is there; its name may be spelled as it was in version 0.1.
     pub fn get(&mut self, name: &'static str) -> Option<JsonNode<'a>> {
+        let is_there = |name: &&str| self.map.contains_key(*name);
+        let former = former_name(name).filter(is_there).filter(|_| !is_there(&name));
+        let name = former.unwrap_or(name);
         self.known.push(name);
         self.map.get(name).map(|value| self.below(name, value))
     }

@@ -29,7 +29,7 @@ pub fn given_mask(
                 Some(_) => {
                     let stored =
                         stored::load(&path, &bytes, channel.as_deref(), MapRole::Mask, budget)?;
-                    stored.channels[0].map(srgb::quantise)
+                    stored.channels[0].map(srgb::quantize)
                 }
             };
             findings.given("mask", "file");
@@ -91,7 +91,7 @@ pub fn alpha(
     let alpha =
         maps.iter().find_map(|m| m.alpha.as_ref().filter(|_| !encoding::has_x_in_alpha(m)))?;
     findings.found("mask", "alpha", 0.95);
-    Some(alpha.map(srgb::quantise))
+    Some(alpha.map(srgb::quantize))
 }
 
 /// Notes where the mask came from, and a border that looks like background but does not count as

@@ -32,7 +32,7 @@ pub fn read(
     coverage: Option<&Plane<u8>>,
     findings: &mut Findings,
 ) -> Result<RawDepth> {
-    if stored.colours() >= 3 && !stored.is_grey(if stored.lossy { 0.05 } else { 0.004 }) {
+    if stored.colors() >= 3 && !stored.is_gray(if stored.lossy { 0.05 } else { 0.004 }) {
         let reason = "the picture is colored; depth is one gray channel (name one with “channel”)";
         return Err(Error::decode(&stored.file, reason));
     }
@@ -191,7 +191,7 @@ pub fn planar(
     let size = values.size();
     let fov = overrides.fov_degrees.or(stored.fov_degrees);
     let focal_px = fov.map(|f| size.width as f32 * 0.5 / (f.to_radians() * 0.5).tan());
-    let centre = size.center();
+    let center = size.center();
     values.updated(|x, y, v| {
         match encoding {
             DepthEncoding::Inverse if v.abs() < 1e-12 => f32::NAN,
@@ -206,7 +206,7 @@ pub fn planar(
             }
             _ if near_high && encoding != DepthEncoding::RayDistance => -v,
             DepthEncoding::RayDistance => focal_px.map_or(v.abs(), |f| {
-                let (u, w) = ((x as f32 + 0.5 - centre.x) / f, (y as f32 + 0.5 - centre.y) / f);
+                let (u, w) = ((x as f32 + 0.5 - center.x) / f, (y as f32 + 0.5 - center.y) / f);
                 v.abs() / (1.0 + u * u + w * w).sqrt()
             }),
             _ => v,
@@ -265,7 +265,7 @@ pub struct NormalizedDepth {
 /// * `inside`: pixels with a depth of their own. Partly covered ones that hold the background's
 ///   value join the range where that value carries on from the surface's (a map whose far end is
 ///   the background's), and get no depth.
-pub fn normalise(
+pub fn normalize(
     planar: Plane<f32>,
     inside: &Plane<bool>,
     coverage: &Plane<u8>,

@@ -51,7 +51,7 @@ pub fn choose(
 ) -> Result<TexelReading> {
     let texels: Vec<[f32; 4]> = samples.iter().map(|&i| stored.texel(i)).collect();
     let shape = TexelStats::of(stored, &texels);
-    refuse_grey(stored, overrides, &shape)?;
+    refuse_gray(stored, overrides, &shape)?;
     let signed_pair = shape.least < -0.02;
     let encodings: Vec<NormalEncoding> = match overrides.encoding {
         Some(encoding) => vec![encoding],
@@ -123,8 +123,8 @@ struct TexelStats {
     /// Largest minus smallest number of each channel.
     spread: [f32; 4],
     /// Share of alpha values strictly between clear and opaque.
-    grey_alpha: f32,
-    grey: bool,
+    gray_alpha: f32,
+    gray: bool,
 }
 
 impl TexelStats {
@@ -134,26 +134,26 @@ impl TexelStats {
         };
         let low: [f32; 4] = std::array::from_fn(|c| fold(c, f32::INFINITY, f32::min));
         let high: [f32; 4] = std::array::from_fn(|c| fold(c, f32::NEG_INFINITY, f32::max));
-        let channels = stored.colours().clamp(1, 3);
+        let channels = stored.colors().clamp(1, 3);
         let between = texels.iter().filter(|t| t[3] > 0.02 && t[3] < 0.98).count();
         Self {
             least: low[..channels].iter().copied().fold(f32::INFINITY, f32::min),
             most: high[..channels].iter().copied().fold(f32::NEG_INFINITY, f32::max),
             spread: std::array::from_fn(|c| high[c] - low[c]),
-            grey_alpha: if stored.channels.len() == 4 {
+            gray_alpha: if stored.channels.len() == 4 {
                 between as f32 / texels.len().max(1) as f32
             } else {
                 0.0
             },
-            grey: stored.colours() == 1
-                || (stored.colours() == 3 && stored.is_grey(if stored.lossy { 0.02 } else { 0.0 })),
+            gray: stored.colors() == 1
+                || (stored.colors() == 3 && stored.is_gray(if stored.lossy { 0.02 } else { 0.0 })),
         }
     }
 
     /// x in alpha, y in green, nothing in red and blue (or green repeated in them).
     fn is_dxt5nm(&self) -> bool {
         let still = |c: usize| self.spread[c] < 0.01;
-        self.grey_alpha > 0.5 && self.spread[3] > 0.1 && ((still(0) && still(2)) || self.grey)
+        self.gray_alpha > 0.5 && self.spread[3] > 0.1 && ((still(0) && still(2)) || self.gray)
     }
 }
 
@@ -180,11 +180,11 @@ fn plausible(stored: &StoredMap, shape: &TexelStats) -> Vec<NormalEncoding> {
     }
 }
 
-fn refuse_grey(stored: &StoredMap, overrides: &NormalConvention, shape: &TexelStats) -> Result<()> {
+fn refuse_gray(stored: &StoredMap, overrides: &NormalConvention, shape: &TexelStats) -> Result<()> {
     let told_pair = matches!(overrides.encoding, Some(NormalEncoding::Dxt5nm));
     // A picture of one value is a flat map or no map at all.
     let varies = shape.spread[..3].iter().any(|&s| s > 0.02);
-    if stored.colours() == 1 || (shape.grey && varies && !told_pair && !shape.is_dxt5nm()) {
+    if stored.colors() == 1 || (shape.gray && varies && !told_pair && !shape.is_dxt5nm()) {
         let reason = "the picture is gray; a normal map has at least two different channels (is it the depth map?)";
         return Err(Error::decode(&stored.file, reason));
     }

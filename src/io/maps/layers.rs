@@ -76,8 +76,8 @@ const MOST_LENGTH_ERROR: f64 = 0.1;
 /// whether they are vectors of length 1, as stored or about ½. Other layers are judged by their
 /// names.
 fn can_be_normals(exr: &ExrFile, pass: &ExrPass) -> bool {
-    let colours = pass.letters("rgb").filter(|_| pass.letters("xyz").is_none());
-    let Some(colours) = colours.filter(|_| normal_rank(pass).is_some_and(|rank| rank > SURE_RANK))
+    let colors = pass.letters("rgb").filter(|_| pass.letters("xyz").is_none());
+    let Some(colors) = colors.filter(|_| normal_rank(pass).is_some_and(|rank| rank > SURE_RANK))
     else {
         return true;
     };
@@ -85,7 +85,7 @@ fn can_be_normals(exr: &ExrFile, pass: &ExrPass) -> bool {
     let step = bands.len().div_ceil(MOST_BANDS).max(1);
     let (mut signed, mut biased, mut count) = (0.0, 0.0, 0u32);
     for rows in bands.into_iter().step_by(step) {
-        let Ok(planes) = exr.read_rows(&colours, rows) else { return false };
+        let Ok(planes) = exr.read_rows(&colors, rows) else { return false };
         let [x, y, z] = [0, 1, 2].map(|c| planes[c].values());
         for ((x, y), z) in x.iter().zip(y).zip(z) {
             let v = vec3(*x, *y, *z);

@@ -93,7 +93,7 @@ fn load_bitmap(
         2 => Some(1.0 / 65535.0),
         _ => None,
     };
-    let (colours, has_alpha) =
+    let (colors, has_alpha) =
         (if image.color().has_color() { 3 } else { 1 }, image.color().has_alpha());
     let stored = u64::from(image.color().bytes_per_pixel());
     budget.room(file, &surface_of(size), size.area() as u64 * (PEAK_BYTES_PER_PX + stored))?;
@@ -114,7 +114,7 @@ fn load_bitmap(
             "r" | "y" | "l" => Some(0),
             "g" => Some(1),
             "b" => Some(2),
-            "a" => Some(colours),
+            "a" => Some(colors),
             _ => None,
         };
         let plane = at.and_then(|i| stored.channels.get(i).cloned());
@@ -143,7 +143,7 @@ impl StoredMap {
     }
 
     /// The number of the file's color channels, alpha not counted.
-    pub fn colours(&self) -> usize {
+    pub fn colors(&self) -> usize {
         match self.channels.len() {
             2 if self.step.is_some() => 1,
             4 => 3,
@@ -152,9 +152,9 @@ impl StoredMap {
     }
 
     /// Whether all color channels are equal at every pixel, as in a gray picture stored as RGB.
-    pub fn is_grey(&self, tolerance: f32) -> bool {
+    pub fn is_gray(&self, tolerance: f32) -> bool {
         let first = &self.channels[0];
-        let others = self.channels.iter().take(self.colours()).skip(1);
+        let others = self.channels.iter().take(self.colors()).skip(1);
         let area = self.size.area();
         others.into_iter().all(|other| {
             let far = (0..area).filter(|&i| (other.at(i) - first.at(i)).abs() > tolerance);

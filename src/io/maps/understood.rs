@@ -221,16 +221,16 @@ impl UnderstoodMaps {
         let UnderstoodMaps { normals, planar, inside, mut coverage, is_masked, fov_degrees } = self;
         let size = inside.size();
         let nothing = || Plane::filled(size, f32::NAN);
-        let normalised = planar.and_then(|p| depth::normalise(p, &inside, &coverage, findings));
-        findings.depth_range = normalised.as_ref().map(|n| (n.near, n.far));
-        let (normals, depth) = match (normals, normalised) {
+        let normalized = planar.and_then(|p| depth::normalize(p, &inside, &coverage, findings));
+        findings.depth_range = normalized.as_ref().map(|n| (n.near, n.far));
+        let (normals, depth) = match (normals, normalized) {
             (Some(normals), Some(n)) => (normals, n.depth),
             (Some(normals), None) => {
                 findings.note(
                     "depth was derived from the normals; a depth map is better at \
                                occluding contours",
                 );
-                let go_on = || !progress.is_cancelled();
+                let go_on = || !progress.is_canceled();
                 let depth =
                     integrate::depth_from_normals_while(&normals, &inside, &go_on).map(|i| i.depth);
                 (normals, depth.unwrap_or_else(nothing))

@@ -67,13 +67,13 @@ pub(super) fn rank(pass: &ExrPass) -> usize {
 /// The color layer of an EXR: the unnamed one, else one called color or beauty, else the first
 /// with R, G and B, else a lone gray channel.
 pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
-    let colour = |pass: &&ExrPass| pass.letters("rgb").is_some();
-    let grey = |pass: &&ExrPass| {
+    let color = |pass: &&ExrPass| pass.letters("rgb").is_some();
+    let gray = |pass: &&ExrPass| {
         pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1
     };
     let passes = exr.passes();
-    let found = passes.iter().filter(colour).min_by_key(|p| rank(p));
-    found.or_else(|| passes.iter().filter(grey).min_by_key(|p| rank(p))).ok_or_else(|| {
+    let found = passes.iter().filter(color).min_by_key(|p| rank(p));
+    found.or_else(|| passes.iter().filter(gray).min_by_key(|p| rank(p))).ok_or_else(|| {
         let names: Vec<&str> = passes.iter().map(|p| p.name.as_str()).collect();
         Error::unsupported(
             file,

@@ -12,17 +12,17 @@ use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Work that may be cancelled, or fail.
-pub type Cancellable<T> = Result<Option<T>>;
+/// Work that may be canceled, or fail.
+pub type Cancelable<T> = Result<Option<T>>;
 
 /// The picture of each item that shows one, in the order [`pictures_of`] lists them; `None` if
-/// cancelled.
+/// canceled.
 pub fn render(
     file: &Path,
     document: &Document,
     items: &[PlanItem],
     progress: &Progress,
-) -> Cancellable<Vec<EncodedPixels>> {
+) -> Cancelable<Vec<EncodedPixels>> {
     let (shown, seen) = (pictures_of(items), SeenLayers::of(document));
     progress.add_total(shown.len() as u64);
     let one = |item: &&PlanItem| {
@@ -111,7 +111,7 @@ fn render_preview(
     layer: &Arc<Layer>,
     kind: PreviewKind,
     progress: &Progress,
-) -> Cancellable<EncodedPixels> {
+) -> Cancelable<EncodedPixels> {
     let document = seen.document;
     if let Some(tiles) = seen.bare(layer, kind.masked) {
         return pixels_of(file, document, layer, tiles).map(Some);

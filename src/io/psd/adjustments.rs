@@ -6,7 +6,7 @@ mod write;
 
 pub use write::blocks;
 
-use super::colours::{Colours, Mode};
+use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::descriptor;
 use super::fill::{self, Mark};
@@ -16,7 +16,7 @@ use crate::math::srgb::{self, Color};
 use crate::paint::ColorAdjustment;
 use crate::paint::adjustment::{
     BlackWhite, BrightnessContrast, ChannelMixer, ColorBalance, ColorLookup, Curves, Exposure,
-    GradientMap, HslShift, HueSaturation, Invert, Levels, LevelsRange, PhotoFilter, Posterise,
+    GradientMap, HslShift, HueSaturation, Invert, Levels, LevelsRange, PhotoFilter, Posterize,
     SelectiveColor, Threshold, ToneCurve, Vibrance,
 };
 use std::path::Path;
@@ -32,7 +32,7 @@ pub const NEWER: [u8; 4] = *b"CgEd";
 const MOST_STOPS: u16 = 1000;
 
 /// Reads a block; `None` where it holds what is not understood.
-pub fn read(key: [u8; 4], data: &mut ByteCursor, colours: &Colours) -> Option<ColorAdjustment> {
+pub fn read(key: [u8; 4], data: &mut ByteCursor, colors: &Colors) -> Option<ColorAdjustment> {
     let adjustment: ColorAdjustment = match &key {
         b"levl" => ColorAdjustment::Levels(levels(data)?),
         b"curv" => ColorAdjustment::Curves(curves(data)?),
@@ -47,15 +47,15 @@ pub fn read(key: [u8; 4], data: &mut ByteCursor, colours: &Colours) -> Option<Co
             let keep_luminosity = data.u8()? != 0;
             ColorAdjustment::ColorBalance(ColorBalance { ranges, keep_luminosity })
         }
-        b"blwh" => ColorAdjustment::BlackWhite(black_white(data, colours)?),
-        b"phfl" => ColorAdjustment::PhotoFilter(photo_filter(data, colours)?),
+        b"blwh" => ColorAdjustment::BlackWhite(black_white(data, colors)?),
+        b"phfl" => ColorAdjustment::PhotoFilter(photo_filter(data, colors)?),
         b"mixr" => ColorAdjustment::ChannelMixer(channel_mixer(data)?),
         b"clrL" => ColorAdjustment::ColorLookup(color_lookup(data)?),
         b"nvrt" => ColorAdjustment::Invert(Invert),
-        b"post" => ColorAdjustment::Posterise(Posterise { levels: f32::from(data.u16()?) }),
+        b"post" => ColorAdjustment::Posterize(Posterize { levels: f32::from(data.u16()?) }),
         b"thrs" => ColorAdjustment::Threshold(Threshold { level: f32::from(data.u16()?) }),
         b"selc" => ColorAdjustment::SelectiveColor(selective_color(data)?),
-        b"grdm" => ColorAdjustment::GradientMap(gradient_map(data, colours)?),
+        b"grdm" => ColorAdjustment::GradientMap(gradient_map(data, colors)?),
         b"expA" => {
             data.u16().filter(|version| *version == 1)?;
             let [exposure, offset, gamma] = [float(data)?, float(data)?, float(data)?];
@@ -76,10 +76,10 @@ pub fn read(key: [u8; 4], data: &mut ByteCursor, colours: &Colours) -> Option<Co
 /// for other content, and where the format has no word for it.
 pub fn as_read(content: &Content) -> Option<ColorAdjustment> {
     let Content::Adjustment(live) = content else { return None };
-    let colours = Colours::of_mode(Mode::Rgb);
+    let colors = Colors::of_mode(Mode::Rgb);
     blocks(live.params()).iter().fold(None, |known, (key, data)| {
         let data = &mut ByteCursor::new(data);
-        if *key == NEWER { newer_brightness(data) } else { read(*key, data, &colours) }.or(known)
+        if *key == NEWER { newer_brightness(data) } else { read(*key, data, &colors) }.or(known)
     })
 }
 
@@ -193,11 +193,11 @@ fn hue_saturation(data: &mut ByteCursor) -> Option<HueSaturation> {
 /// The weights of the hues, in this program's order.
 const HUES: [&str; 6] = ["Rd  ", "Yllw", "Grn ", "Cyn ", "Bl  ", "Mgnt"];
 
-fn black_white(data: &mut ByteCursor, colours: &Colours) -> Option<BlackWhite> {
+fn black_white(data: &mut ByteCursor, colors: &Colors) -> Option<BlackWhite> {
     let said = descriptor::read(data)?;
     let begins = BlackWhite::default();
     let weight = |i: usize| said.number(HUES[i]).unwrap_or(begins.weights[i]);
-    let tint = said.object("tintColor").and_then(|tint| fill::colour(tint, colours));
+    let tint = said.object("tintColor").and_then(|tint| fill::color(tint, colors));
     Some(BlackWhite {
         weights: std::array::from_fn(weight),
         is_tinted: said.is_set("useTint"),
@@ -206,31 +206,31 @@ fn black_white(data: &mut ByteCursor, colours: &Colours) -> Option<BlackWhite> {
 }
 
 /// A color in one of the ways of older blocks: what its numbers mean, then four of them.
-fn colour(data: &mut ByteCursor, colours: &Colours) -> Option<Color> {
+fn color(data: &mut ByteCursor, colors: &Colors) -> Option<Color> {
     let space = data.u16()?;
     let [a, b, c, _] = [data.u16()?, data.u16()?, data.u16()?, data.u16()?];
     let signed = |v: u16| f32::from(v as i16) / 100.0;
     match space {
         0 => {
-            let [r, g, b] = [a, b, c].map(|v| srgb::quantise(f32::from(v) / 65535.0));
+            let [r, g, b] = [a, b, c].map(|v| srgb::quantize(f32::from(v) / 65535.0));
             Some(Color { r, g, b, a: 255 })
         }
-        7 => Some(fill::lab_colour([signed(a), signed(b), signed(c)], colours)),
+        7 => Some(fill::lab_color([signed(a), signed(b), signed(c)], colors)),
         8 => {
-            let grey = srgb::quantise(1.0 - f32::from(a) / 10_000.0);
-            Some(Color { r: grey, g: grey, b: grey, a: 255 })
+            let gray = srgb::quantize(1.0 - f32::from(a) / 10_000.0);
+            Some(Color { r: gray, g: gray, b: gray, a: 255 })
         }
         _ => None,
     }
 }
 
 /// Density in percent. Version 3 says its color in XYZ, D50, of 65536ths.
-fn photo_filter(data: &mut ByteCursor, colours: &Colours) -> Option<PhotoFilter> {
+fn photo_filter(data: &mut ByteCursor, colors: &Colors) -> Option<PhotoFilter> {
     let color = match data.u16()? {
-        2 => colour(data, colours)?,
+        2 => color(data, colors)?,
         3 => {
             let mut part = || data.i32().map(|v| v as f32 / 65536.0);
-            fill::xyz_colour([part()?, part()?, part()?], colours)
+            fill::xyz_color([part()?, part()?, part()?], colors)
         }
         _ => return None,
     };
@@ -251,7 +251,7 @@ fn channel_mixer(data: &mut ByteCursor) -> Option<ChannelMixer> {
     };
     let mut own = ChannelMixer { monochrome, ..ChannelMixer::default() };
     if monochrome {
-        own.grey = output()?;
+        own.gray = output()?;
     } else {
         own.outputs = [output()?, output()?, output()?];
     }
@@ -283,7 +283,7 @@ fn selective_color(data: &mut ByteCursor) -> Option<SelectiveColor> {
     Some(own)
 }
 
-fn gradient_map(data: &mut ByteCursor, colours: &Colours) -> Option<GradientMap> {
+fn gradient_map(data: &mut ByteCursor, colors: &Colors) -> Option<GradientMap> {
     let version = data.u16().filter(|version| matches!(version, 1 | 3))?;
     let reverse = data.u8()? != 0;
     data.u8()?;
@@ -300,7 +300,7 @@ fn gradient_map(data: &mut ByteCursor, colours: &Colours) -> Option<GradientMap>
     let mut inks = Vec::new();
     for _ in 0..data.u16()?.min(MOST_STOPS) {
         let (t, middle) = place(data)?;
-        let [r, g, b, _] = colour(data, colours)?.to_f32();
+        let [r, g, b, _] = color(data, colors)?.to_f32();
         data.u16()?;
         inks.push(Mark { t, middle, value: [r, g, b] });
     }

@@ -1,7 +1,7 @@
 //! The blocks of additional information behind a layer's record: what each says of the layer.
 //! Floor 5.
 
-use super::colours::Colours;
+use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use super::outline::VectorPaths;
@@ -15,7 +15,7 @@ use crate::paint::ColorAdjustment;
 pub struct ArtboardBackground {
     pub rect: Rect,
     /// `None`: transparent.
-    pub colour: Option<Color>,
+    pub color: Option<Color>,
 }
 
 /// A block. Some programs pad them to four bytes, some to two, some not at all.
@@ -39,7 +39,7 @@ pub fn block<'a>(rest: &mut ByteCursor<'a>, large: bool) -> Option<([u8; 4], Byt
 }
 
 /// Takes a block's word into a record.
-pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colours: &Colours) {
+pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors: &Colors) {
     match &key {
         b"luni" => {
             let name = data.unicode();
@@ -53,14 +53,14 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colour
         }
         b"lclr" => record.label = marks::label(data),
         b"iOpa" => record.fill_opacity = data.u8().unwrap_or(255),
-        b"SoCo" | b"GdFl" | b"PtFl" => record.fill = fill::read(key, data, colours),
+        b"SoCo" | b"GdFl" | b"PtFl" => record.fill = fill::read(key, data, colors),
         b"vmsk" | b"vsms" => {
             record.outline = VectorPaths::read(data);
             if record.outline.is_none() {
                 record.leave_out("its vector mask is not understood");
             }
         }
-        b"artb" | b"artd" | b"abdd" => record.ground = ground(data, colours),
+        b"artb" | b"artd" | b"abdd" => record.ground = ground(data, colors),
         b"TySh" | b"tySh" => record.tell("its text became pixels"),
         b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => record.tell("its smart object became pixels"),
         b"lfx2" | b"lmfx" | b"lrFX" => effects(record, key, data),
@@ -78,7 +78,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colour
         // The newer numbers may have come before the old ones.
         b"brit" if record.adjustment.is_some() => {}
         key if adjustments::KEYS.contains(key) => {
-            record.adjustment = adjustments::read(*key, &mut data, colours);
+            record.adjustment = adjustments::read(*key, &mut data, colors);
             if record.adjustment.is_none() {
                 record.leave_out("its adjustment is left out");
             }
@@ -150,17 +150,17 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
 }
 
 /// An artboard's rectangle and color.
-fn ground(mut data: ByteCursor, colours: &Colours) -> Option<ArtboardBackground> {
+fn ground(mut data: ByteCursor, colors: &Colors) -> Option<ArtboardBackground> {
     let board = descriptor::read(&mut data)?;
     let rect = board.object("artboardRect")?;
     // Limited to possible canvas sizes, so that sums do not overflow.
     let side = |name: &str| rect.number(name).map(|v| v.max(-1e6).min(1e6).round() as i32);
     let rect = Rect::new(side("Left")?, side("Top ")?, side("Rght")?, side("Btom")?);
-    let colour = match board.number("artboardBackgroundType").map(|kind| kind as i32) {
+    let color = match board.number("artboardBackgroundType").map(|kind| kind as i32) {
         Some(1) => Some(Color::WHITE),
         Some(2) => Some(Color::BLACK),
-        Some(4) => board.object("Clr ").and_then(|colour| fill::colour(colour, colours)),
+        Some(4) => board.object("Clr ").and_then(|color| fill::color(color, colors)),
         _ => None,
     };
-    Some(ArtboardBackground { rect, colour })
+    Some(ArtboardBackground { rect, color })
 }

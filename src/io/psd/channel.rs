@@ -15,7 +15,7 @@ pub struct ChannelLayout {
     /// 1, 8, 16 or 32.
     pub bits: u16,
     /// Colors, not coverage: with 32 bits they are linear light.
-    pub is_colour: bool,
+    pub is_color: bool,
     /// Row lengths take four bytes instead of two.
     pub large: bool,
 }
@@ -60,7 +60,7 @@ impl ChannelValue for u16 {
                 .as_chunks()
                 .0
                 .iter()
-                .map(|v| srgb::quantise_deep(encoded(*v, shape)))
+                .map(|v| srgb::quantize_deep(encoded(*v, shape)))
                 .collect(),
             _ => to_bytes(stored, shape).into_iter().map(|v| u16::from(v) * LEVEL).collect(),
         }
@@ -74,7 +74,7 @@ impl ChannelValue for u16 {
 /// A float as stored; of colors, linear light, which is clipped to white and encoded.
 fn encoded(stored: [u8; 4], shape: ChannelLayout) -> f32 {
     let value = f32::from_be_bytes(stored);
-    if shape.is_colour { srgb::encode(value.max(0.0).min(1.0)) } else { value }
+    if shape.is_color { srgb::encode(value.max(0.0).min(1.0)) } else { value }
 }
 
 /// The values of a channel: its compression, then its data. `None` where the data is damaged, or
@@ -248,7 +248,7 @@ fn to_bytes(values: &[u8], shape: ChannelLayout) -> Vec<u8> {
             rows.flat_map(|row| (0..shape.width).map(move |x| bit(row, x))).collect()
         }
         16 => values.as_chunks().0.iter().map(|v| byte_of(u16::from_be_bytes(*v))).collect(),
-        32 => values.as_chunks().0.iter().map(|v| srgb::quantise(encoded(*v, shape))).collect(),
+        32 => values.as_chunks().0.iter().map(|v| srgb::quantize(encoded(*v, shape))).collect(),
         _ => values.to_vec(),
     }
 }
@@ -259,7 +259,7 @@ mod tests {
     use crate::math::hash;
 
     fn shape(width: usize, height: usize, bits: u16) -> ChannelLayout {
-        ChannelLayout { width, height, bits, is_colour: true, large: false }
+        ChannelLayout { width, height, bits, is_color: true, large: false }
     }
 
     #[test]
@@ -300,13 +300,8 @@ mod tests {
         assert_eq!(unpack(&[5, 1, 2], 6, &mut out), None);
         unpack(&[129, 7], 3, &mut out).unwrap();
         assert_eq!(out[out.len() - 3..], [7; 3], "a run beyond the row");
-        let huge = ChannelLayout {
-            width: 300_000,
-            height: 300_000,
-            bits: 8,
-            is_colour: true,
-            large: true,
-        };
+        let huge =
+            ChannelLayout { width: 300_000, height: 300_000, bits: 8, is_color: true, large: true };
         for compression in 0..5 {
             assert_eq!(decode_as::<u16>(&mut ByteCursor::new(&[0; 100]), huge, compression), None);
         }

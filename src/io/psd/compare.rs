@@ -176,22 +176,22 @@ fn measure_difference(size: Size, shown: &TileGrid, merged: &Merged) -> Differen
 fn channel_distance(own: [u8; 4], straight: [u8; 4], with_alpha: bool) -> u8 {
     let alpha = u32::from(straight[3]);
     let on_white = |c: u8| ((u32::from(c) * alpha + 255 * (255 - alpha) + 127) / 255) as u8;
-    let colour =
+    let color =
         (0..3).map(|c| own[c].saturating_add(255 - own[3]).abs_diff(on_white(straight[c]))).max();
     let alpha = if with_alpha { own[3].abs_diff(straight[3]) } else { 0 };
-    colour.unwrap_or(0).max(alpha)
+    color.unwrap_or(0).max(alpha)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::srgb::Color;
-    use crate::psd::colours::StraightPixels;
+    use crate::psd::colors::StraightPixels;
 
-    fn grey(value: u8) -> Document {
+    fn gray(value: u8) -> Document {
         let fill = Content::Fill(Color { r: value, g: value, b: value, a: 255 });
         Document {
-            layers: vec![Arc::new(Layer::new("grey", fill))],
+            layers: vec![Arc::new(Layer::new("gray", fill))],
             ..Document::empty(Size::new(10, 20))
         }
     }
@@ -209,7 +209,7 @@ mod tests {
 
     fn check_as(merged: Option<Merged>, is_less: bool) -> (Vec<(String, bool)>, Vec<String>) {
         let mut notes = Vec::new();
-        let document = check_against_merged(grey(100), merged, is_less, &mut notes);
+        let document = check_against_merged(gray(100), merged, is_less, &mut notes);
         (document.layers.iter().map(|layer| (layer.name.clone(), layer.visible)).collect(), notes)
     }
 
@@ -221,9 +221,9 @@ mod tests {
             notes.len() == 1 && notes[0].contains("20.4 of 255 on average, 100 at most"),
             "{notes:?}"
         );
-        assert_eq!(check_as(picture(100), false), (vec![("grey".to_owned(), true)], vec![]));
+        assert_eq!(check_as(picture(100), false), (vec![("gray".to_owned(), true)], vec![]));
         let (layers, notes) = check_as(picture(100), true);
-        assert_eq!(layers, [("grey".to_owned(), true), (PICTURE.to_owned(), false)]);
+        assert_eq!(layers, [("gray".to_owned(), true), (PICTURE.to_owned(), false)]);
         assert!(notes[0].contains("is hidden above"), "{notes:?}");
     }
 
@@ -237,7 +237,7 @@ mod tests {
             (plain(true), false, "is empty"),
         ] {
             let (layers, notes) = check_as(merged, is_less);
-            assert_eq!(layers, [("grey".to_owned(), true)]);
+            assert_eq!(layers, [("gray".to_owned(), true)]);
             assert!(notes.len() == 1 && notes[0].contains(said), "{notes:?}");
         }
         assert_eq!(check_as(plain(false), false).1, [""; 0]);

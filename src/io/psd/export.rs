@@ -14,7 +14,7 @@ use crate::document::{
 };
 use crate::math::{Rect, Size};
 use crate::memory;
-use crate::project::layer_preview::{self, Cancellable};
+use crate::project::layer_preview::{self, Cancelable};
 use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
 use crate::raster::{BlendMode, TileGrid};
 use crate::{Error, Result};
@@ -38,7 +38,7 @@ pub struct WrittenPsd {
 /// They are read again as any file is, and compared: every record and pixel, the merged picture,
 /// and the document that comes back live. Fails with a sentence that says what would not come back,
 /// or which limit of the format is passed.
-pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<WrittenPsd> {
+pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelable<WrittenPsd> {
     if document.size.width.max(document.size.height) > LONGEST_PX {
         let reason = format!(
             "a Photoshop file has at most {LONGEST_PX} pixels a side, not {}",

@@ -1,7 +1,7 @@
 //! Fill layers: one color, a gradient or a pattern, read from descriptors. Floor 5. Not here: the
 //! pictures of patterns (`pattern`).
 
-use super::colours::{Colours, Mode};
+use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use crate::math::srgb::{self, Color};
@@ -57,11 +57,11 @@ const BETWEEN: usize = 8;
 const MOST_STOPS: usize = 1000;
 
 /// Reads the block of a fill; `None` where it holds what is not understood.
-pub fn read(key: [u8; 4], mut data: ByteCursor, colours: &Colours) -> Option<LayerFill> {
+pub fn read(key: [u8; 4], mut data: ByteCursor, colors: &Colors) -> Option<LayerFill> {
     let said = descriptor::read(&mut data)?;
     Some(match &key {
-        b"SoCo" => LayerFill::Solid(colour(said.object("Clr ")?, colours)?),
-        b"GdFl" => LayerFill::Gradient(gradient(&said, colours)?),
+        b"SoCo" => LayerFill::Solid(color(said.object("Clr ")?, colors)?),
+        b"GdFl" => LayerFill::Gradient(gradient(&said, colors)?),
         _ => {
             let phase = said.object("phase");
             let along = |name: &str| phase.and_then(|phase| phase.number(name)).unwrap_or(0.0);
@@ -80,12 +80,12 @@ fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
 }
 
 /// A color in any of the ways that descriptors say one.
-pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
-    let byte = |v: f32, full: f32| srgb::quantise(v / full);
+pub fn color(said: &DescriptorObject, colors: &Colors) -> Option<Color> {
+    let byte = |v: f32, full: f32| srgb::quantize(v / full);
     let all = |names: [&str; 3]| {
         Some([said.number(names[0])?, said.number(names[1])?, said.number(names[2])?])
     };
-    let in_mode = |mode: Mode, values: [u8; 4]| in_mode(mode, values, colours);
+    let in_mode = |mode: Mode, values: [u8; 4]| in_mode(mode, values, colors);
     if let Some(rgb) = all(["Rd  ", "Grn ", "Bl  "]) {
         let [r, g, b] = rgb.map(|v| byte(v, 255.0));
         return Some(in_mode(Mode::Rgb, [r, g, b, 0]));
@@ -99,35 +99,35 @@ pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
         return Some(in_mode(Mode::Cmyk, [c, m, y, byte(100.0 - k, 100.0)]));
     }
     if let Some(lab) = all(["Lmnc", "A   ", "B   "]) {
-        return Some(lab_colour(lab, colours));
+        return Some(lab_color(lab, colors));
     }
-    let grey = byte(100.0 - said.number("Gry ")?, 100.0);
-    Some(in_mode(Mode::Grey, [grey, 0, 0, 0]))
+    let gray = byte(100.0 - said.number("Gry ")?, 100.0);
+    Some(in_mode(Mode::Gray, [gray, 0, 0, 0]))
 }
 
 /// A color of one mode, of a file in perhaps another.
-fn in_mode(mode: Mode, values: [u8; 4], colours: &Colours) -> Color {
+fn in_mode(mode: Mode, values: [u8; 4], colors: &Colors) -> Color {
     let channels = usize::from(mode.channels());
-    let icc = colours.icc.filter(|_| colours.mode == mode);
-    let own = Colours { mode, channels, icc, ..*colours };
+    let icc = colors.icc.filter(|_| colors.mode == mode);
+    let own = Colors { mode, channels, icc, ..*colors };
     let planes = values.map(|v| Some(vec![v]));
     let rgba = own.to_srgb(Size::new(1, 1), &planes, None);
     Color { r: rgba[0], g: rgba[1], b: rgba[2], a: 255 }
 }
 
 /// A color of Lab, L to 100.
-pub fn lab_colour([l, a, b]: [f32; 3], colours: &Colours) -> Color {
-    let byte = |v: f32, full: f32| srgb::quantise(v / full);
+pub fn lab_color([l, a, b]: [f32; 3], colors: &Colors) -> Color {
+    let byte = |v: f32, full: f32| srgb::quantize(v / full);
     let values = [byte(l, 100.0), byte(a + 128.0, 255.0), byte(b + 128.0, 255.0), 0];
-    in_mode(Mode::Lab, values, colours)
+    in_mode(Mode::Lab, values, colors)
 }
 
 /// A color of CIE XYZ relative to D50.
-pub fn xyz_colour([x, y, z]: [f32; 3], colours: &Colours) -> Color {
+pub fn xyz_color([x, y, z]: [f32; 3], colors: &Colors) -> Color {
     // The white point of D50, and CIE's curve of lightness.
     let f = |v: f32| if v > 0.008_856 { v.cbrt() } else { 7.787 * v + 16.0 / 116.0 };
     let [fx, fy, fz] = [f(x / 0.9642), f(y), f(z / 0.8249)];
-    lab_colour([116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)], colours)
+    lab_color([116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)], colors)
 }
 
 /// Hue in degrees, saturation and brightness as shares.
@@ -138,7 +138,7 @@ fn of_hue(h: f32, s: f32, v: f32) -> [f32; 3] {
     })
 }
 
-fn gradient(said: &DescriptorObject, colours: &Colours) -> Option<GradientFill> {
+fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill> {
     let way = match said.word("Type")? {
         b"Rdl " => GradientStyle::Radial,
         b"Angl" => GradientStyle::Angle,
@@ -148,7 +148,7 @@ fn gradient(said: &DescriptorObject, colours: &Colours) -> Option<GradientFill> 
     };
     let offset = said.object("Ofst");
     let along = |name: &str| offset.map_or(0.0, |offset| share(offset, name, 0.0));
-    let mut stops = stops(said.object("Grad")?, colours)?;
+    let mut stops = stops(said.object("Grad")?, colors)?;
     if said.is_set("Rvrs") {
         stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
         stops.reverse();
@@ -172,7 +172,7 @@ pub struct Mark<T> {
 }
 
 /// The ramp's colors and opacities as stops of colors with alpha; `None` of noise.
-fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>> {
+fn stops(ramp: &DescriptorObject, colors: &Colors) -> Option<Vec<GradientStop>> {
     let place = |object: &DescriptorObject| {
         let t = object.number("Lctn")? / 4096.0;
         Some((t.max(0.0).min(1.0), share(object, "Mdpn", 0.5).max(0.01).min(0.99)))
@@ -180,7 +180,7 @@ fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>
     let mut inks: Vec<Mark<[f32; 3]>> = Vec::new();
     for object in ramp.objects("Clrs").take(MOST_STOPS) {
         let (t, middle) = place(object)?;
-        let [r, g, b, _] = object.object("Clr ").and_then(|said| colour(said, colours))?.to_f32();
+        let [r, g, b, _] = object.object("Clr ").and_then(|said| color(said, colors))?.to_f32();
         inks.push(Mark { t, middle, value: [r, g, b] });
     }
     let mut opacities: Vec<Mark<[f32; 1]>> = Vec::new();
@@ -212,7 +212,7 @@ pub fn ramp(
     let stop = |t: f32| {
         let [r, g, b] = at(&inks, t)?;
         let [a] = at(&opacities, t).unwrap_or([1.0]);
-        let [r, g, b, a] = [r, g, b, a].map(srgb::quantise);
+        let [r, g, b, a] = [r, g, b, a].map(srgb::quantize);
         Some(GradientStop { t, color: Color { r, g, b, a } })
     };
     all.into_iter().map(stop).collect()
@@ -276,7 +276,7 @@ impl GradientFill {
     }
 
     /// The color of a pixel.
-    pub fn colour_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
+    pub fn color_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
         let [r, g, b, a] =
             self.at(self.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
         Some(Color { r, g, b, a })
@@ -300,17 +300,16 @@ impl GradientFill {
     fn at(&self, t: f32) -> [u8; 4] {
         let t = t.max(0.0).min(1.0);
         let next = self.stops.partition_point(|stop| stop.t <= t);
-        let colour =
-            |stop: Option<&GradientStop>| stop.map_or([0.0; 4], |stop| stop.color.to_f32());
+        let color = |stop: Option<&GradientStop>| stop.map_or([0.0; 4], |stop| stop.color.to_f32());
         match (next.checked_sub(1), self.stops.get(next)) {
             (Some(i), Some(to)) => {
                 let from = self.stops[i];
                 let s = (t - from.t) / (to.t - from.t);
-                let (a, b) = (colour(Some(&from)), colour(Some(to)));
-                std::array::from_fn(|c| srgb::quantise(a[c] + (b[c] - a[c]) * s))
+                let (a, b) = (color(Some(&from)), color(Some(to)));
+                std::array::from_fn(|c| srgb::quantize(a[c] + (b[c] - a[c]) * s))
             }
-            (None, first) => colour(first).map(srgb::quantise),
-            (Some(last), None) => colour(self.stops.get(last)).map(srgb::quantise),
+            (None, first) => color(first).map(srgb::quantize),
+            (Some(last), None) => color(self.stops.get(last)).map(srgb::quantize),
         }
     }
 }

@@ -40,7 +40,7 @@ fn drawn(
         return pixels(Vec::new(), Rect::EMPTY);
     }
     match fill {
-        LayerFill::Solid(colour) => Content::Fill(colour),
+        LayerFill::Solid(color) => Content::Fill(color),
         LayerFill::Gradient(gradient) => {
             let rect = filled_rect(record, &gradient, size);
             if let Some(live) = gradient.live(rect) {
@@ -68,8 +68,8 @@ fn drawn(
 fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     let is_plain = !record.stroked && !record.unfilled;
     let live = match fill {
-        LayerFill::Solid(colour) if is_plain && is_of(record, |_| Some(colour)) => {
-            Some(Content::Fill(colour))
+        LayerFill::Solid(color) if is_plain && is_of(record, |_| Some(color)) => {
+            Some(Content::Fill(color))
         }
         LayerFill::Gradient(gradient) if is_plain => straight(record, &gradient, size),
         _ => None,
@@ -97,7 +97,7 @@ fn straight(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option
     let rect = filled_rect(record, gradient, size);
     let live =
         gradient.live(rect).filter(|live| live.stops.iter().all(|stop| stop.color.a == 255))?;
-    is_of(record, |at| gradient.colour_at(rect, at)).then(|| Content::Gradient(Live::new(live)))
+    is_of(record, |at| gradient.color_at(rect, at)).then(|| Content::Gradient(Live::new(live)))
 }
 
 /// What a gradient fills: the layer as far as its pixels and mask reach, or the canvas.
@@ -111,13 +111,13 @@ fn filled_rect(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Rec
 }
 
 /// Whether the pixels have those colors, faint ones aside.
-fn is_of(record: &LayerRecord, colour: impl Fn([i32; 2]) -> Option<Color>) -> bool {
+fn is_of(record: &LayerRecord, color: impl Fn([i32; 2]) -> Option<Color>) -> bool {
     let width = record.rect.width().max(1);
     record.rgba.as_chunks::<4>().0.iter().enumerate().all(|(i, &[r, g, b, a])| {
         // A faint pixel keeps too little of its color.
         let at = [record.rect.x0 + (i % width) as i32, record.rect.y0 + (i / width) as i32];
         a < 64
-            || colour(at).is_some_and(|c| {
+            || color(at).is_some_and(|c| {
                 [(r, c.r), (g, c.g), (b, c.b)].iter().all(|(x, y)| x.abs_diff(*y) <= SAME)
             })
     })

@@ -2,7 +2,7 @@
 
 use super::MAGIC;
 use super::channel::ChannelLayout;
-use super::colours::Mode;
+use super::colors::Mode;
 use super::cursor::ByteCursor;
 use crate::Budget;
 use crate::math::Size;
@@ -24,12 +24,12 @@ pub struct PsdHeader {
 
 impl PsdHeader {
     /// How channels of a size are laid out.
-    pub fn shape(&self, size: Size, is_colour: bool) -> ChannelLayout {
+    pub fn shape(&self, size: Size, is_color: bool) -> ChannelLayout {
         ChannelLayout {
             width: size.width as usize,
             height: size.height as usize,
             bits: self.bits,
-            is_colour,
+            is_color,
             large: self.large,
         }
     }
@@ -37,14 +37,14 @@ impl PsdHeader {
     /// Memory of the merged picture while it is read: RGBA, a plane of values per channel, and the
     /// stored data.
     pub fn merged_bytes(&self) -> u64 {
-        let planes = self.colours() as u64 + 1;
+        let planes = self.colors() as u64 + 1;
         let (rgba, value) = if self.is_deep { (12, 2) } else { (4, 1) };
         self.size.area() as u64
             * (rgba + planes * value + planes * u64::from(self.bits.div_ceil(8)))
     }
 
     /// Channels of color, at most four.
-    pub fn colours(&self) -> usize {
+    pub fn colors(&self) -> usize {
         match self.mode {
             Mode::Multichannel => usize::from(self.channels.min(4)),
             mode => usize::from(mode.channels()),
@@ -76,7 +76,7 @@ pub fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<Psd
     if channels < mode.channels() || channels > 56 {
         return Err(Error::decode(file, format!("it has {channels} channels")));
     }
-    let is_deep = budget.deep_paint && bits > 8 && matches!(mode, Mode::Rgb | Mode::Grey);
+    let is_deep = budget.deep_paint && bits > 8 && matches!(mode, Mode::Rgb | Mode::Gray);
     Ok(PsdHeader { large: version == 2, size, channels, bits, mode, is_deep })
 }
 

@@ -3,7 +3,7 @@
 
 use super::blocks::{self, block};
 use super::channel;
-use super::colours::{ColourValue, Colours, StraightPixels};
+use super::colors::{ColorValue, Colors, StraightPixels};
 use super::cursor::ByteCursor;
 use super::fill::LayerFill;
 use super::header::PsdHeader;
@@ -35,7 +35,7 @@ pub struct RecordReader<'a> {
     file: &'a Path,
     budget: &'a Budget,
     header: &'a PsdHeader,
-    colours: &'a Colours<'a>,
+    colors: &'a Colors<'a>,
     used_px: u64,
     /// What 16 bits take in addition to bytes.
     deep_bytes: u64,
@@ -49,13 +49,13 @@ impl<'a> RecordReader<'a> {
         file: &'a Path,
         budget: &'a Budget,
         header: &'a PsdHeader,
-        colours: &'a Colours<'a>,
+        colors: &'a Colors<'a>,
     ) -> Self {
         Self {
             file,
             budget,
             header,
-            colours,
+            colors,
             used_px: 0,
             deep_bytes: 0,
             drawn_px: 0,
@@ -118,7 +118,7 @@ impl<'a> RecordReader<'a> {
             record.leave_out("its “blend if” is left out");
         }
         while let Some((key, data)) = block(&mut extra, large) {
-            blocks::take(&mut record, key, data, self.colours);
+            blocks::take(&mut record, key, data, self.colors);
         }
         if record.effects == Some(true) {
             record.leave_out("its effects are left out");
@@ -134,7 +134,7 @@ impl<'a> RecordReader<'a> {
     }
 
     /// Reads a record's channels.
-    fn filled<T: ColourValue>(
+    fn filled<T: ColorValue>(
         &mut self,
         pending: PendingRecord,
         rest: &mut ByteCursor,
@@ -165,19 +165,19 @@ impl<'a> RecordReader<'a> {
                 }
                 continue;
             }
-            let is_colour = (0..self.header.colours() as i16).contains(&id);
-            if size.area() == 0 || !(is_colour || id == -1) {
+            let is_color = (0..self.header.colors() as i16).contains(&id);
+            if size.area() == 0 || !(is_color || id == -1) {
                 continue;
             }
-            let plane = channel::decode(&mut data, self.header.shape(size, is_colour));
+            let plane = channel::decode(&mut data, self.header.shape(size, is_color));
             is_damaged |= plane.is_none();
-            *(if is_colour { &mut planes[id as usize] } else { &mut alpha }) = plane;
+            *(if is_color { &mut planes[id as usize] } else { &mut alpha }) = plane;
         }
         if is_damaged {
             self.damage.push(format!("“{}” is damaged or cut short", record.name));
         }
         let StraightPixels { rgba, deep } =
-            T::pixels(*self.colours, size, &planes, alpha.as_deref());
+            T::pixels(*self.colors, size, &planes, alpha.as_deref());
         (record.rgba, record.deep) = (rgba, deep);
         self.masked(&mut record, masks, drawn)?;
         self.spend_for_canvas(&record)?;

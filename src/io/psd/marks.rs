@@ -21,7 +21,7 @@ const LABELS: [LayerLabel; 8] = [
     LayerLabel::Green,
     LayerLabel::Blue,
     LayerLabel::Purple,
-    LayerLabel::Grey,
+    LayerLabel::Gray,
 ];
 
 /// A label of the format: there is no brown.

@@ -4,7 +4,7 @@
 use super::VERSION_INFO;
 use super::alpha_channels;
 use super::channel::{self, ChannelValue};
-use super::colours::{ColourValue, Colours, Mode, StraightPixels};
+use super::colors::{ColorValue, Colors, Mode, StraightPixels};
 use super::cursor::ByteCursor;
 use super::header::{PsdHeader, resource};
 use crate::document::NamedSelection;
@@ -27,17 +27,17 @@ pub struct Merged {
 
 /// Reads the picture; `None` if it is damaged. `count`: the number before the layers, if there are
 /// any; `has_room`: there is memory for selections too.
-pub fn merged<T: ColourValue>(
+pub fn merged<T: ColorValue>(
     rest: &mut ByteCursor,
     header: &PsdHeader,
-    colours: &Colours,
+    colors: &Colors,
     resources: ByteCursor,
     count: Option<i16>,
     has_room: bool,
 ) -> Option<Merged> {
     let has_alpha =
-        usize::from(header.channels) > header.colours() && has_alpha(resources, header.mode, count);
-    let own = header.colours() + usize::from(has_alpha);
+        usize::from(header.channels) > header.colors() && has_alpha(resources, header.mode, count);
+    let own = header.colors() + usize::from(has_alpha);
     let wanted = if has_room && header.mode != Mode::Multichannel {
         usize::from(header.channels)
     } else {
@@ -52,9 +52,9 @@ pub fn merged<T: ColourValue>(
     let (selections, inks) = alpha_channels::selections(channels, has_alpha, resources);
     let mut planes = planes.into_iter();
     let mut slots: [Option<Vec<T>>; 4] = [None, None, None, None];
-    slots.iter_mut().take(header.colours()).for_each(|slot| *slot = planes.next());
+    slots.iter_mut().take(header.colors()).for_each(|slot| *slot = planes.next());
     let alpha = planes.next();
-    let mut pixels = T::pixels(*colours, header.size, &slots, alpha.as_deref());
+    let mut pixels = T::pixels(*colors, header.size, &slots, alpha.as_deref());
     // Photoshop blends the colors with white as far as they are transparent; some programs do not.
     if has_alpha && count.is_some() && is_on_white(&pixels.rgba) {
         off_white(pixels.rgba.as_chunks_mut().0);
@@ -80,7 +80,7 @@ fn planes<T: ChannelValue>(
     own: usize,
     wanted: usize,
 ) -> Option<Vec<Vec<T>>> {
-    let shape = |c: usize| header.shape(header.size, c < header.colours());
+    let shape = |c: usize| header.shape(header.size, c < header.colors());
     let (height, channels) = (header.size.height as usize, usize::from(header.channels));
     let compression = rest.u16()?;
     let planes: Vec<Vec<T>> = match compression {
@@ -115,11 +115,11 @@ where
     i64: From<T>,
 {
     let whole = i64::from(T::WHOLE);
-    for [colour @ .., alpha] in texels {
+    for [color @ .., alpha] in texels {
         let a = i64::from(*alpha);
         if a > 0 {
             let c = |c: T| ((i64::from(c) - whole + a) * whole + a / 2) / a;
-            *colour = colour.map(|v| T::try_from(c(v).max(0).min(whole)).unwrap_or(T::WHOLE));
+            *color = color.map(|v| T::try_from(c(v).max(0).min(whole)).unwrap_or(T::WHOLE));
         }
     }
 }

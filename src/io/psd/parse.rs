@@ -2,7 +2,7 @@
 //! `layers` reads the records, `tree` builds the document.
 
 use super::blocks::block;
-use super::colours::Colours;
+use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::header::{PsdHeader, header, resource};
 use super::layers::RecordReader;
@@ -42,9 +42,9 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let header = header(file, &mut rest, budget)?;
     let table = rest.section(false).ok_or_else(cut)?;
     let resources = rest.section(false).ok_or_else(cut)?;
-    let colours = Colours {
+    let colors = Colors {
         mode: header.mode,
-        channels: header.colours(),
+        channels: header.colors(),
         is_light: header.bits == 32,
         table: table.rest(),
         nothing: resource(resources, TRANSPARENT_NUMBER)
@@ -53,7 +53,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     };
     let length = rest.length(header.large).ok_or_else(cut)?;
     let section = ByteCursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
-    let mut reader = RecordReader::new(file, budget, &header, &colours);
+    let mut reader = RecordReader::new(file, budget, &header, &colors);
     let info = layer_info(section, header.large);
     let records = info.map_or_else(|| Ok(Vec::new()), |info| reader.records(info))?;
     let patterns = pattern::read(global_blocks(section, header.large), &mut reader)?;
@@ -63,7 +63,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let count = info.and_then(|info| ByteCursor::new(info.rest()).i16());
     let held_bytes = held_bytes.saturating_add(header.merged_bytes());
     budget.room(file, "reading its layers and the picture of them all", held_bytes)?;
-    let channels = usize::from(header.channels).saturating_sub(header.colours());
+    let channels = usize::from(header.channels).saturating_sub(header.colors());
     // A plane of each, and the coverage that is made of it.
     let channel_bytes = if header.is_deep { 3 } else { 2 } * header.size.area() as u64;
     let with_channels = held_bytes.saturating_add(channel_bytes.saturating_mul(channels as u64));
@@ -75,8 +75,8 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     }
     let merged = match (is_there, header.is_deep) {
         (false, _) => None,
-        (true, true) => merged::<u16>(&mut rest, &header, &colours, resources, count, has_room),
-        (true, false) => merged::<u8>(&mut rest, &header, &colours, resources, count, has_room),
+        (true, true) => merged::<u16>(&mut rest, &header, &colors, resources, count, has_room),
+        (true, false) => merged::<u8>(&mut rest, &header, &colors, resources, count, has_room),
     };
     if merged.is_none() && records.is_empty() {
         return Err(Error::decode(

@@ -2,7 +2,7 @@
 //! textures. Floor 5.
 
 use super::channel;
-use super::colours::{Colours, Mode};
+use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::fill::PatternFill;
 use super::header::PsdHeader;
@@ -94,7 +94,7 @@ fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
             None => alpha = Some(plane),
         }
     }
-    let colours = Colours {
+    let colors = Colors {
         mode,
         channels: usize::from(mode.channels()),
         is_light: false,
@@ -102,7 +102,7 @@ fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
         nothing: None,
         icc: None,
     };
-    Some(colours.to_srgb(size, &planes, alpha.as_deref()))
+    Some(colors.to_srgb(size, &planes, alpha.as_deref()))
 }
 
 /// One place of the list; `Some(None)` if it is empty.
@@ -132,7 +132,7 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
 
 impl PatternResource {
     #[cfg(test)]
-    pub fn grey(id: &str, size: Size, values: &[u8]) -> Self {
+    pub fn gray(id: &str, size: Size, values: &[u8]) -> Self {
         Self { id: id.into(), size, rgba: values.iter().flat_map(|v| [*v, *v, *v, 255]).collect() }
     }
 

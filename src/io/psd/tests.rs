@@ -365,7 +365,7 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
 }
 
 #[test]
-fn numbers_of_colours_become_colours() {
+fn numbers_of_colors_become_colors() {
     let mut bytes =
         b"8BPS\0\x01\0\0\0\0\0\0\0\x01\0\0\0\x01\0\0\0\x02\0\x08\0\x02\0\0\x03\0".to_vec();
     let mut table = [0; 768];

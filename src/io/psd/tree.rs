@@ -2,7 +2,7 @@
 //! programs agree. Floor 5. Parsing is in `parse`.
 
 use super::blocks::ArtboardBackground;
-use super::colours::{Mode, StraightPixels};
+use super::colors::{Mode, StraightPixels};
 use super::compare::check_against_merged;
 use super::parse::{ParsedPsd, parse};
 use super::pattern::PatternResource;
@@ -43,7 +43,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
             Err(error) => notes.push(format!("live layers became pixels: {error}")),
         }
     }
-    notes.extend(colour_notes(&parsed));
+    notes.extend(color_notes(&parsed));
     let (document, is_less) = built(&mut parsed, budget, &mut notes);
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
@@ -108,7 +108,7 @@ fn with_guides_of(document: Document, found: Guides) -> Document {
 }
 
 /// What the file's colors were converted to.
-fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
+fn color_notes(parsed: &ParsedPsd) -> Option<String> {
     let header = &parsed.header;
     let what = match header.mode {
         Mode::Cmyk => "its CMYK colors became sRGB; layers blend in those",
@@ -247,11 +247,11 @@ impl TreeBuilder<'_> {
         let rect = ground.rect.intersect(self.size.rect());
         let values = vec![255; rect.width() * rect.height()];
         let board = RecordMask { rect, outside: 0, values, disabled: false };
-        if let Some(colour) = ground.colour {
+        if let Some(color) = ground.color {
             let fill = Layer {
                 mask: Some(self.mask(&board)),
                 clip_to_surface: false,
-                ..Layer::new("Artboard", Content::Fill(colour))
+                ..Layer::new("Artboard", Content::Fill(color))
             };
             layers.insert(0, Arc::new(fill));
         }

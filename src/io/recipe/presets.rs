@@ -7,7 +7,7 @@ use super::pictures::PictureCache;
 use super::{RecipeSource, tips};
 use crate::Result;
 use crate::json::{self, JsonNode, JsonObject, object};
-use crate::math::srgb::Color;
+use crate::math::{named::current_name, srgb::Color};
 use crate::paint::{Adjust, Brush, PictureSource};
 use crate::surface::Operator;
 use crate::{Budget, Files, RecipeFolder, files};
@@ -67,6 +67,7 @@ pub fn presets() -> impl Iterator<Item = BrushPreset> {
 /// A brush that comes with the program, as a hand takes it: its marks stay near the pen. A recipe
 /// that names it says so itself ([`Brush::reach`]), so that older ones paint as they did.
 pub fn preset(key: &str) -> Option<BrushPreset> {
+    let key = current_name(key);
     let (_, text) = BRUSHES.iter().find(|(known, _)| *known == key)?;
     let mut preset = built_in(key, text).ok()?;
     preset.brush.reach = Brush::NEAR;
@@ -78,10 +79,10 @@ pub fn preset_brush(key: &str) -> Option<(Brush, Operator)> {
     preset(key).map(|preset| (preset.brush, preset.operator))
 }
 
-/// The preset that a field names.
+/// The preset that a field names, perhaps as version 0.1 did.
 pub(super) fn named(key: &JsonNode) -> Result<(Brush, Operator)> {
     let wanted = key.text()?;
-    let Some((_, text)) = BRUSHES.iter().find(|(known, _)| *known == wanted) else {
+    let Some((_, text)) = BRUSHES.iter().find(|(known, _)| *known == current_name(wanted)) else {
         let names: Vec<_> = preset_names().collect();
         return Err(key.refused(format!("is “{wanted}”; the presets are {}", names.join(", "))));
     };

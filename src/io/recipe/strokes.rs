@@ -1,4 +1,4 @@
-//! Strokes: readings of the pen, each stroke with its brush, operator and colour. Read and written.
+//! Strokes: readings of the pen, each stroke with its brush, operator and color. Read and written.
 //! Floor 5. Not here: the readings (`samples`), brushes (`brush`, `tips`), the ones that come with
 //! the program (`presets`).
 

@@ -7,7 +7,7 @@ use super::state::LastState;
 use crate::Budget;
 use crate::document::Progress;
 use crate::fs::{FileLock, Fs};
-use crate::project::Cancellable;
+use crate::project::Cancelable;
 use crate::replace::FileStamp;
 use crate::{Error, Result};
 use serde_json::Value;
@@ -95,7 +95,7 @@ pub fn read(
     log: &[u8],
     budget: &Budget,
     progress: &Progress,
-) -> Cancellable<RecoveredDocument> {
+) -> Cancelable<RecoveredDocument> {
     let last = LastState::of(log);
     let version = last.version(file, budget)?;
     let version = version
@@ -125,7 +125,7 @@ impl LostSession {
         &mut self,
         budget: &Budget,
         progress: &Progress,
-    ) -> Cancellable<RecoveredDocument> {
+    ) -> Cancelable<RecoveredDocument> {
         let mark = self.path.with_extension("trying");
         // Without the mark nothing would be lost but the warning.
         let _ = self.fs.create_new(&mark).and_then(|mut mark| mark.sync());
@@ -151,7 +151,7 @@ impl LostSession {
         last == RecordKind::Saved && found.is_ok_and(is_held)
     }
 
-    fn read(&self, budget: &Budget, progress: &Progress) -> Cancellable<RecoveredDocument> {
+    fn read(&self, budget: &Budget, progress: &Progress) -> Cancelable<RecoveredDocument> {
         let io = |e| Error::io(&self.path, e);
         let mut log = Vec::new();
         let handle = self.fs.open(&self.path).map_err(io)?;

@@ -46,7 +46,7 @@ fn a_file_that_is_not_what_was_opened_is_not_replaced() {
 }
 
 #[test]
-fn a_cancelled_save_changes_nothing() {
+fn a_canceled_save_changes_nothing() {
     let fs = disk();
     let progress = Progress::default();
     progress.cancel();

@@ -12,7 +12,7 @@ use crate::io::files::{TrackedFiles, read_file};
 use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, RecipeSource};
 use crate::io::{Budget, RecipeFolder, UserFiles, deep_paint};
-use crate::math::{Size, srgb::Color};
+use crate::math::{Size, named::former_name, srgb::Color};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage};
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
 use crate::{Error, Result};
@@ -75,7 +75,7 @@ enum ShowArg {
 fn shown() -> impl TypedValueParser<Value = ShowArg> {
     let names = SurfaceView::ALL
         .iter()
-        .map(|(_, name)| PossibleValue::new(*name))
+        .map(|(_, name)| PossibleValue::new(*name).aliases(former_name(name)))
         .chain([PossibleValue::new("sheet")]);
     PossibleValuesParser::new(names)
         .map(|name| SurfaceView::from_name(&name).map_or(ShowArg::Sheet, ShowArg::One))

@@ -55,7 +55,7 @@ fn ball_document(sphere: &LitSphere) -> Option<Document> {
 /// The paint of a sphere; around it the paint of its rim goes on.
 fn painted(sphere: &LitSphere, size: Size) -> TileGrid {
     let (light, side) = (sphere.light(), size.width as usize);
-    let byte = |light: f32| srgb::quantise(srgb::encode(light.max(0.0)));
+    let byte = |light: f32| srgb::quantize(srgb::encode(light.max(0.0)));
     let pixel = |i: usize| {
         let nbar =
             (vec2((i % side) as f32, (i / side) as f32) + 0.5) * (2.0 / side as f32) - Vec2::ONE;
@@ -191,7 +191,7 @@ mod tests {
         let document = session.open_documents[0].document();
         let Content::Shading(live) = &document.layers[0].content else { return None };
         let light = live.params().sphere.as_ref()?.light().at(Vec2::ZERO);
-        Some(light.map(|light| srgb::quantise(srgb::encode(light))))
+        Some(light.map(|light| srgb::quantize(srgb::encode(light))))
     }
 
     fn fill(session: &mut Session, color: srgb::Color) {

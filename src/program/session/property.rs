@@ -35,7 +35,7 @@ actions! {
         "linear" BlendLinear { on: bool }
         "clip" ClipBelow { on: bool }
         "lock" Locked { lock: LayerLock }
-        "label" Labelled { label: LayerLabel }
+        "label" Labeled { label: LayerLabel }
         "clip to surface" ClipToSurface { on: bool }
         /// Where the layer's frame lies on the canvas; none: it is the canvas.
         "transform" Transformed { transform: Option<LayerTransform> }
@@ -109,7 +109,7 @@ impl Property {
             Property::Blend { .. } | Property::BlendLinear { .. } => "Blend mode",
             Property::ClipBelow { .. } => "Clip to layer below",
             Property::Locked { .. } => "Lock layer",
-            Property::Labelled { .. } => "Label",
+            Property::Labeled { .. } => "Label",
             Property::ClipToSurface { .. } => "Clip to surface",
             Property::Transformed { .. } | Property::Sampled { .. } => "Transform",
             Property::Unliquified {} => "Remove liquify",
@@ -172,7 +172,7 @@ impl Property {
             Property::BlendLinear { on } => layer.blend_linear = *on,
             Property::ClipBelow { on } => layer.clip_below = *on,
             Property::Locked { lock } => layer.lock = *lock,
-            Property::Labelled { label } => layer.label = *label,
+            Property::Labeled { label } => layer.label = *label,
             Property::ClipToSurface { on } => layer.clip_to_surface = *on,
             Property::Mask { mask } => set_mask(layer, *mask),
             Property::MaskInverted { on } => {

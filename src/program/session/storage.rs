@@ -67,10 +67,10 @@ pub fn kind_of(file: &Path) -> Result<FileUse> {
     Ok(
         if found.looks_like_normals
             || !found.normals.is_empty()
-            || (named == Some(MapPart::Normal) && !found.is_grey)
+            || (named == Some(MapPart::Normal) && !found.is_gray)
         {
             FileUse::Normals
-        } else if !found.depths.is_empty() || (found.is_grey && named == Some(MapPart::Depth)) {
+        } else if !found.depths.is_empty() || (found.is_gray && named == Some(MapPart::Depth)) {
             FileUse::Depth
         } else {
             FileUse::Picture

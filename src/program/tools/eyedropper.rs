@@ -52,7 +52,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn the_colour_is_that_of_the_picture_and_beyond_it_there_is_none() {
+    fn the_color_is_that_of_the_picture_and_beyond_it_there_is_none() {
         let teal = Color { r: 10, g: 120, b: 130, a: 255 };
         let layers = vec![Arc::new(Layer::new("fill", Content::Fill(teal)))];
         let document = Document { layers, ..Document::empty(Size::new(100, 90)) };

@@ -111,7 +111,7 @@ mod tests {
     use crate::math::vec2;
 
     #[test]
-    fn a_drag_moves_scales_or_turns_about_the_centre() {
+    fn a_drag_moves_scales_or_turns_about_the_center() {
         let start = Placement { center: vec2(50.0, 50.0), scale: 1.0, rotation: 10.0 };
         let moved = placed(start, ImageDrag::Move, vec2(10.0, 10.0), vec2(15.0, 30.0));
         assert_eq!(moved.center, vec2(55.0, 70.0));

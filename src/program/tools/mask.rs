@@ -7,7 +7,7 @@ use super::closed;
 use super::purpose::StrokePurpose;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolSettings};
 use crate::document::{Content, Document, Layer, LayerId, LayerMask, MaskKind, PixelLayer};
-use crate::math::srgb::{Color, luminance, quantise};
+use crate::math::srgb::{Color, luminance, quantize};
 use crate::paint::Selection;
 use crate::raster::{CoverageGrid, Plane, TILE, Tile, TileAt, TileGrid};
 use std::collections::HashMap;
@@ -60,11 +60,11 @@ fn painted(
 ) -> GestureStart {
     let Color { r, g, b, a } = context.tools.color;
     let [r, g, b] = [r, g, b].map(|v| f32::from(v) / 255.0);
-    let grey = quantise(luminance(r, g, b));
-    let shown = greys(&mask);
+    let gray = quantize(luminance(r, g, b));
+    let shown = grays(&mask);
     let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: shown.clone() };
     let sheet = Layer::new("mask", Content::Pixels(pixels));
-    let color = Color { r: grey, g: grey, b: grey, a };
+    let color = Color { r: gray, g: gray, b: gray, a };
     let tools = ToolSettings { color, ..context.tools.clone() };
     let on_sheet = ToolContext {
         layer: Some(sheet.id),
@@ -154,7 +154,7 @@ impl Gesture for MaskGesture {
 }
 
 /// A mask as opaque grays; tiles of one gray are one tile.
-fn greys(mask: &Plane<u8>) -> TileGrid {
+fn grays(mask: &Plane<u8>) -> TileGrid {
     let canvas = mask.size().rect();
     let mut grid = TileGrid::for_rect(canvas);
     let mut plain: HashMap<u8, Option<Arc<Tile>>> = HashMap::new();
@@ -164,11 +164,11 @@ fn greys(mask: &Plane<u8>) -> TileGrid {
         let first = mask.at(columns.start, inside.y0 as usize);
         let is_plain = (inside.y0..inside.y1)
             .all(|y| mask.row(y as usize)[columns.clone()].iter().all(|&v| v == first));
-        let made = |grey: &dyn Fn(i32, i32) -> u8| {
+        let made = |gray: &dyn Fn(i32, i32) -> u8| {
             let place = |i: usize| (rect.x0 + (i % TILE) as i32, rect.y0 + (i / TILE) as i32);
             let pixel = |i: usize| {
                 let (x, y) = place(i);
-                let v = grey(x, y);
+                let v = gray(x, y);
                 [v, v, v, 255]
             };
             Tile::from_pixels((0..TILE * TILE).flat_map(pixel).collect()).map(Arc::new)

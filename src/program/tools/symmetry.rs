@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn images_stand_across_their_axes_and_round_the_centre() {
+    fn images_stand_across_their_axes_and_round_the_center() {
         assert_eq!(places(Symmetry::None), [vec2(120.0, 40.0)]);
         assert_eq!(places(Symmetry::Vertical), [vec2(120.0, 40.0), vec2(80.0, 40.0)]);
         assert_eq!(places(Symmetry::Horizontal), [vec2(120.0, 40.0), vec2(120.0, 60.0)]);

@@ -33,7 +33,7 @@ pub fn is_moving_pieces(tool: ToolKind) -> bool {
     matches!(tool, ToolKind::Image | ToolKind::Gradient)
 }
 
-/// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted
+/// The pen comes down on the sheet with a brush: strokes are stabilized and spaced there, painted
 /// with the operator that unwrapped it, and cut where they leave a piece. All of them are one step.
 ///
 /// `pen` is on the sheet; the context's points are on the canvas.

@@ -280,6 +280,6 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
 /// The colors that distinguish anchors, here and in their insets (SF fig. 9).
 pub fn anchor_color(index: usize) -> Color32 {
     let [r, g, b] =
-        crate::document::view::anchor_color(index).to_array().map(crate::math::srgb::quantise);
+        crate::document::view::anchor_color(index).to_array().map(crate::math::srgb::quantize);
     Color32::from_rgb(r, g, b)
 }

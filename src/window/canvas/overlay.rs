@@ -182,9 +182,9 @@ pub fn loaded(ctx: &egui::Context, name: &str, picture: &Picture) -> Option<Text
             texels[y * picture.size.width as usize + x]
         }
         crate::raster::picture::Texels::Linear(_) => {
-            let encode = |v: f32| crate::math::srgb::quantise(crate::math::srgb::encode(v));
+            let encode = |v: f32| crate::math::srgb::quantize(crate::math::srgb::encode(v));
             let [r, g, b, a] = picture.linear_at(x, y);
-            [encode(r), encode(g), encode(b), crate::math::srgb::quantise(a)]
+            [encode(r), encode(g), encode(b), crate::math::srgb::quantize(a)]
         }
     };
     if width == 0 || height == 0 {

@@ -220,9 +220,9 @@ fn hint(painter: &Painter, at: Pos2, text: &str) {
 /// A small lit ball with a needle in a direction (camera space, y up).
 pub fn ball(painter: &Painter, at: Pos2, radius: f32, normal: Vec3) {
     painter.circle(at, radius, Color32::from_gray(0x58), Stroke::new(1.4, DARK));
-    for (share, grey) in [(0.8, 0x78u8), (0.55, 0xa0), (0.3, 0xc8)] {
+    for (share, gray) in [(0.8, 0x78u8), (0.55, 0xa0), (0.3, 0xc8)] {
         let center = at + eframe::egui::vec2(-0.3, -0.3) * radius * (1.0 - share);
-        painter.circle_filled(center, radius * share, Color32::from_gray(grey));
+        painter.circle_filled(center, radius * share, Color32::from_gray(gray));
     }
     let tip = at + eframe::egui::vec2(normal.x, -normal.y) * radius;
     painter.line_segment([at, tip], Stroke::new(2.0, ACCENT));

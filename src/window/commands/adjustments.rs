@@ -69,7 +69,7 @@ commands! {
         "The colors of a .cube file";
     "invert", "New invert layer", "Invert colors", &[ctrl(Key::I)],
         "Light becomes dark, and each color its complement";
-    "posterise", "New posterize layer", "Posterize…", NO_KEYS, "A few tones of each channel";
+    "posterize", "New posterize layer", "Posterize…", NO_KEYS, "A few tones of each channel";
     "threshold", "New threshold layer", "Threshold…", NO_KEYS,
         "Black and white only";
     "gradient-map", "New gradient map layer", "Gradient map…", NO_KEYS,

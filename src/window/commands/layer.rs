@@ -9,7 +9,7 @@ use crate::file_purpose::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
 use crate::session::actions::{ClipboardAction, LayerAction, NewLayer, PartAction};
-use crate::session::chosen::{neighbour, range};
+use crate::session::chosen::{neighbor, range};
 use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use eframe::egui::Key;
 
@@ -52,7 +52,7 @@ fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
     else {
         return;
     };
-    let to = neighbour(open.document(), primary, by);
+    let to = neighbor(open.document(), primary, by);
     let anchor = open.range_start().filter(|_| extends);
     let listed: Vec<_> = open.document().walk().iter().map(|(_, layer)| layer.id).collect();
     let ids = anchor.map_or_else(|| vec![to], |anchor| range(&listed, anchor, to));

@@ -1,4 +1,4 @@
-//! The Paint menu: the current brush, colours and operator.
+//! The Paint menu: the current brush, colors and operator.
 //! Floor 7.
 
 use super::row::{LINE, MenuCommand, always, has_surface, key, row, shift};

@@ -36,7 +36,7 @@ const fn alt(key: Key) -> KeyboardShortcut {
 }
 
 /// Shows the document so many tabs to the right of the one in front, around the end.
-fn show_neighbour(session: &Session, requests: &mut UiRequests, by: usize) {
+fn show_neighbor(session: &Session, requests: &mut UiRequests, by: usize) {
     let index = (session.current + by) % session.open_documents.len().max(1);
     requests.act(Action::File(FileAction::Show { index }));
 }
@@ -218,9 +218,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[ctrl(Key::Tab), ctrl_shift(Key::CloseBracket)],
         "The next tab",
         has_document,
-        |session, requests| show_neighbour(session, requests, 1),
+        |session, requests| show_neighbor(session, requests, 1),
     ),
     row("Previous document", &[ctrl_shift(Key::Tab)], "The tab before this one", has_document, |session, requests| {
-        show_neighbour(session, requests, session.open_documents.len().saturating_sub(1))
+        show_neighbor(session, requests, session.open_documents.len().saturating_sub(1))
     }),
 ];

@@ -54,8 +54,8 @@ fn small(picture: &Picture) -> ColorImage {
         let from_middle = |v: usize| v as f32 + 0.5 - 0.5 * SIDE as f32;
         let away = from_middle(x).hypot(from_middle(y));
         let [r, g, b, _] = picture.linear_at(at(x, picture.size.width), at(y, picture.size.height));
-        let byte = |light: f32| srgb::quantise(srgb::encode(light));
-        let alpha = srgb::quantise((0.5 * SIDE as f32 - away).max(0.0).min(1.0));
+        let byte = |light: f32| srgb::quantize(srgb::encode(light));
+        let alpha = srgb::quantize((0.5 * SIDE as f32 - away).max(0.0).min(1.0));
         Color32::from_rgba_unmultiplied(byte(r), byte(g), byte(b), alpha)
     };
     ColorImage::new([SIDE, SIDE], (0..SIDE * SIDE).map(pixel).collect())

@@ -1,4 +1,4 @@
-//! The editor of the current brush: tip, spread, grain, stabiliser and dynamics. Floor 7. Not here:
+//! The editor of the current brush: tip, spread, grain, stabilizer and dynamics. Floor 7. Not here:
 //! the list of brushes (`brushes`), the curve widget (`curve`).
 
 use super::curve;
@@ -213,7 +213,7 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     chosen.or(changed.then_some(Some(to))).map(of_grain)
 }
 
-/// The kinds of stabiliser.
+/// The kinds of stabilizer.
 #[derive(Clone, Copy, PartialEq)]
 enum StabilizerChoice {
     None,

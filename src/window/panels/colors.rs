@@ -87,7 +87,7 @@ const PALETTE: [[u8; 3]; 14] = [
 fn srgb([h, s, v]: [f32; 3], a: u8) -> Color {
     let channel = |offset: f32| {
         let t = ((h + offset).rem_euclid(1.0) * 6.0 - 3.0).abs() - 1.0;
-        crate::math::srgb::quantise(v * (1.0 - s + s * t.clamp(0.0, 1.0)))
+        crate::math::srgb::quantize(v * (1.0 - s + s * t.clamp(0.0, 1.0)))
     };
     Color { r: channel(0.0), g: channel(2.0 / 3.0), b: channel(1.0 / 3.0), a }
 }
@@ -296,7 +296,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_colour_survives_hue_saturation_and_value() {
+    fn every_color_survives_hue_saturation_and_value() {
         for r in (0..=255).step_by(15) {
             for g in (0..=255).step_by(15) {
                 for b in (0..=255).step_by(15) {

@@ -39,7 +39,7 @@ fn set(requests: &mut UiRequests, layers: &LayerPaths, to: Property, done: bool)
     requests.act(Action::Layer(LayerAction::Set { layer: layers.clone(), to, done }));
 }
 
-/// The colour that shows a label.
+/// The color that shows a label.
 fn color_of(label: LayerLabel) -> Option<Color32> {
     label.color().map(|color| Color32::from_rgb(color.r, color.g, color.b))
 }

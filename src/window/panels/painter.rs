@@ -10,7 +10,7 @@ use crate::shading::{LightSetting, Mood, Painter, Shading, Shadows};
 use crate::widgets::{NumberField, check, named, title};
 use eframe::egui::{self, Ui};
 
-/// One of the colours of the light.
+/// One of the colors of the light.
 type ColorOf = fn(&mut Painter) -> &mut Color;
 
 /// A row for each number of a table.

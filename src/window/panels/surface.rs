@@ -84,7 +84,7 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::Mask => "White where the surface is",
         SurfaceView::Objects => "A color for each object, separated by depth jumps",
         SurfaceView::Curvature => "Convex blue, concave red, flat yellow",
-        SurfaceView::CurvatureGrey => "Convex light, concave dark",
+        SurfaceView::CurvatureGray => "Convex light, concave dark",
         SurfaceView::Directions => "Lines along the direction that curves most",
         SurfaceView::Weights => "How the anchors of the selected layer share the surface",
         SurfaceView::FlowDepth => "How a texture on the surface is compressed",

@@ -18,14 +18,14 @@ const SMALLEST_PT: f32 = 20.0;
 const PAIRED_PT: f32 = 24.0;
 const GAP_PT: f32 = 2.0;
 /// The height of the colors beneath the tools, points.
-const COLOURS_PT: f32 = 124.0;
+const COLORS_PT: f32 = 124.0;
 
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
     let beneath = Panel::bottom("current colors")
         .resizable(false)
         .show_separator_line(false)
         .frame(Frame::NONE);
-    beneath.show(ui, |ui| ui.vertical_centered(|ui| colours(ui, session, requests)));
+    beneath.show(ui, |ui| ui.vertical_centered(|ui| colors(ui, session, requests)));
     // In a very low window tools scroll; the colors stay visible.
     let area = ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     let columns = if ui.available_width() > LARGEST_PT + 1.0 { 2 } else { 1 };
@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRe
 
 /// The width of the bar inside its margins: in a low window tools are in two columns.
 pub fn width_pt(ui: &Ui) -> f32 {
-    let one = side_pt(ui, ui.available_height() - COLOURS_PT, 1);
+    let one = side_pt(ui, ui.available_height() - COLORS_PT, 1);
     if one < SMALLEST_PT { 2.0 * PAIRED_PT + GAP_PT } else { LARGEST_PT }
 }
 
@@ -74,7 +74,7 @@ fn button(
     }
 }
 
-fn colours(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+fn colors(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.add_space(4.0);
     swatch(ui, "First color", session.tools.color, vec2(32.0, 26.0));
     if swatch(ui, "Second color", session.tools.second_color, vec2(32.0, 16.0)).clicked() {

@@ -114,7 +114,7 @@ impl MainWindow {
     fn answered(&mut self, purpose: FilePurpose, answer: FileAnswer) {
         match answer {
             FileAnswer::File(file) => self.chosen(purpose, file),
-            FileAnswer::Cancelled => {}
+            FileAnswer::Canceled => {}
             FileAnswer::Nowhere => {
                 let folder = self.folder();
                 let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };

@@ -210,7 +210,7 @@ impl MainWindow {
         }
     }
 
-    /// What was meant for an edit that was cancelled is dropped with it.
+    /// What was meant for an edit that was canceled is dropped with it.
     pub(super) fn forget_held(&mut self) {
         self.busy.typed.clear();
         self.busy.actions.clear();

@@ -22,7 +22,7 @@ fn is_to_go_on(progress: &Progress) -> bool {
         progress.add_total(SOLVES);
     }
     progress.step();
-    !progress.is_cancelled()
+    !progress.is_canceled()
 }
 
 impl MainWindow {

@@ -83,7 +83,7 @@ impl MainWindow {
             let result = pending.run(progress);
             let is_saved = matches!(result, WriteResult::Saved(..));
             let done = JobResult::then(|window: &mut Self, ctx| window.written(ctx, result));
-            if is_saved { done.even_if_cancelled() } else { done }
+            if is_saved { done.even_if_canceled() } else { done }
         });
     }
 
@@ -105,7 +105,7 @@ impl MainWindow {
             WriteResult::Refused(pending, reason) => {
                 self.dialogs.push(Dialog::Replace(replace::Replace::new(pending, reason)));
             }
-            WriteResult::Cancelled => {}
+            WriteResult::Canceled => {}
             WriteResult::Failed(error) => self.show_error(&error),
         }
     }
@@ -353,7 +353,7 @@ impl MainWindow {
             ui.button("Cancel").clicked() || (escape && !ctx.text_edit_focused())
         };
         // A modal would take the keyboard from what is being typed.
-        let is_cancelled = match ctx.text_edit_focused() {
+        let is_canceled = match ctx.text_edit_focused() {
             true => {
                 let area = egui::Area::new(egui::Id::unique("editing while typing"));
                 let area = area
@@ -363,7 +363,7 @@ impl MainWindow {
             }
             false => Modal::new(egui::Id::unique("editing")).show(ctx, content).inner,
         };
-        if is_cancelled {
+        if is_canceled {
             job.progress.cancel();
             self.forget_held();
         }

@@ -101,7 +101,7 @@ fn paint_too_faint_for_a_byte_is_kept_until_more_of_it_is_seen() {
 }
 
 #[test]
-fn faint_paint_burns_colours_as_floats_do() {
+fn faint_paint_burns_colors_as_floats_do() {
     let brush = Brush { size: 90.0, hardness: 0.0, flow: 0.03, spacing: 0.1, ..Brush::default() };
     let strokes: Vec<Stroke> = (0..6)
         .map(|i| {

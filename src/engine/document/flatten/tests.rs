@@ -16,7 +16,7 @@ fn fill(text: &str) -> Layer {
     Layer::new(text, Content::Fill(color(text)))
 }
 
-/// A paint layer that is one colour in the columns left of `until`.
+/// A paint layer that is one color in the columns left of `until`.
 fn left_of(until: usize, text: &str) -> Layer {
     let Color { r, g, b, a } = color(text);
     let (w, h) = (SIZE.width as usize, SIZE.height as usize);
@@ -81,7 +81,7 @@ fn a_tile_that_one_opaque_layer_fills_is_its_very_own_and_what_composing_gives()
     };
     let alone = prepared(vec![fill("#203040"), opaque.clone()]);
     let own = alone.alone_in_tile(first).unwrap();
-    assert!(alone.compose_tile(first, None).quantised().unwrap().bytes() == own.bytes());
+    assert!(alone.compose_tile(first, None).quantized().unwrap().bytes() == own.bytes());
     assert!(alone.alone_in_tile(second).is_none(), "the canvas ends within the tile");
     let faint = with(opaque.clone(), |layer| layer.opacity = 0.5);
     let clipped = with(fill("#ffffff"), |layer| layer.clip_below = true);
@@ -182,7 +182,7 @@ fn a_clipped_layer_stays_within_its_base() {
         clipped(fill("#ff0000")),
         clipped(left_of(20, "#00ff00")),
     ]);
-    // The base's alpha is 128/255; its colour is replaced entirely.
+    // The base's alpha is 128/255; its color is replaced entirely.
     assert_eq!(p.pixel(10, 0), [0, 128, 0, 255]);
     assert_eq!(p.pixel(30, 0), [128, 0, 0, 255]);
     assert_eq!(p.pixel(60, 0), [0, 0, 0, 255]);
@@ -221,7 +221,7 @@ fn a_clipped_layer_with_nothing_beneath_paints_nothing() {
 #[test]
 fn an_isolated_group_blends_as_one_picture() {
     let inside = || vec![with(fill("#808080"), |l| l.blend = BlendMode::Multiply)];
-    // Isolated, multiply has nothing beneath and lays its grey over the red; passed through, it
+    // Isolated, multiply has nothing beneath and lays its gray over the red; passed through, it
     // multiplies the red.
     assert_eq!(
         picture(vec![fill("#ff0000"), group(inside(), false)]).pixel(0, 0),
@@ -309,7 +309,7 @@ fn what_an_opaque_layer_hides_is_never_asked_for() {
 }
 
 #[test]
-fn a_cancelled_flattening_gives_nothing() {
+fn a_canceled_flattening_gives_nothing() {
     let progress = Progress::default();
     progress.cancel();
     assert!(flatten(&document(vec![fill("#ffffff")]), &progress).is_none());

@@ -285,7 +285,7 @@ fn paint_that_a_part_carried_beyond_the_canvas_comes_back_with_it() {
 }
 
 #[test]
-fn a_stroke_with_a_home_of_its_own_goes_with_it_and_its_neighbours_stay() {
+fn a_stroke_with_a_home_of_its_own_goes_with_it_and_its_neighbors_stay() {
     let other = ball("eye", vec2(180.0, 60.0), 20.0);
     let flat = strokes("strokes", &[vec2(160.0, 140.0), vec2(220.0, 150.0)], Operator::None);
     let both = document(vec![flat]).with_part(other);

@@ -44,13 +44,13 @@ use crate::surface::Bend;
     reason = "one stands in each layer, and layers stand behind `Arc`"
 )]
 pub enum Content {
-    /// One colour everywhere.
+    /// One color everywhere.
     Fill(Color),
     /// Pixels to paint on.
     Pixels(PixelLayer),
     /// A picture, bent over the surface.
     Image(Live<PlacedImage>),
-    /// A colour ramp, bent over the surface.
+    /// A color ramp, bent over the surface.
     Gradient(Live<Gradient>),
     /// Strokes that stay editable.
     Strokes(Live<StrokeList>),
@@ -58,7 +58,7 @@ pub enum Content {
     Shading(Live<Shading>),
     /// What lies beneath, brighter or darker by the curvature.
     RadianceScaling(RadianceScaling),
-    /// What lies beneath, its colours adjusted.
+    /// What lies beneath, its colors adjusted.
     Adjustment(LiveAdjustment),
     /// Detail for the surface that layers above see.
     Normals(NormalLayer),
@@ -112,7 +112,7 @@ trait LayerKind {
     }
 
     /// Computes now what many tiles would otherwise compute at the same time.
-    /// Ends soon once it is cancelled.
+    /// Ends soon once it is canceled.
     fn warm(&self, _scene: &Scene, _progress: &Progress) {}
 
     /// The same for what is seen behind contours.

@@ -8,7 +8,7 @@ use super::Layer;
 use super::map::LayerMap;
 use super::mask::{DerivedMask, MaskKind};
 use super::transform::{LayerTransform, scaled_matrix};
-use crate::math::srgb::{quantise, quantise_deep};
+use crate::math::srgb::{quantize, quantize_deep};
 use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::{Placement, Sample, Selection, Stroke, StrokeHome};
 use crate::raster::tile::deep;
@@ -242,13 +242,13 @@ impl CanvasScale {
             let mut pixels = deep::clear_rows();
             for (pixels, taps) in pixels.iter_mut().zip(&rows) {
                 let levels = sums(taps, &mut row).into_iter().enumerate();
-                levels.for_each(|(x, v)| deep::put(pixels, x, v.map(|v| quantise_deep(v / 255.0))));
+                levels.for_each(|(x, v)| deep::put(pixels, x, v.map(|v| quantize_deep(v / 255.0))));
             }
             return Tile::from_deep(pixels);
         }
         let mut bytes = Vec::with_capacity(TILE * TILE * 4);
         for taps in &rows {
-            bytes.extend(sums(taps, &mut row).as_flattened().iter().map(|v| quantise(v / 255.0)));
+            bytes.extend(sums(taps, &mut row).as_flattened().iter().map(|v| quantize(v / 255.0)));
         }
         bytes.chunks_exact(4).any(|p| p[3] > 0).then(|| Tile::from_bytes(bytes)).flatten()
     }
@@ -274,7 +274,7 @@ impl CanvasScale {
                     .map(|&(px, wx)| wx * wy * f32::from(plane.clamped(px, py)))
                     .sum::<f32>()
             };
-            quantise(rows[y].iter().map(of_row).sum::<f32>() / 255.0)
+            quantize(rows[y].iter().map(of_row).sum::<f32>() / 255.0)
         })
     }
 }

@@ -182,11 +182,11 @@ pub fn of_profiles(
 ) -> Option<Form> {
     let (x0, y0) = outline.corner();
     let profile = |shading: &ProfilePicture| {
-        let grey = Plane::from_fn(outline.size(), |x, y| {
+        let gray = Plane::from_fn(outline.size(), |x, y| {
             let byte = shading.picture.coverage.get(x as i32 + x0, y as i32 + y0).unwrap_or(0);
             decode(f32::from(byte) / 255.0)
         });
-        ShadedDrawing { grey, light: shading.light.normalize_or(Vec3::Z) }
+        ShadedDrawing { gray, light: shading.light.normalize_or(Vec3::Z) }
     };
     let all: Vec<ShadedDrawing> = shadings.iter().map(profile).collect();
     profiles::formed(&all, outline)?.transformed(still, most_px)

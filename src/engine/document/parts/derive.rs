@@ -30,7 +30,7 @@ impl Document {
         self.parts.forget_drawn();
         let mut whole = Whole::new(self);
         for (i, part) in shown().enumerate() {
-            if progress.is_cancelled() {
+            if progress.is_canceled() {
                 return None;
             }
             if let Some((made, form)) = self.made_now(part, outlines[i].clone(), &outlines[i + 1..])

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ground_is_told_from_the_figure_by_alpha_or_by_its_one_colour() {
+    fn a_ground_is_told_from_the_figure_by_alpha_or_by_its_one_color() {
         let cut_out = DrawingTraits::of(&drawn([255, 255, 255, 0], [200.0, 60.0, 20.0]), CANVAS);
         assert_eq!(
             (cut_out.background, cut_out.is_of_flats()),

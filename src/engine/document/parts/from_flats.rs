@@ -13,7 +13,7 @@ use crate::shape::flats::palette::NOTHING;
 use crate::shape::flats::places::ColorPlaces;
 use crate::shape::flats::shares::Flats;
 
-pub use crate::shape::flats::shares::MOST_COLOURS;
+pub use crate::shape::flats::shares::MOST_COLORS;
 
 /// From this share of a figure in flat areas on, its colors are worth a part each: shaded paint
 /// has few pixels of any one color.
@@ -65,7 +65,7 @@ impl FlatParts {
         let least = LEAST_SHARE * 100.0;
         Some(format!(
             "{areas} left without a part: a part covers at least {least} % of the picture, and \
-             there are at most {MOST_COLOURS} parts."
+             there are at most {MOST_COLORS} parts."
         ))
     }
 }
@@ -132,8 +132,8 @@ fn places(flats: &Flats, rect: Rect) -> FlatAreas {
     }
     let mut largest: Vec<usize> = (0..all.len()).collect();
     largest.sort_by_key(|i| (std::cmp::Reverse(all[*i].0), *i));
-    left_out += largest.len().saturating_sub(MOST_COLOURS);
-    largest.truncate(MOST_COLOURS);
+    left_out += largest.len().saturating_sub(MOST_COLORS);
+    largest.truncate(MOST_COLORS);
     largest.sort_unstable();
     // What is too small for a part does not keep two areas from meeting.
     let mut number = vec![0u32; all.len() + 1];

@@ -56,7 +56,7 @@ impl Document {
         self.reshaped_with_progress(&Progress::default()).unwrap_or_else(|| self.clone())
     }
 
-    /// The same, a step for each part; `None` if cancelled.
+    /// The same, a step for each part; `None` if canceled.
     pub fn reshaped_with_progress(&self, progress: &Progress) -> Option<Document> {
         let placed = self.with_homes_placed().with_ink_lifted();
         if placed.is_shaped() {

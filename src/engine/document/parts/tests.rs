@@ -112,7 +112,7 @@ fn paint_that_changes_one_outline_leaves_the_forms_of_the_others() {
 }
 
 #[test]
-fn colours_become_parts_and_what_bulges_into_another_lies_in_front() {
+fn colors_become_parts_and_what_bulges_into_another_lies_in_front() {
     let (body, eye, ear) = ([200, 120, 60], [250, 250, 250], [120, 60, 30]);
     let flats = discs(
         "Flats",
@@ -188,9 +188,9 @@ fn every_kind_makes_a_surface() {
     let shading = |light: Vec3| {
         let lit = |x: usize, y: usize| {
             let n = disc.surface.as_ref().unwrap().normal(x, y);
-            let grey = (0.9 * n.dot(light.normalize())).max(0.0);
+            let gray = (0.9 * n.dot(light.normalize())).max(0.0);
             if disc.surface.as_ref().unwrap().coverage(x, y) > 0 {
-                crate::math::srgb::quantise(crate::math::srgb::encode(grey))
+                crate::math::srgb::quantize(crate::math::srgb::encode(gray))
             } else {
                 0
             }

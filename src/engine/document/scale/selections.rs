@@ -3,7 +3,7 @@
 use super::CanvasScale;
 use crate::document::layer::scale::covered;
 use crate::document::{Document, NamedSelection};
-use crate::math::{Rect, srgb::quantise};
+use crate::math::{Rect, srgb::quantize};
 use crate::paint::Selection;
 use crate::raster::{CoverageGrid, TILE};
 use crate::surface::region::SurfaceRegion;
@@ -75,7 +75,7 @@ impl CanvasScale {
                             };
                             columns.iter().map(|&(x, wx)| wx * wy * at(x)).sum::<f32>()
                         };
-                        *to = quantise(rows.iter().map(of_row).sum::<f32>() / 255.0);
+                        *to = quantize(rows.iter().map(of_row).sum::<f32>() / 255.0);
                     }
                 }
             },

@@ -19,7 +19,7 @@ pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
     let rows = (pictures.len() as u32).div_ceil(columns);
     let side = |cells: u32, cell: u32| cells * (cell + GAP_PX) + GAP_PX;
     let sheet = Size::new(side(columns, cell.width), side(rows, cell.height));
-    let background = crate::math::srgb::quantise(BACKGROUND);
+    let background = crate::math::srgb::quantize(BACKGROUND);
     let mut texels = vec![[background, background, background, 255]; sheet.area()];
     for (i, picture) in pictures.iter().enumerate() {
         let (column, row) = (i as u32 % columns, i as u32 / columns);
@@ -55,5 +55,5 @@ fn mean_over_background(picture: &Picture, pixels: Rect) -> [u8; 3] {
         }
     }
     let count = (pixels.width() * pixels.height()).max(1) as f32;
-    sum.map(|v| crate::math::srgb::quantise(crate::math::srgb::encode(v / count)))
+    sum.map(|v| crate::math::srgb::quantize(crate::math::srgb::encode(v / count)))
 }

@@ -61,14 +61,14 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
 fn shown(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
     let covered = |x: usize, y: usize| surface.is_none_or(|s| s.coverage(x, y) > 0);
     let lines = marks.map(|mark| mark.line);
-    let grey = smeared_noise(&lines, LineStyle::for_size(marks.size()), |from, to| {
+    let gray = smeared_noise(&lines, LineStyle::for_size(marks.size()), |from, to| {
         surface.is_none_or(|s| is_passable(s.links_plane(), from, to))
     });
     let full = strong(marks, covered);
     painted(marks.size(), surface, |x, y| {
         let mark = marks.at(x, y);
         let saturation = 1.0 - (-1.5 * mark.magnitude / full).exp();
-        let light = 0.25 + 0.75 * grey.at(x, y);
+        let light = 0.25 + 0.75 * gray.at(x, y);
         (Vec3::ONE.lerp(hue(mark.hue_of), saturation) * light).to_array()
     })
 }
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn opposite_directions_have_one_colour_and_crossing_ones_opposite_colours() {
+    fn opposite_directions_have_one_color_and_crossing_ones_opposite_colors() {
         let d = vec2(0.8, 0.6);
         assert!((hue(d) - hue(-d)).length() < 1e-5);
         assert!((hue(d) + hue(d.perp()) - Vec3::ONE).length() < 1e-4);

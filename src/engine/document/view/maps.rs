@@ -41,7 +41,7 @@ pub(super) fn curvature(surface: &Surface, options: &ViewOptions) -> Picture {
     })
 }
 
-pub(super) fn curvature_grey(surface: &Surface, options: &ViewOptions) -> Picture {
+pub(super) fn curvature_gray(surface: &Surface, options: &ViewOptions) -> Picture {
     let curvature = surface.curvature(options.blur_px);
     painted(surface.size(), Some(surface), |x, y| {
         [0.5 + 0.5 * curvature.kappa(x, y, options.curvature_scale_px); 3]

@@ -32,13 +32,13 @@ pub(super) fn plots() -> Option<Picture> {
     for (i, alpha) in ALPHAS.into_iter().enumerate() {
         let corner = vec2(MARGIN + i as f32 * (SIDE + MARGIN), MARGIN);
         let place = |delta: f32, sigma: f32| corner + SIDE * vec2(delta, 1.0 - sigma / MOST);
-        let grey = Vec3::splat(0.55);
+        let gray = Vec3::splat(0.55);
         let dashes = StrokeDash::new(vec![4.0, 4.0], 0.0);
         for guide in [[place(0.0, 1.0), place(1.0, 1.0)], [place(alpha, 0.0), place(alpha, MOST)]] {
             draw(
                 &mut pixmap,
                 &guide,
-                grey,
+                gray,
                 Stroke { width: 1.0, dash: dashes.clone(), ..Stroke::default() },
             );
         }
@@ -68,7 +68,7 @@ fn color_of(kappa: f32) -> Vec3 {
 fn draw(pixmap: &mut Pixmap, points: &[Vec2], color: Vec3, stroke: Stroke) {
     let Some(path) = line_through(points) else { return };
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
-    let [r, g, b] = color.to_array().map(crate::math::srgb::quantise);
+    let [r, g, b] = color.to_array().map(crate::math::srgb::quantize);
     paint.set_color_rgba8(r, g, b, 255);
     pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
 }

@@ -79,14 +79,14 @@ fn a_ball_is_convex_blue_and_light_and_lit_from_the_upper_left() {
         pixel(&draw(&ball(), None, SurfaceView::Curvature, &options).unwrap(), 80, 80);
     assert!(b > r, "{r} {b}");
     assert!(
-        pixel(&draw(&ball(), None, SurfaceView::CurvatureGrey, &options).unwrap(), 80, 80)[0] > 200
+        pixel(&draw(&ball(), None, SurfaceView::CurvatureGray, &options).unwrap(), 80, 80)[0] > 200
     );
     let lit = drawn(SurfaceView::Lit);
     assert!(pixel(&lit, 55, 50)[0] > pixel(&lit, 105, 110)[0]);
 }
 
 #[test]
-fn each_anchor_has_the_colour_of_what_it_holds() {
+fn each_anchor_has_the_color_of_what_it_holds() {
     let weights = drawn(SurfaceView::Weights);
     let ([r0, _, b0, _], [_, g1, b1, _]) = (pixel(&weights, 30, 80), pixel(&weights, 130, 80));
     assert!(b0 > r0 && g1 > b1, "the first anchor is blue, the second green");

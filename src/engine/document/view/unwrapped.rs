@@ -5,7 +5,7 @@ use super::ViewUnavailable;
 use crate::document::{
     Document, Highlights, Layer, Progress, flatten, flatten_deep, flatten_layer,
 };
-use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
+use crate::math::{Rect, Size, Vec2, srgb::quantize, vec2};
 use crate::memory::filled_or_unwind;
 use crate::paint::Placement;
 use crate::raster::{Picture, TileGrid};
@@ -57,7 +57,7 @@ impl UnwrappedPicture {
     pub fn picture(&self) -> Option<Picture> {
         let straight = |&[r, g, b, a]: &[f32; 4]| {
             let over = 1.0 / a.max(1e-6);
-            [r * over, g * over, b * over, a].map(quantise)
+            [r * over, g * over, b * over, a].map(quantize)
         };
         Picture::srgb8(self.size, self.pixels.par_iter().map(straight).collect())
     }

@@ -46,7 +46,7 @@ fn with_dots(picture: &Picture, bend: &Bend, colors: &[Vec3]) -> Option<Picture>
     for (anchor, color) in bend.anchors.iter().zip(colors) {
         if let Some(dot) = PathBuilder::from_circle(anchor.at.x, anchor.at.y, radius) {
             let mut paint = Paint { anti_alias: true, ..Paint::default() };
-            let [r, g, b] = color.to_array().map(srgb::quantise);
+            let [r, g, b] = color.to_array().map(srgb::quantize);
             paint.set_color_rgba8(r, g, b, 255);
             pixmap.fill_path(&dot, &paint, FillRule::Winding, Transform::identity(), None);
             paint.set_color(Color::WHITE);

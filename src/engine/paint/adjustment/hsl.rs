@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_come_back_from_hue_saturation_and_lightness() {
+    fn colors_come_back_from_hue_saturation_and_lightness() {
         for i in 0..512 {
             let rgb = [i % 8, i / 8 % 8, i / 64].map(|v| v as f32 / 7.0);
             let back = to_rgb(of_rgb(rgb));

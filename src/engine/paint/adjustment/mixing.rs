@@ -170,20 +170,20 @@ impl Parameters for PhotoFilter {
 pub struct ChannelMixer {
     /// For red, green and blue: percent of red, green and blue, and a constant, `[−200, 200]`.
     pub outputs: [[f32; 4]; 3],
-    /// All channels become the one of `grey`.
+    /// All channels become the one of `gray`.
     pub monochrome: bool,
     /// The shares of gray, with a constant.
-    pub grey: [f32; 4],
+    pub gray: [f32; 4],
 }
 
 /// What each channel consists of where nothing is mixed, and the gray that is offered.
 const UNMIXED: [[f32; 4]; 3] =
     [[100.0, 0.0, 0.0, 0.0], [0.0, 100.0, 0.0, 0.0], [0.0, 0.0, 100.0, 0.0]];
-const GREY: [f32; 4] = [40.0, 40.0, 20.0, 0.0];
+const GRAY: [f32; 4] = [40.0, 40.0, 20.0, 0.0];
 
 impl Default for ChannelMixer {
     fn default() -> Self {
-        Self { outputs: UNMIXED, monochrome: false, grey: GREY }
+        Self { outputs: UNMIXED, monochrome: false, gray: GRAY }
     }
 }
 
@@ -194,7 +194,7 @@ impl ChannelMixer {
         let mixed = |[r, g, b, constant]: [f32; 4]| {
             (r * rgb[0] + g * rgb[1] + b * rgb[2] + constant) / 100.0
         };
-        if self.monochrome { [mixed(self.grey); 3] } else { self.outputs.map(mixed) }
+        if self.monochrome { [mixed(self.gray); 3] } else { self.outputs.map(mixed) }
     }
 }
 
@@ -218,7 +218,7 @@ impl Parameters for ChannelMixer {
         for ((name, shares), defaults) in CHANNELS.into_iter().zip(&mut self.outputs).zip(UNMIXED) {
             output(name, defaults, shares);
         }
-        output(named("grey", "Gray", "Used if it is monochrome"), GREY, &mut self.grey);
+        output(named("gray", "Gray", "Used if it is monochrome"), GRAY, &mut self.gray);
         v.flag(named("monochrome", "Monochrome", "Grays"), false, &mut self.monochrome);
     }
 }
@@ -248,7 +248,7 @@ impl Default for BlackWhite {
 impl BlackWhite {
     /// min + (mid − min) · weight of the secondary color + (max − mid) · weight of the primary.
     #[inline(always)]
-    pub fn grey(&self, [r, g, b]: [f32; 3]) -> f32 {
+    pub fn gray(&self, [r, g, b]: [f32; 3]) -> f32 {
         let [reds, yellows, greens, cyans, blues, magentas] = self.weights;
         let (low, high) = hsl::extent([r, g, b]);
         let middle = r.max(g).min(r.min(g).max(b));
@@ -272,12 +272,12 @@ impl BlackWhite {
     /// What a color becomes, encoded, `[0, 1]`.
     #[inline(always)]
     pub fn color(&self, rgb: [f32; 3]) -> [f32; 3] {
-        let grey = self.grey(rgb).max(0.0).min(1.0);
+        let gray = self.gray(rgb).max(0.0).min(1.0);
         if !self.is_tinted {
-            return [grey; 3];
+            return [gray; 3];
         }
         let [r, g, b, _] = self.color.to_f32();
-        hsl::with_luminosity([r, g, b], grey)
+        hsl::with_luminosity([r, g, b], gray)
     }
 }
 

@@ -98,14 +98,14 @@ impl RowAdjuster {
     fn of(adjustment: &ColorAdjustment) -> Self {
         use ColorAdjustment as A;
         match adjustment {
-            A::Levels(own) if own.is_grey() => alike(|v| own.tone(0, v)),
+            A::Levels(own) if own.is_gray() => alike(|v| own.tone(0, v)),
             A::Levels(own) => Self::Tones([0, 1, 2].map(|c| tabulated(|v| own.tone(c, v)))),
-            A::Curves(own) if own.is_grey() => alike(own.tone(0)),
+            A::Curves(own) if own.is_gray() => alike(own.tone(0)),
             A::Curves(own) => Self::Tones([0, 1, 2].map(|c| tabulated(own.tone(c)))),
             A::BrightnessContrast(own) => alike(own.tone()),
             A::Exposure(own) => alike(|v| own.tone(v)),
             A::Invert(_) => alike(Invert::tone),
-            A::Posterise(own) => alike(|v| own.tone(v)),
+            A::Posterize(own) => alike(|v| own.tone(v)),
             A::HueSaturation(own) => colors(own.color()),
             A::ColorBalance(own) => colors({
                 let own = *own;

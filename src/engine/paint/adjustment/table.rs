@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn greys_between_greys_stay_grey_where_colours_are_bent() {
+    fn grays_between_grays_stay_gray_where_colors_are_bent() {
         let table = cube(3, |[r, g, b]| if r == g && g == b { [r * r; 3] } else { [r, 0.0, 1.0] });
         for i in 0..=100 {
             let [r, g, b] = table.color([i as f32 / 100.0; 3]);

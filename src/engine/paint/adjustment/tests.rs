@@ -101,7 +101,7 @@ fn adjustments_begin_by_changing_little_where_that_is_possible() {
     for adjustment in ColorAdjustment::all() {
         let begins_neutral = !matches!(
             adjustment.name(),
-            "black-white" | "photo-filter" | "invert" | "posterise" | "threshold" | "gradient-map"
+            "black-white" | "photo-filter" | "invert" | "posterize" | "threshold" | "gradient-map"
         );
         for i in 0..64 {
             let rgb = [i % 4, i / 4 % 4, i / 16].map(|v| v as f32 / 3.0);
@@ -170,12 +170,12 @@ fn levels_stretch_between_black_and_white() {
 }
 
 #[test]
-fn posterised_bytes_on_a_step_are_not_rounded_below_it() {
-    let posterise = Posterise { levels: 4.0 };
+fn posterized_bytes_on_a_step_are_not_rounded_below_it() {
+    let posterize = Posterize { levels: 4.0 };
     for (byte, step) in
         [(0, 0.0), (63, 0.0), (64, 1.0), (127, 1.0), (128, 2.0), (192, 3.0), (255, 3.0)]
     {
-        assert_eq!(posterise.tone(byte as f32 / 255.0), step / 3.0, "{byte}");
+        assert_eq!(posterize.tone(byte as f32 / 255.0), step / 3.0, "{byte}");
     }
 }
 
@@ -186,7 +186,7 @@ fn a_stop_of_exposure_doubles_the_light() {
 }
 
 #[test]
-fn hues_turn_and_greys_stay() {
+fn hues_turn_and_grays_stay() {
     let turned = HueSaturation {
         master: HslShift { hue: 120.0, ..HslShift::default() },
         ..HueSaturation::default()
@@ -210,8 +210,8 @@ fn hues_turn_and_greys_stay() {
 fn black_and_white_weighs_hues() {
     let own = BlackWhite::default();
     // Orange: 0.2 is gray, from there to 0.5 yellow (60 %), from 0.5 to 1 red (40 %).
-    assert!((own.grey([1.0, 0.5, 0.2]) - (0.2 + 0.3 * 0.6 + 0.5 * 0.4)).abs() < 1e-6);
-    assert_eq!(own.grey([0.5; 3]), 0.5);
+    assert!((own.gray([1.0, 0.5, 0.2]) - (0.2 + 0.3 * 0.6 + 0.5 * 0.4)).abs() < 1e-6);
+    assert_eq!(own.gray([0.5; 3]), 0.5);
 }
 
 #[test]

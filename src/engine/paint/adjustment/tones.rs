@@ -74,7 +74,7 @@ impl Levels {
         self.master.tone(self.channels[channel].tone(x))
     }
 
-    pub(super) fn is_grey(&self) -> bool {
+    pub(super) fn is_gray(&self) -> bool {
         self.channels == [LevelsRange::default(); 3]
     }
 }
@@ -104,7 +104,7 @@ impl Curves {
         move |x| master.at(own.at(x).max(0.0).min(1.0))
     }
 
-    pub(super) fn is_grey(&self) -> bool {
+    pub(super) fn is_gray(&self) -> bool {
         self.channels.iter().all(ToneCurve::is_straight)
     }
 }
@@ -245,18 +245,18 @@ impl Parameters for Invert {
 
 /// A few tones of each channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Posterise {
+pub struct Posterize {
     /// Tones, `[2, 255]`.
     pub levels: f32,
 }
 
-impl Default for Posterise {
+impl Default for Posterize {
     fn default() -> Self {
         Self { levels: 4.0 }
     }
 }
 
-impl Posterise {
+impl Posterize {
     /// ⌊n x 255/256⌋ / (n − 1).
     pub fn tone(&self, x: f32) -> f32 {
         let n = self.levels.round();
@@ -267,7 +267,7 @@ impl Posterise {
     }
 }
 
-impl Parameters for Posterise {
+impl Parameters for Posterize {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         let name = named("levels", "Levels", "How many tones each channel has");
         v.number(NumberParameter::whole(name, 2.0, 255.0, 4.0), &mut self.levels);

@@ -5,7 +5,7 @@
 use super::round::{RoundTip, RowPaint, bent_row, flat_row};
 use super::shape::{self, TipShape};
 use super::softened::SoftenedStamps;
-use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, TouchedBlocks};
+use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbors, TouchedBlocks};
 use crate::math::{Affine2, Mat2, Rect};
 use crate::paint::brush_options::Falloff;
 use crate::paint::image::transform;
@@ -158,14 +158,14 @@ impl PlacedDab<'_> {
         rect: Rect,
         d: &'f DeformedRect,
         flat: Mat2,
-    ) -> shape::TipSpanNeighbours<'f> {
+    ) -> shape::TipSpanNeighbors<'f> {
         /// Where D is the identity, no derivative is needed.
         const UNLINKED: [u8; TILE] = [0; TILE];
         match self.bent_over {
             Some(surface) => {
-                let SpanNeighbours { above, row, below, linked } =
+                let SpanNeighbors { above, row, below, linked } =
                     DeformationField::new(surface, rect, d).around(span);
-                shape::TipSpanNeighbours { above, row, below, linked, flat }
+                shape::TipSpanNeighbors { above, row, below, linked, flat }
             }
             None => {
                 let row = |y: i32| {
@@ -173,7 +173,7 @@ impl PlacedDab<'_> {
                         (y - rect.y0) as usize * rect.width() + (span.x - 1 - rect.x0) as usize;
                     (&d.x[start..start + span.n + 2], &d.y[start..start + span.n + 2])
                 };
-                shape::TipSpanNeighbours {
+                shape::TipSpanNeighbors {
                     above: row(span.y - 1),
                     row: row(span.y),
                     below: row(span.y + 1),

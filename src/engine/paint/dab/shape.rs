@@ -83,7 +83,7 @@ impl TipShape {
 /// D at a span's pixels, at one more at each end, and in the rows above and below, in tip space;
 /// (x, y) each.
 #[derive(Clone, Copy)]
-pub struct TipSpanNeighbours<'f> {
+pub struct TipSpanNeighbors<'f> {
     pub above: (&'f [f32], &'f [f32]),
     pub row: (&'f [f32], &'f [f32]),
     pub below: (&'f [f32], &'f [f32]),
@@ -137,7 +137,7 @@ impl TipShape {
         self,
         falloff: Falloff,
         dab: &Dab,
-        d: TipSpanNeighbours,
+        d: TipSpanNeighbors,
         coverage: &mut [f32],
         shares: &mut [f32],
     ) {
@@ -164,19 +164,19 @@ impl TipShape {
 type Covered<'c> = (&'c mut [f32], &'c mut [f32]);
 
 crate::widest! {
-    fn ellipse_row(d: TipSpanNeighbours, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
+    fn ellipse_row(d: TipSpanNeighbors, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| ellipse(profile, rim.0, p, across, along));
     }
 
-    fn square_row(d: TipSpanNeighbours, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
+    fn square_row(d: TipSpanNeighbors, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
 
-    fn peaked_ellipse_row(d: TipSpanNeighbours, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
+    fn peaked_ellipse_row(d: TipSpanNeighbors, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| ellipse(profile, rim.0, p, across, along));
     }
 
-    fn peaked_square_row(d: TipSpanNeighbours, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
+    fn peaked_square_row(d: TipSpanNeighbors, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
 }
@@ -185,7 +185,7 @@ crate::widest! {
 /// own.
 #[inline(always)]
 fn for_each(
-    d: TipSpanNeighbours,
+    d: TipSpanNeighbors,
     thin: f32,
     (coverage, shares): Covered,
     f: impl Fn((f32, f32), (f32, f32), (f32, f32)) -> (f32, f32),

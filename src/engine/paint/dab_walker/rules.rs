@@ -62,7 +62,7 @@ pub(super) struct Moment {
     pub place: CurvePoint,
     /// Of the path; zero if there is none.
     pub direction: Vec2,
-    pub travelled_px: f64,
+    pub traveled_px: f64,
     /// `[0, 1]`.
     pub cycle: f32,
     pub custom: f32,
@@ -140,13 +140,13 @@ impl DabRules {
     }
 
     pub fn inputs(&self, moment: &Moment) -> DabInputs {
-        let Moment { place, travelled_px, cycle, custom, number, .. } = *moment;
+        let Moment { place, traveled_px, cycle, custom, number, .. } = *moment;
         let unit = |v: f32| v.max(0.0).min(1.0);
         let inputs = DabInputs {
             pressure: place.pressure,
             tilt: unit(place.tilt.length() / 90.0),
             speed: unit(place.px_per_sec / (FAST_LENGTHS_PER_SEC * self.scene.size.longer_side())),
-            distance: unit(travelled_px as f32 / (FAR_DIAMETERS * self.brush.size)),
+            distance: unit(traveled_px as f32 / (FAR_DIAMETERS * self.brush.size)),
             cycle,
             custom,
             seed: hash::mix(self.brush.seed ^ hash::mix(number.wrapping_add(0x9e37_79b9))),

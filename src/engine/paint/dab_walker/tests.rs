@@ -241,7 +241,7 @@ fn scattered_dabs_stay_within_their_reach_and_fill_it() {
 }
 
 #[test]
-fn colours_vary_only_where_the_brush_says() {
+fn colors_vary_only_where_the_brush_says() {
     let brush =
         Brush { jitter: ColorJitter { value: 0.3, ..ColorJitter::default() }, ..brush(20.0) };
     let lay = |brush: &Brush| {

@@ -21,7 +21,7 @@ pub(super) struct Walk {
     /// How densely dabs follow the last one, and the share of the path to the next that is left.
     due: Due,
     left: f64,
-    travelled_px: f64,
+    traveled_px: f64,
     number: u32,
     /// The averaged direction of the path; zero before the first.
     direction: Vec2,
@@ -37,7 +37,7 @@ impl Walk {
             from,
             due: Due::NEVER,
             left: 0.0,
-            travelled_px: 0.0,
+            traveled_px: 0.0,
             number: 0,
             direction: Vec2::ZERO,
             lagging: None,
@@ -69,7 +69,7 @@ impl Walk {
         let moment = Moment {
             place: CurvePoint { at, ..place },
             direction: self.direction,
-            travelled_px: self.travelled_px,
+            traveled_px: self.traveled_px,
             cycle: self.cycle_reading(),
             custom: self.custom.unwrap_or(0.0),
             number: self.number,
@@ -200,7 +200,7 @@ impl Walk {
         let ahead = way.normalize_or_zero();
         self.direction +=
             (ahead - self.direction) * settled(px as f32, rules.brush.stylus.direction_px);
-        self.travelled_px += measured_px;
+        self.traveled_px += measured_px;
         self.turn_cycle(place, measured_px as f32, rules);
     }
 }

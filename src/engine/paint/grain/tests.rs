@@ -97,7 +97,7 @@ fn a_pixel_s_two_parts_have_its_mean_and_variance() {
         assert!((found - square).abs() < 0.011, "{mean} {square}: {found}");
     }
     assert_eq!(parts(0.5, 0.5, 1.0), [1.0, 0.0, 0.5], "black and white");
-    assert_eq!(parts(0.5, 0.25, 1.0), [0.5, 0.5, 1.0], "grey");
+    assert_eq!(parts(0.5, 0.25, 1.0), [0.5, 0.5, 1.0], "gray");
     assert_eq!(parts(0.2, 0.15, 0.5), [0.4, 0.0, 0.5], "half of it is black");
     for (mean, square) in [(0.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0)] {
         for share in [0.0, 0.01, 1.0] {

@@ -85,8 +85,8 @@ impl StrokeGrain {
             antialias.row(&self.texture, patches, Outside::Repeat, &mut row);
             let start = (y - area.y0) as usize * TILE;
             for (i, texel) in (start..).zip(&row) {
-                let [grey, square, _, bare] = texel.map(|v| f32::from(v) / 255.0);
-                let [light, dark, share] = parts(grey, square, bare);
+                let [gray, square, _, bare] = texel.map(|v| f32::from(v) / 255.0);
+                let [light, dark, share] = parts(gray, square, bare);
                 (out.light[i], out.dark[i]) =
                     (factor_of(self.strength, light), factor_of(self.strength, dark));
                 out.share[i] = share;
@@ -117,8 +117,8 @@ pub fn parts(mean: f32, square: f32, share: f32) -> [f32; 3] {
     [(mean + sigma / ratio).min(1.0), (mean - sigma * ratio).max(0.0), mean]
 }
 
-/// 1 − k (1 − G): the share of a dab's coverage that the grain leaves. `strength` k and `grey` G in
+/// 1 − k (1 − G): the share of a dab's coverage that the grain leaves. `strength` k and `gray` G in
 /// `[0, 1]`.
-pub fn factor_of(strength: f32, grey: f32) -> f32 {
-    1.0 - strength * (1.0 - grey)
+pub fn factor_of(strength: f32, gray: f32) -> f32 {
+    1.0 - strength * (1.0 - gray)
 }

@@ -189,7 +189,7 @@ fn picture(side: u32, texel: [u8; 4]) -> PictureSource {
 }
 
 #[test]
-fn a_hose_stamps_its_pictures_in_turn_in_their_own_colours_and_sizes() {
+fn a_hose_stamps_its_pictures_in_turn_in_their_own_colors_and_sizes() {
     let pictures = vec![picture(32, [255, 0, 0, 255]), picture(16, [0, 0, 255, 255])];
     let hose = Hose::new(pictures, vec![HoseRank { count: 2, select: RankSelect::Incremental }]);
     let brush = Brush { size: 20.0, spacing: 1.5, tip: Tip::Hose(hose), ..Brush::default() };

@@ -185,7 +185,7 @@ fn a_blurred_edge_is_as_soft_as_said_whatever_the_spacing() {
 }
 
 #[test]
-fn what_a_blur_makes_of_one_colour_is_that_colour_up_to_the_canvas_s_edge() {
+fn what_a_blur_makes_of_one_color_is_that_color_up_to_the_canvas_s_edge() {
     for (color, size) in [([200, 90, 30, 255], 24.0), ([10, 220, 130, 100], 400.0)] {
         let even = layer(|_, _| color);
         let brush = Brush { size, ..brush(BrushMode::Blur { width: 1.0 }) };

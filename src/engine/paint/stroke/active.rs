@@ -266,7 +266,7 @@ impl Backdrop {
     fn to_tile(&self, at: TileAt, pixels: &PlanarTile) -> Option<Tile> {
         match self {
             Backdrop::Pixels(grid) => pixels.to_tile_over(grid.tile(at).map(|tile| &**tile)),
-            Backdrop::Strokes(_) => pixels.quantised(),
+            Backdrop::Strokes(_) => pixels.quantized(),
         }
     }
 

@@ -302,7 +302,7 @@ fn a_driven_opacity_is_a_ceiling_that_more_dabs_do_not_pass() {
 }
 
 #[test]
-fn every_dab_has_its_own_colour_where_the_brush_varies_it() {
+fn every_dab_has_its_own_color_where_the_brush_varies_it() {
     let brush = Brush {
         size: 10.0,
         hardness: 1.0,

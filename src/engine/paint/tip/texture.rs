@@ -97,7 +97,7 @@ impl TipTexture {
     }
 
     fn picture(self, side: u32) -> Picture {
-        grey(&match self {
+        gray(&match self {
             TipTexture::Bristles(Bristles { count, seed }) => {
                 pattern::bristles(count.min(1000), seed, side)
             }
@@ -109,7 +109,7 @@ impl TipTexture {
 }
 
 /// Values in `[0, 1]` as an opaque gray picture.
-pub fn grey(plane: &Plane<f32>) -> Picture {
+pub fn gray(plane: &Plane<f32>) -> Picture {
     let texels = plane.values().iter().map(|v| {
         let byte = (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8;
         [byte, byte, byte, 255]

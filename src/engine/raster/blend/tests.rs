@@ -173,7 +173,7 @@ fn separable_modes_and_plus_agree_with_tiny_skia_within_two_steps() {
             let expected = tiny_skia_blend(oracle, backdrop, source);
             let unit = |p: [u8; 4]| p.map(|v| f32::from(v) / 255.0);
             let got =
-                blend_pixel(mode, unit(backdrop), unit(source)).map(crate::math::srgb::quantise);
+                blend_pixel(mode, unit(backdrop), unit(source)).map(crate::math::srgb::quantize);
             let far = got.iter().zip(expected).map(|(a, b)| a.abs_diff(b)).max();
             assert!(
                 far <= Some(2),
@@ -237,7 +237,7 @@ fn atop_keeps_the_alpha_of_what_it_is_painted_on() {
 }
 
 #[test]
-fn linear_light_mixes_black_and_white_to_the_grey_that_emits_half() {
+fn linear_light_mixes_black_and_white_to_the_gray_that_emits_half() {
     let got = fast(Mix { linear: true, ..Mix::default() }, [0.0, 0.0, 0.0, 1.0], [0.5; 4]);
     assert!((got[0] - 0.735_357).abs() < 5e-4, "{got:?}");
     let encoded = fast(Mix::default(), [0.0, 0.0, 0.0, 1.0], [0.5; 4]);
@@ -248,7 +248,7 @@ fn linear_light_mixes_black_and_white_to_the_grey_that_emits_half() {
 fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let color = [0.5, 0.25, 0.0, 0.5];
     let tile = PlanarTile::from_pixels(&one_pixel(color));
-    let bytes = tile.quantised().unwrap();
+    let bytes = tile.quantized().unwrap();
     let deep = tile.to_tile_over(None).unwrap();
     let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
     for paint in [

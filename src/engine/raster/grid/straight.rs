@@ -48,8 +48,8 @@ impl TileGrid {
             // In this order NaN becomes 0.
             let bounded = |v: f32| v.max(0.0).min(1.0);
             let a = bounded(a);
-            let encoded = |v: f32| srgb::quantise_deep(srgb::encode(bounded(v)) * a);
-            [encoded(r), encoded(g), encoded(b), srgb::quantise_deep(a)]
+            let encoded = |v: f32| srgb::quantize_deep(srgb::encode(bounded(v)) * a);
+            [encoded(r), encoded(g), encoded(b), srgb::quantize_deep(a)]
         })
     }
 

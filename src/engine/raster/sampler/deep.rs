@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn texel_centres_give_the_texels_themselves() {
+    fn texel_centers_give_the_texels_themselves() {
         let (_, deep) = both(Size::new(300, 2));
         let x: Vec<f32> = (0..300).map(|i| i as f32 + 0.5).collect();
         let mut out = vec![[0.0; 4]; 300];

@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn texel_centres_give_the_texels_themselves() {
+    fn texel_centers_give_the_texels_themselves() {
         let texture = noise(Size::new(300, 2));
         let x: Vec<f32> = (0..300).map(|i| i as f32 + 0.5).collect();
         let mut bytes = vec![[0; 4]; 300];

@@ -3,7 +3,7 @@
 //! takes no shuffles.
 
 use super::TILE;
-use crate::math::srgb::quantise_deep;
+use crate::math::srgb::quantize_deep;
 
 /// One row of a tile: red, green, blue, each no greater than alpha, and alpha.
 pub type DeepRow = [[u16; TILE]; 4];
@@ -58,10 +58,10 @@ fn off_byte(v: u16) -> u16 {
 
 crate::widest! {
     /// Rounds a premultiplied row of floats; colors above alpha are lowered to it.
-    pub fn quantise_row(row: [&[f32; TILE]; 4], deep: &mut DeepRow) {
+    pub fn quantize_row(row: [&[f32; TILE]; 4], deep: &mut DeepRow) {
         for (channel, deep) in row.into_iter().zip(deep.iter_mut()) {
             for x in 0..TILE {
-                deep[x] = quantise_deep(channel[x]);
+                deep[x] = quantize_deep(channel[x]);
             }
         }
         let [r, g, b, a] = deep;
@@ -263,10 +263,10 @@ mod tests {
     }
 
     #[test]
-    fn floats_are_rounded_and_colours_lowered_to_alpha() {
+    fn floats_are_rounded_and_colors_lowered_to_alpha() {
         let [r, g, b, a] = [0.9, 0.25, f32::NAN, 0.5].map(|v| [v; TILE]);
         let mut deep = CLEAR_ROW;
-        quantise_row([&r, &g, &b, &a], &mut deep);
+        quantize_row([&r, &g, &b, &a], &mut deep);
         assert_eq!(pixel_of(&[deep], 9, 0), [32768, 16384, 0, 32768]);
     }
 }

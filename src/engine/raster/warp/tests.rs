@@ -27,8 +27,8 @@ fn tiles() -> Vec<TileAt> {
 
 /// An opaque gray picture.
 fn picture(value: impl Fn(f32, f32) -> f32) -> TileGrid {
-    let grey = |i: i32| quantise(value((i % SIDE) as f32 + 0.5, (i / SIDE) as f32 + 0.5));
-    let rgba: Vec<u8> = (0..SIDE * SIDE).flat_map(|i| [grey(i), grey(i), grey(i), 255]).collect();
+    let gray = |i: i32| quantize(value((i % SIDE) as f32 + 0.5, (i / SIDE) as f32 + 0.5));
+    let rgba: Vec<u8> = (0..SIDE * SIDE).flat_map(|i| [gray(i), gray(i), gray(i), 255]).collect();
     TileGrid::from_straight_rgba(&rgba, SIDE as usize, SIDE as usize, 0, 0)
 }
 
@@ -74,7 +74,7 @@ fn mirrors_quarter_turns_and_shifts_there_and_back_give_the_same_bytes() {
 }
 
 #[test]
-fn a_flat_colour_stays_one_however_it_is_turned_or_reduced() {
+fn a_flat_color_stays_one_however_it_is_turned_or_reduced() {
     let grid = picture(|_, _| 0.6);
     for map in
         [PlaneMap::rotation(17.0, vec2(128.0, 128.0)), affine([0.31, 0.1, -0.2, 0.4, 90.0, 80.0])]

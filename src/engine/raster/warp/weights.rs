@@ -1,5 +1,5 @@
 //! The weights of a row of pixels of a warp, in plain loops over rows of numbers that the compiler
-//! vectorises. Floor 1. Their twins for one pixel are in `window`.
+//! vectorizes. Floor 1. Their twins for one pixel are in `window`.
 
 use super::Resampling;
 use super::window::{LONGEST_KEPT_PX, WIDEST_PX, cubic_of};

@@ -191,7 +191,7 @@ mod tests {
                 // The rim takes the paint next to it, not the ground around the ball.
                 if (px as f32 - middle).hypot(py as f32 - middle) < middle - 1.5 {
                     let [r, g, b, _] = picture.linear_at(px, py);
-                    let expected = [r, g, b].map(|light| srgb::quantise(srgb::encode(light)));
+                    let expected = [r, g, b].map(|light| srgb::quantize(srgb::encode(light)));
                     same += usize::from(pixels[y * TILE + x][..3] == expected);
                     all += 1;
                 }

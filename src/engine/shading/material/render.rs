@@ -30,9 +30,9 @@ impl Shading {
             self.ground_pixels(scene, at, |y, x, share| {
                 let color = [self.shadows.color.r, self.shadows.color.g, self.shadows.color.b];
                 let pixel = &mut rows[y][4 * x..4 * x + 4];
-                let premultiplied = color.map(|c| srgb::quantise(f32::from(c) / 255.0 * share));
+                let premultiplied = color.map(|c| srgb::quantize(f32::from(c) / 255.0 * share));
                 pixel[..3].copy_from_slice(&premultiplied);
-                pixel[3] = srgb::quantise(share);
+                pixel[3] = srgb::quantize(share);
             });
         }
         shaded?;
@@ -243,5 +243,5 @@ crate::widest! {
 /// The sRGB byte of linear light, clipped.
 #[inline(always)]
 fn byte(light: f32) -> u32 {
-    u32::from(srgb::quantise(srgb::encode_fast(fast::min(fast::max(light, 0.0), 1.0))))
+    u32::from(srgb::quantize(srgb::encode_fast(fast::min(fast::max(light, 0.0), 1.0))))
 }

@@ -160,7 +160,7 @@ mod tests {
     fn there_are_as_many_tones_as_bands_and_few_pixels_between_them() {
         for bands in [2, 4, 7] {
             let tone_of = |k: u32| {
-                crate::math::srgb::quantise(crate::math::srgb::encode(
+                crate::math::srgb::quantize(crate::math::srgb::encode(
                     k as f32 / (bands - 1) as f32,
                 ))
             };

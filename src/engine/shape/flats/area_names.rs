@@ -30,14 +30,14 @@ pub fn color_name(color: Color) -> String {
     let (most, least) = (r.max(g).max(b), r.min(g).min(b));
     let (chroma, light) = (most - least, (most + least) / 2.0);
     if chroma < LEAST_CHROMA {
-        let grey = match light {
+        let gray = match light {
             l if l < 0.15 => "black",
             l if l < 0.4 => "dark gray",
             l if l < 0.65 => "gray",
             l if l < 0.88 => "light gray",
             _ => "white",
         };
-        return grey.to_owned();
+        return gray.to_owned();
     }
     let sixth = match () {
         _ if most == r => ((g - b) / chroma).rem_euclid(6.0),
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_called_as_people_call_them() {
+    fn colors_are_called_as_people_call_them() {
         let known = [
             (rgb(255, 255, 255), "white"),
             (rgb(20, 20, 22), "black"),
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_of_one_colour_are_told_apart_by_their_places_and_then_by_numbers() {
+    fn areas_of_one_color_are_told_apart_by_their_places_and_then_by_numbers() {
         let labels = Plane::from_fn(Size::new(90, 60), |x, y| match (x / 30, y / 20) {
             (0, 0) => 0,
             (2, 0) => 1,

@@ -91,13 +91,10 @@ pub fn spread(labels: &mut Plane<u32>, may: impl Fn(usize, usize) -> bool) {
         labels.get(x, y) == Some(0) && may(x as usize, y as usize)
     };
     let size = (labels.width(), labels.height());
-    let is_labelled = |x: i32, y: i32| labels.get(x, y).is_some_and(|label| label > 0);
-    let mut ahead: VecDeque<(usize, usize)> = rim(
-        pixels(size).filter(|(x, y)| labels.at(*x, *y) == 0 && may(*x, *y)),
-        STEPS,
-        is_labelled,
-    )
-    .into();
+    let is_labeled = |x: i32, y: i32| labels.get(x, y).is_some_and(|label| label > 0);
+    let mut ahead: VecDeque<(usize, usize)> =
+        rim(pixels(size).filter(|(x, y)| labels.at(*x, *y) == 0 && may(*x, *y)), STEPS, is_labeled)
+            .into();
     while let Some((x, y)) = ahead.pop_front() {
         let label = labels.at(x, y);
         for (dx, dy) in STEPS {

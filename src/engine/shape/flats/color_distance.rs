@@ -1,6 +1,6 @@
-//! When two colours are one flat, and how far between two colours a mixed one lies. Floor 3.
+//! When two colors are one flat, and how far between two colors a mixed one lies. Floor 3.
 
-/// Colours nearer than this, in any channel of 8 bits, are one flat.
+/// Colors nearer than this, in any channel of 8 bits, are one flat.
 pub const NEAR: i32 = 8;
 
 /// Whether a pixel has nearly a color.
@@ -8,12 +8,12 @@ pub fn is_near(pixel: [u8; 4], color: [u8; 4]) -> bool {
     pixel.iter().zip(color).all(|(a, b)| (i32::from(*a) - i32::from(b)).abs() <= NEAR)
 }
 
-/// How far two colours are apart: the largest difference of a channel.
+/// How far two colors are apart: the largest difference of a channel.
 pub fn color_distance(a: [u8; 4], b: [u8; 4]) -> u8 {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
 }
 
-/// How far a pixel lies from one colour toward another, 255 at the other; 0 if it is off the line
+/// How far a pixel lies from one color toward another, 255 at the other; 0 if it is off the line
 /// between them.
 pub fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
     let way: [f32; 4] = std::array::from_fn(|c| f32::from(to[c]) - f32::from(from[c]));
@@ -32,7 +32,7 @@ pub fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
 /// of 255.
 const ROUNDING: i32 = 1;
 
-/// What has to lie with some alpha over an opaque colour, so that a given one is seen. `None` if
+/// What has to lie with some alpha over an opaque color, so that a given one is seen. `None` if
 /// nothing can.
 pub fn added(seen: [u8; 4], alpha: u8, over: [u8; 4]) -> Option<[u8; 4]> {
     let left = |c: usize| (i32::from(over[c]) * (255 - i32::from(alpha)) + 127) / 255;

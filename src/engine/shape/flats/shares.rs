@@ -1,6 +1,6 @@
-//! Which share of each pixel a flat colour takes: all of a pixel in a flat area, and a part of
+//! Which share of each pixel a flat color takes: all of a pixel in a flat area, and a part of
 //! those that were mixed at edges between two areas. Shares add up to the whole pixel, so that
-//! areas that touch leave no rim between them. Floor 3. Not here: which colours are parts
+//! areas that touch leave no rim between them. Floor 3. Not here: which colors are parts
 //! (`flats`).
 
 use super::areas::{LEAST_SEEN, beside, least_area, pixels, walk};
@@ -16,9 +16,9 @@ use std::sync::Arc;
 
 pub use super::picture::{MOSTLY, Pixel, REACH};
 
-/// The most colours of one layer that become parts, besides those that are asked for; the largest
+/// The most colors of one layer that become parts, besides those that are asked for; the largest
 /// are chosen.
-pub const MOST_COLOURS: usize = 64;
+pub const MOST_COLORS: usize = 64;
 /// Areas that are joined by nothing wider than this are separate places, px: the gap closing of the
 /// fill.
 const GAP_PX: f32 = 2.0;
@@ -27,7 +27,7 @@ const GAP_PX: f32 = 2.0;
 pub struct Flats {
     /// Those that were asked for, then the most frequent first.
     colors: Vec<PaletteColor>,
-    /// The number of the colour of each pixel; [`NOTHING`], or [`NONE`] where several share it or
+    /// The number of the color of each pixel; [`NOTHING`], or [`NONE`] where several share it or
     /// none is known.
     owner: Plane<u16>,
     /// The pixels that two areas share, row by row.
@@ -35,25 +35,25 @@ pub struct Flats {
     /// Those of lines and specks, that are given to the areas beside them.
     is_given: Plane<bool>,
     gap_px: f32,
-    /// Colours that are seen, but too small to be parts.
+    /// Colors that are seen, but too small to be parts.
     left_out: usize,
-    /// The share of what is painted that lies in flat areas of its colours.
+    /// The share of what is painted that lies in flat areas of its colors.
     flat_share: f32,
 }
 
 /// What a pixel is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FlatOwner {
-    /// A colour, by its number.
+    /// A color, by its number.
     Color(u16),
     /// Nothing is painted there.
     Nothing,
-    /// Several share it, or no flat colour is known.
+    /// Several share it, or no flat color is known.
     Unknown,
 }
 
 impl Flats {
-    /// The pixels of a rectangle, `None` if it holds none; `asked`: colours that are looked for
+    /// The pixels of a rectangle, `None` if it holds none; `asked`: colors that are looked for
     /// however small their areas are.
     pub fn of(tiles: &TileGrid, rect: Rect, asked: &[Color]) -> Option<Self> {
         (!rect.is_empty()).then(|| Self::of_reading(&FlatReading::of(tiles, rect), asked))
@@ -108,7 +108,7 @@ impl Flats {
         self.mixed.sort_unstable_by_key(|mixed| mixed.index);
     }
 
-    /// Its colours, by their numbers.
+    /// Its colors, by their numbers.
     pub fn colors(&self) -> Vec<Color> {
         self.colors
             .iter()
@@ -116,18 +116,18 @@ impl Flats {
             .collect()
     }
 
-    /// The number of a colour.
+    /// The number of a color.
     pub fn number_of(&self, color: Color) -> Option<u16> {
         nearest(self.colors.iter().map(|color| color.color), bytes(color))
             .map(|number| number as u16)
     }
 
-    /// How many colours are seen that are too small, or too many, to be parts.
+    /// How many colors are seen that are too small, or too many, to be parts.
     pub fn left_out(&self) -> usize {
         self.left_out
     }
 
-    /// The share of what is painted that lies in flat areas of its colours, `[0, 1]`.
+    /// The share of what is painted that lies in flat areas of its colors, `[0, 1]`.
     pub fn flat_share(&self) -> f32 {
         self.flat_share
     }
@@ -151,7 +151,7 @@ impl Flats {
         }
     }
 
-    /// The number of the colour that takes the most of each pixel; [`NOTHING`] or [`NONE`].
+    /// The number of the color that takes the most of each pixel; [`NOTHING`] or [`NONE`].
     pub fn mostly(&self) -> Plane<u16> {
         let mut mostly = self.owner.clone();
         for MixedPixel { index, sides, share } in &self.mixed {
@@ -160,7 +160,7 @@ impl Flats {
         mostly
     }
 
-    /// The share of each pixel that a colour takes together with others, 255 the whole.
+    /// The share of each pixel that a color takes together with others, 255 the whole.
     pub fn share_of(&self, color: Color, with: &[Color]) -> Plane<u8> {
         let Some(own) = self.number_of(color) else { return Plane::filled(self.owner.size(), 0) };
         let all: Vec<u16> = std::iter::once(own)
@@ -201,13 +201,13 @@ pub struct WithoutLines {
     pub picture: Arc<FlatPicture>,
     /// Those that were asked for, then the most frequent first.
     pub colors: Vec<PaletteColor>,
-    /// The number of the colour of each pixel in a flat area, as in [`Palette`]; [`NONE`] in lines.
+    /// The number of the color of each pixel in a flat area, as in [`Palette`]; [`NONE`] in lines.
     pub owner: Plane<u16>,
     /// Its mixed pixels, each with what it lies between.
     pub between: Arc<[Between]>,
-    /// Which colours are mostly lines.
+    /// Which colors are mostly lines.
     pub is_line: Vec<bool>,
-    /// The number of the colour of each pixel that is mostly of a line; else [`NONE`].
+    /// The number of the color of each pixel that is mostly of a line; else [`NONE`].
     pub lines: Plane<u16>,
 }
 
@@ -229,14 +229,14 @@ impl WithoutLines {
         read
     }
 
-    /// The colour of a pixel in a flat area: without the little of others that it may hold.
+    /// The color of a pixel in a flat area: without the little of others that it may hold.
     pub fn flat_color(&self, index: usize) -> Pixel {
         let pixel = self.picture.pixels.values()[index];
         let color = self.colors.get(usize::from(self.owner.values()[index]));
         color.map(|color| color.color).filter(|color| is_near(pixel, *color)).unwrap_or(pixel)
     }
 
-    /// Takes lines out of each colour. One that was asked for keeps them if it is nothing else.
+    /// Takes lines out of each color. One that was asked for keeps them if it is nothing else.
     fn take_out_lines(&mut self) {
         let mut mostly = self.owner.clone();
         for Between { index, sides, share } in self.between.iter() {
@@ -266,7 +266,7 @@ impl WithoutLines {
     }
 }
 
-/// Takes out areas too small to be seen: compression leaves such specks. The pixels of each colour
+/// Takes out areas too small to be seen: compression leaves such specks. The pixels of each color
 /// are counted again.
 fn take_out_specks(owner: &mut Plane<u16>, colors: &mut [PaletteColor]) {
     let size = (owner.width(), owner.height());
@@ -293,16 +293,16 @@ fn take_out_specks(owner: &mut Plane<u16>, colors: &mut [PaletteColor]) {
     }
 }
 
-/// Which colours are asked for, or large enough to be parts.
+/// Which colors are asked for, or large enough to be parts.
 fn choose_flats(colors: &[PaletteColor], least: usize) -> Vec<bool> {
     let mut found: Vec<usize> =
         (0..colors.len()).filter(|i| !colors[*i].is_asked && colors[*i].pixels >= least).collect();
     found.sort_by_key(|i| (std::cmp::Reverse(colors[*i].pixels), *i));
-    found.truncate(MOST_COLOURS);
+    found.truncate(MOST_COLORS);
     (0..colors.len()).map(|i| colors[i].is_asked || found.contains(&i)).collect()
 }
 
-/// Without the colours that are not kept.
+/// Without the colors that are not kept.
 fn renumbered(owner: Plane<u16>, is_kept: &[bool]) -> Plane<u16> {
     let mut next = 0;
     let number = is_kept.iter().map(|is_kept| {

@@ -1,6 +1,6 @@
 //! Both sides of contours as one: what surfaces and scenes answer alike, whether their pixels are
 //! those of the canvas or readings of the far side. Floor 2. Five operations hold the difference:
-//! where a pixel lies on the canvas, which pixels of a row are neighbours there, how rows step,
+//! where a pixel lies on the canvas, which pixels of a row are neighbors there, how rows step,
 //! which surface is in front, and a map that is computed in front and read on the far side. Not
 //! here: the readings themselves (`far_side`).
 
@@ -41,7 +41,7 @@ impl Surface {
         }
     }
 
-    /// A row's pixels, in runs that are neighbours on the canvas: the columns of each, and the canvas
+    /// A row's pixels, in runs that are neighbors on the canvas: the columns of each, and the canvas
     /// pixel of its first. In front the row is one run; on a far side each pixel is one.
     #[inline(always)]
     pub fn canvas_runs(
@@ -60,7 +60,7 @@ impl Surface {
     }
 
     /// The same surface where its pixels are those of the canvas, so that pixels side by side see
-    /// neighbouring places; `None` for a far side.
+    /// neighboring places; `None` for a far side.
     pub fn on_canvas(&self) -> Option<&Self> {
         self.as_far_side().is_none().then_some(self)
     }

@@ -2,7 +2,7 @@
 //! it like any surface. Floor 2. Not here: what both sides answer alike (`both_sides`).
 //!
 //! Each contour pixel takes 2 × 2 pixels of it: the pixel itself, and the readings one pixel to the
-//! right and below, so that differences to linked neighbours show how its maps change. Four by four
+//! right and below, so that differences to linked neighbors show how its maps change. Four by four
 //! of them make a block of 8 × 8; eight blocks lie side by side. The pixels of a tile of the canvas
 //! begin with a block of the first column, and are in the order of the canvas's blocks, so that a
 //! dab leaves out most that it does not reach.

@@ -26,7 +26,7 @@ fn the_same_size_keeps_every_value() {
 }
 
 #[test]
-fn a_wide_map_on_a_square_canvas_stands_centred_with_its_aspect() {
+fn a_wide_map_on_a_square_canvas_stands_centerd_with_its_aspect() {
     let s = plate_and_wall(Size::new(8, 4)).fitted(Size::new(16, 16)).unwrap();
     assert_eq!(
         (s.coverage(8, 3), s.coverage(8, 4), s.coverage(8, 11), s.coverage(8, 12)),

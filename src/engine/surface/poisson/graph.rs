@@ -221,7 +221,7 @@ impl PoissonGraph {
 
     /// Subtracts the mean of every piece without a constrained unknown: no coupling opposes what rounding
     /// leaves there, and it would grow.
-    fn centre(&self, values: &mut [f32], constraints: &[(u32, f32)]) {
+    fn center(&self, values: &mut [f32], constraints: &[(u32, f32)]) {
         let (labels, count) = &self.pieces;
         let mut sums = vec![(0.0f32, 0.0f32); *count];
         let mut is_free = vec![true; *count];
@@ -314,7 +314,7 @@ pub(super) fn cycle(
     v.resize(graph.len(), 0.0);
     twin.resize(graph.len(), 0.0);
     if below.is_empty() {
-        graph.centre(b, constraints);
+        graph.center(b, constraints);
     }
     graph.each(twin, |(i, out)| *out = super::STEPS[0] * b[i] * graph.inverse[i]);
     for &(i, stiffness) in constraints {
@@ -328,7 +328,7 @@ pub(super) fn cycle(
             graph.relax(constraints, b, v, super::STEPS[0], twin);
             graph.relax(constraints, b, twin, super::STEPS[1], v);
         }
-        graph.centre(v, constraints);
+        graph.center(v, constraints);
         return;
     }
     graph.residual(constraints, b, v, twin);

@@ -105,7 +105,7 @@ impl TiffSample for f32 {
     /// There is no gray of floats: it becomes RGB.
     fn image(size: Size, channels: usize, values: Vec<Self>) -> Option<DynamicImage> {
         let (w, h) = (size.width, size.height);
-        let rgb = |grey: &[f32]| [&[grey[0]; 3], &grey[1..]].concat();
+        let rgb = |gray: &[f32]| [&[gray[0]; 3], &gray[1..]].concat();
         match channels {
             1 | 2 => Self::image(
                 size,

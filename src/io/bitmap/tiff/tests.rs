@@ -50,7 +50,7 @@ const FORMAT: u16 = 339;
 const FLOATS: &[u16] = &[3];
 
 #[test]
-fn a_palette_gives_its_colours() {
+fn a_palette_gives_its_colors() {
     let mut map = [0u16; 48];
     (map[3], map[16 + 3], map[32 + 3], map[32 + 9]) = (65535, 0x8000, 0, 0x1234);
     let tags: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[3]), (BITS, &[4]), (SAMPLES, &[1]), (320, &map)];
@@ -61,7 +61,7 @@ fn a_palette_gives_its_colours() {
 }
 
 #[test]
-fn grey_with_alpha_and_white_zero_are_light() {
+fn gray_with_alpha_and_white_zero_are_light() {
     let tags: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[0]), (BITS, &[8, 8]), (SAMPLES, &[2]), (EXTRA, &[2])];
     let image = decoded(&file(true, [2, 1], tags, &[0, 255, 200, 100]));
@@ -83,7 +83,7 @@ fn inks_are_printed_and_a_big_tiff_is_known() {
 }
 
 #[test]
-fn floats_of_any_width_are_read_and_grey_ones_become_rgb() {
+fn floats_of_any_width_are_read_and_gray_ones_become_rgb() {
     let tags: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[1]), (BITS, &[16]), (SAMPLES, &[1]), (FORMAT, FLOATS)];
     let image = decoded(&file(false, [2, 1], tags, &[0x00, 0x3c, 0x00, 0x34]));
@@ -96,7 +96,7 @@ fn floats_of_any_width_are_read_and_grey_ones_become_rgb() {
 }
 
 #[test]
-fn colours_multiplied_by_alpha_and_planes_come_straight_and_in_turn() {
+fn colors_multiplied_by_alpha_and_planes_come_straight_and_in_turn() {
     let rgba: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[2]), (BITS, &[8]), (SAMPLES, &[4]), (EXTRA, &[1])];
     let image = decoded(&file(false, [1, 1], rgba, &[64, 32, 0, 128]));
@@ -127,14 +127,14 @@ fn tiles_of_jpeg(size: [u16; 2], jpeg: &[u8]) -> Vec<u8> {
     let (starts, lengths) = (vec![8u16; count], vec![jpeg.len() as u16; count]);
     let tiles: &[(u16, &[u16])] =
         &[(322, &[16]), (323, &[16]), (324, &starts), (325, &lengths), (259, &[7])];
-    let colours: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[6]), (BITS, &[8, 8, 8]), (SAMPLES, &[3])];
-    file(false, size, &[tiles, colours].concat(), jpeg)
+    let colors: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[6]), (BITS, &[8, 8, 8]), (SAMPLES, &[3])];
+    file(false, size, &[tiles, colors].concat(), jpeg)
 }
 
 fn jpeg(side: u32) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    let grey = image::RgbImage::from_pixel(side, side, image::Rgb([90; 3]));
-    grey.write_to(&mut bytes, image::ImageFormat::Jpeg).unwrap();
+    let gray = image::RgbImage::from_pixel(side, side, image::Rgb([90; 3]));
+    gray.write_to(&mut bytes, image::ImageFormat::Jpeg).unwrap();
     bytes.into_inner()
 }
 
@@ -169,8 +169,8 @@ fn a_picture_in_a_million_pieces_is_refused_before_any_is_read() {
     // Tiles of a pixel each, all the same.
     let (places, lengths) = (vec![8; 160_000], vec![1; 160_000]);
     let tiles: &[(u16, &[u16])] = &[(322, &[1]), (323, &[1]), (324, &places), (325, &lengths)];
-    let colours: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[8]), (SAMPLES, &[1])];
-    let bytes = file(false, [400, 400], &[tiles, colours].concat(), &[9; 64]);
+    let colors: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[8]), (SAMPLES, &[1])];
+    let bytes = file(false, [400, 400], &[tiles, colors].concat(), &[9; 64]);
     let said = decode(Path::new("a.tif"), &bytes, &Budget::default()).err().unwrap().to_string();
     assert_eq!(said, "a.tif: too large: the TIFF is in 160000 pieces; 131072 are allowed");
 }
@@ -197,12 +197,12 @@ fn zstd_is_unpacked_strip_by_strip() {
     for number in [50_000, 34_926] {
         let strips: &[(u16, &[u16])] =
             &[(259, &[number]), (273, &starts), (278, &[2]), (279, &[length, lengths])];
-        let colours: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[8]), (SAMPLES, &[1])];
+        let colors: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[8]), (SAMPLES, &[1])];
         for is_big_endian in [false, true] {
             let bytes = file(
                 is_big_endian,
                 [2, 3],
-                &[strips, colours].concat(),
+                &[strips, colors].concat(),
                 &[&first[..], &second].concat(),
             );
             assert_eq!(decoded(&bytes).into_luma8().into_raw(), [1, 2, 3, 4, 5, 6]);

@@ -268,14 +268,14 @@ impl AbrConversion<'_> {
 /// A pattern's light as grain; where it is transparent it takes no paint.
 fn grain_picture(pattern: &PatternResource, inverted: bool) -> Option<Picture> {
     let (size, rgba) = pattern.picture();
-    let grey = |[r, g, b, a]: &[u8; 4]| {
-        let v = srgb::quantise(
+    let gray = |[r, g, b, a]: &[u8; 4]| {
+        let v = srgb::quantize(
             (0.299 * f32::from(*r) + 0.587 * f32::from(*g) + 0.114 * f32::from(*b)) / 255.0,
         );
         let v = if inverted { 255 - v } else { v };
         [v, v, v, *a]
     };
-    Picture::srgb8(size, rgba.as_chunks().0.iter().map(grey).collect())
+    Picture::srgb8(size, rgba.as_chunks().0.iter().map(gray).collect())
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ const SIDES: std::ops::RangeInclusive<usize> = 1..=256;
 /// How the bytes of a pixel are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelFormat {
-    is_grey: bool,
+    is_gray: bool,
     number: PixelNumber,
     is_linear: bool,
 }
@@ -29,7 +29,7 @@ enum PixelNumber {
 impl PixelFormat {
     /// By Krita's names of the colors and the profile; `None` for others than RGB and gray.
     pub fn of(space: &str, profile: &str) -> Option<Self> {
-        let (is_grey, rest) = match space.strip_prefix("RGBA") {
+        let (is_gray, rest) = match space.strip_prefix("RGBA") {
             Some(rest) => (false, rest),
             None => (true, space.strip_prefix("GRAYA")?),
         };
@@ -41,7 +41,7 @@ impl PixelFormat {
             _ => return None,
         };
         let is_linear = profile.contains("g10") || profile.to_lowercase().contains("linear");
-        Some(Self { is_grey, number, is_linear })
+        Some(Self { is_gray, number, is_linear })
     }
 
     fn number_bytes(self) -> usize {
@@ -53,7 +53,7 @@ impl PixelFormat {
     }
 
     fn channels(self) -> usize {
-        if self.is_grey { 2 } else { 4 }
+        if self.is_gray { 2 } else { 4 }
     }
 
     /// A channel of a pixel, in `[0, 1]` where it is an integer.
@@ -73,7 +73,7 @@ impl PixelFormat {
     /// Straight RGBA. Integers are stored with blue first.
     fn rgba(self, pixel: &[u8]) -> [f32; 4] {
         let v = |channel: usize| self.value(pixel, channel);
-        match (self.is_grey, self.number) {
+        match (self.is_gray, self.number) {
             (true, _) => [v(0), v(0), v(0), v(1)],
             (false, PixelNumber::U8 | PixelNumber::U16) => [v(2), v(1), v(0), v(3)],
             (false, _) => [v(0), v(1), v(2), v(3)],
@@ -257,7 +257,7 @@ impl KritaPixels {
             PixelNumber::U8 => {
                 let bytes = texels.flat_map(|t| t.map(|v| scaled(v, 255.0) as u8)).collect();
                 let bytes = match icc {
-                    Some(icc) => picture::to_srgb(size, bytes, format.is_grey, icc),
+                    Some(icc) => picture::to_srgb(size, bytes, format.is_gray, icc),
                     None => bytes,
                 };
                 TileGrid::from_straight_rgba(&bytes, w, h, x, y)
@@ -266,7 +266,7 @@ impl KritaPixels {
             _ => {
                 let deep = texels.map(|t| t.map(|v| scaled(v, 65535.0) as u16)).collect();
                 let deep = match icc {
-                    Some(icc) => picture::to_srgb_deep(size, deep, format.is_grey, icc),
+                    Some(icc) => picture::to_srgb_deep(size, deep, format.is_gray, icc),
                     None => deep,
                 };
                 TileGrid::from_straight_deep(&deep, w, h, x, y)

@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::paint::GradientStop;
-use crate::psd::colours::Mode;
+use crate::psd::colors::Mode;
 
-fn colours() -> Colours<'static> {
-    Colours::of_mode(Mode::Rgb)
+fn colors() -> Colors<'static> {
+    Colors::of_mode(Mode::Rgb)
 }
 
 fn back(adjustment: &ColorAdjustment) -> Option<ColorAdjustment> {
@@ -14,7 +14,7 @@ fn back(adjustment: &ColorAdjustment) -> Option<ColorAdjustment> {
         let mut data = ByteCursor::new(&data);
         found = match key {
             NEWER => newer_brightness(&mut data),
-            key => read(key, &mut data, &colours()),
+            key => read(key, &mut data, &colors()),
         };
     }
     found
@@ -70,13 +70,13 @@ fn stops_of_a_gradient_map_come_back_where_they_were() {
 #[test]
 fn points_of_curves_hold_the_tone_after_first_and_the_second_list_counts() {
     let mut data = vec![0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 10, 0, 0, 0, 90, 0, 255];
-    let first = read(*b"curv", &mut ByteCursor::new(&data), &colours());
+    let first = read(*b"curv", &mut ByteCursor::new(&data), &colors());
     let straight = ToneCurve::new(vec![[0.0, 10.0], [255.0, 90.0]]);
     let master = |curve: &ToneCurve| Curves { master: curve.clone(), ..Curves::default() };
     assert_eq!(first, Some(ColorAdjustment::Curves(master(&straight))));
     data.extend(b"Crv ");
     data.extend([0, 4, 0, 0, 0, 1, 0, 2, 0, 2, 0, 1, 0, 0, 0, 2, 0, 255]);
-    let both = read(*b"curv", &mut ByteCursor::new(&data), &colours());
+    let both = read(*b"curv", &mut ByteCursor::new(&data), &colors());
     let mut meant = master(&straight);
     meant.channels[1] = ToneCurve::new(vec![[0.0, 1.0], [255.0, 2.0]]);
     assert_eq!(both, Some(ColorAdjustment::Curves(meant)));
@@ -86,7 +86,7 @@ fn points_of_curves_hold_the_tone_after_first_and_the_second_list_counts() {
 fn levels_of_which_the_end_is_missing_are_read() {
     // Clip Studio cuts the last range short and signs what follows otherwise.
     let whole = &blocks(&ColorAdjustment::all()[1])[0].1;
-    let found = read(*b"levl", &mut ByteCursor::new(&whole[..whole.len() - 8]), &colours());
+    let found = read(*b"levl", &mut ByteCursor::new(&whole[..whole.len() - 8]), &colors());
     assert_eq!(found, Some(ColorAdjustment::Levels(Levels::default())));
 }
 
@@ -95,10 +95,10 @@ fn blocks_that_are_cut_short_are_not_understood_and_never_panic() {
     for adjustment in ColorAdjustment::all() {
         for (key, data) in blocks(&adjustment) {
             for length in 0..data.len() {
-                let _ = read(key, &mut ByteCursor::new(&data[..length]), &colours());
+                let _ = read(key, &mut ByteCursor::new(&data[..length]), &colors());
                 let _ = newer_brightness(&mut ByteCursor::new(&data[..length]));
             }
         }
     }
-    assert_eq!(read(*b"levl", &mut ByteCursor::new(&[0, 2, 0]), &colours()), None);
+    assert_eq!(read(*b"levl", &mut ByteCursor::new(&[0, 2, 0]), &colors()), None);
 }

@@ -30,7 +30,7 @@ pub fn blocks(adjustment: &ColorAdjustment) -> Vec<Block> {
         A::PhotoFilter(own) => one(b"phfl", photo_filter(own)),
         A::ChannelMixer(own) => one(b"mixr", channel_mixer(own)),
         A::Invert(_) => one(b"nvrt", Vec::new()),
-        A::Posterise(own) => one(b"post", padded(own.levels)),
+        A::Posterize(own) => one(b"post", padded(own.levels)),
         A::Threshold(own) => one(b"thrs", padded(own.level)),
         A::SelectiveColor(own) => one(b"selc", selective_color(own)),
         A::GradientMap(own) => one(b"grdm", gradient_map(own)),
@@ -169,7 +169,7 @@ fn photo_filter(own: &PhotoFilter) -> Vec<u8> {
 fn channel_mixer(own: &ChannelMixer) -> Vec<u8> {
     let mut out = 1u16.to_be_bytes().to_vec();
     out.extend(u16::from(own.monochrome).to_be_bytes());
-    let outputs = if own.monochrome { [own.grey, [0.0; 4], [0.0; 4]] } else { own.outputs };
+    let outputs = if own.monochrome { [own.gray, [0.0; 4], [0.0; 4]] } else { own.outputs };
     for [r, g, b, constant] in outputs.into_iter().chain([[0.0; 4]]) {
         numbers(&mut out, &[r, g, b, 0.0, constant]);
     }

@@ -37,7 +37,7 @@ fn light(v: u16) -> Vec<u8> {
 fn file_of(bits: u16, stored: impl Fn(u16) -> Vec<u8>, has_layer: bool) -> Made {
     let planes: Vec<Vec<u8>> = (0..3).map(|c| plane(c, &stored)).collect();
     let channels = planes.iter().zip(0..).map(|(plane, c)| (c, plane.clone())).collect();
-    let layer = MadeLayer { channels, ..coloured("soft", SIDE, SIDE, [0; 3]) };
+    let layer = MadeLayer { channels, ..colored("soft", SIDE, SIDE, [0; 3]) };
     Made {
         bits,
         merged: planes,
@@ -89,12 +89,12 @@ fn pictures_and_layers_of_more_than_8_bits_become_paint_of_16() {
 }
 
 #[test]
-fn grey_and_half_transparent_pixels_keep_16_bits() {
-    let mut grey = file_of(16, short, true);
-    (grey.mode, grey.merged) = (1, vec![plane(0, short)]);
-    let layer = &mut grey.layers.as_mut().unwrap()[0];
+fn gray_and_half_transparent_pixels_keep_16_bits() {
+    let mut gray = file_of(16, short, true);
+    (gray.mode, gray.merged) = (1, vec![plane(0, short)]);
+    let layer = &mut gray.layers.as_mut().unwrap()[0];
     layer.channels = vec![(0, plane(0, short)), (-1, plane(1, |v| short(v | 0x4000)))];
-    let document = read_back(&grey.bytes()).document;
+    let document = read_back(&gray.bytes()).document;
     let own = document.walk().into_iter().find(|(_, layer)| layer.name == "soft").unwrap().1;
     let Content::Pixels(pixels) = &own.content else { panic!("a paint layer") };
     for (i, [r, g, b, a]) in pixels.tiles.to_straight_deep(RECT).into_iter().enumerate() {

@@ -62,7 +62,7 @@ fn names(document: &Document) -> Vec<(&str, bool)> {
 const HIDDEN: [(&str, bool); 2] = [("Layers", false), ("The file's own picture", true)];
 
 #[test]
-fn every_kind_of_colours_opens_from_the_file_s_picture() {
+fn every_kind_of_colors_opens_from_the_file_s_picture() {
     let float = |v: f32| v.to_be_bytes().to_vec();
     let table = || {
         (0..3)
@@ -147,7 +147,7 @@ fn nothing_looks_otherwise_without_a_note() {
 
 #[test]
 fn knockout_blend_if_and_channels_that_are_left_alone_are_told() {
-    let mut layer = coloured("top", 4, 4, [100; 3]);
+    let mut layer = colored("top", 4, 4, [100; 3]);
     layer.ranges = [[0, 0, 255, 255], [0, 0, 200, 255]].concat();
     layer.blocks = vec![(b"knko", vec![1, 0, 0, 0]), (b"brst", vec![0; 4]), (b"clbl", vec![0; 4])];
     let mut made = plain(4, 4, [100; 3]);
@@ -214,7 +214,7 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
         [[200, 10, 20, 255], [100, 100, 100, 255]]
     );
     // Later versions store its pixels too, which show the mask.
-    let mut with_pixels = coloured("shape", 2, 4, [200, 10, 20]);
+    let mut with_pixels = colored("shape", 2, 4, [200, 10, 20]);
     with_pixels.channels.push((-1, vec![255; 8]));
     with_pixels.blocks = vec![(b"SoCo", fill), (b"vmsk", mask)];
     made.layers.as_mut().unwrap()[1] = with_pixels;
@@ -291,7 +291,7 @@ fn an_artboard_has_its_ground_and_cuts_off_what_lies_beyond() {
         objc(&[("Top ", side(0.0)), ("Left", side(0.0)), ("Btom", side(2.0)), ("Rght", side(4.0))]);
     let kind = ("artboardBackgroundType", long(4));
     let board = descriptor(&[("artboardRect", rect), kind, ("Clr ", rgb([1, 2, 3]))]);
-    let mut big = coloured("big", 2, 4, [200, 200, 200]);
+    let mut big = colored("big", 2, 4, [200, 200, 200]);
     big.channels.push((-1, vec![255; 8]));
     let group =
         vec![(b"lsct", [1u32.to_be_bytes(), *b"8BIM", *b"pass"].concat()), (b"artb", board)];
@@ -317,7 +317,7 @@ fn masks_are_switched_off_dense_and_inverted_as_the_file_says() {
     let masked = |tail: &[u8]| {
         // The picture is unlike the layers, so that both are there.
         let mut made = Made { merged: vec![(0..16).collect(); 3], ..plain(4, 4, [0; 3]) };
-        let mut layer = coloured("top", 4, 4, [200; 3]);
+        let mut layer = colored("top", 4, 4, [200; 3]);
         layer.channels.push((-2, vec![255; 8]));
         layer.mask_data = [&rect, tail].concat();
         made.layers.as_mut().unwrap().push(layer);

@@ -41,14 +41,14 @@ pub fn plain(width: u32, height: u32, rgb: [u8; 3]) -> Made {
         height,
         table: Vec::new(),
         resources: Vec::new(),
-        layers: Some(vec![coloured("ground", width, height, rgb)]),
+        layers: Some(vec![colored("ground", width, height, rgb)]),
         blocks: Vec::new(),
         merged: rgb.map(|v| vec![v; area]).to_vec(),
     }
 }
 
 /// An opaque layer of the canvas's size.
-pub fn coloured(name: &'static str, width: u32, height: u32, rgb: [u8; 3]) -> MadeLayer {
+pub fn colored(name: &'static str, width: u32, height: u32, rgb: [u8; 3]) -> MadeLayer {
     let area = (width * height) as usize;
     let channels = (0..3).map(|c| (c as i16, vec![rgb[c]; area])).collect();
     MadeLayer {

@@ -1,6 +1,6 @@
 //! Guides and labels, to other programs and from them.
 
-use super::made::{Made, coloured, plain};
+use super::made::{Made, colored, plain};
 use super::*;
 use crate::document::LayerLabel;
 
@@ -54,7 +54,7 @@ fn guides_that_another_program_moved_are_believed_and_the_layers_stay_live() {
 #[test]
 fn labels_and_guides_of_photoshop_are_read_and_too_many_told() {
     let label = |number: u8| vec![0, number, 0, 0, 0, 0, 0, 0];
-    let mut ground = coloured("ground", 4, 4, [100; 3]);
+    let mut ground = colored("ground", 4, 4, [100; 3]);
     ground.blocks.push((b"lclr", label(6)));
     let guide = |at: i32, is_level: u8| [&at.to_be_bytes()[..], &[is_level]].concat();
     let head = |count: u32| [1u32, 576, 576, count].map(u32::to_be_bytes).concat();

@@ -88,7 +88,7 @@ fn a_project_gives_parts_back_with_the_same_surface() {
 }
 
 #[test]
-fn a_place_of_a_colour_is_written_read_and_told_of_when_its_colour_is_gone() {
+fn a_place_of_a_color_is_written_read_and_told_of_when_its_color_is_gone() {
     let part = json!([{ "id": "eye", "name": "eye", "kind": "inflate",
         "outline": { "layer": "Flats", "color": "#c08040", "at": [12.5, 9] } }]);
     let document = read(&part).unwrap();

@@ -87,7 +87,7 @@ impl CanvasAction {
     ) -> Option<Result<Edit, String>> {
         let done = self.step(document, progress);
         let edit = done.map(|(label, document)| Edit { label, document, select: Vec::new() });
-        (!progress.is_cancelled()).then_some(edit)
+        (!progress.is_canceled()).then_some(edit)
     }
 
     /// The step: its name and the resulting document; or why there is none.

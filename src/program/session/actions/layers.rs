@@ -255,10 +255,10 @@ impl LayerAction {
                 let ids = chosen(layer)?;
                 let place = document.place_of(*ids.first()?)?;
                 let next = document.without_layers(&ids)?;
-                let neighbour =
+                let neighbor =
                     sibling(&next, LayerSlot { index: place.index.saturating_sub(1), ..place });
                 let label = if ids.len() > 1 { "Delete layers" } else { "Delete layer" };
-                (label, next, neighbour.into_iter().collect())
+                (label, next, neighbor.into_iter().collect())
             }
             LayerAction::Duplicate { layer } => duplicated(document, &chosen(layer)?)?,
             LayerAction::Move { layer: paths, group, index } => {

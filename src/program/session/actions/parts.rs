@@ -1,10 +1,10 @@
 //! Actions on the shape of the document in front: its parts, the farthest first. What cannot be
-//! done says why. Floor 6. `new` makes parts, `greys` the pictures for them from layers; `first`
+//! done says why. Floor 6. `new` makes parts, `grays` the pictures for them from layers; `first`
 //! gives a drawing its first shape, `ink` puts its lines on top, `list` orders parts, `split` divides
 //! them. Not here: parts that the pen changes on the canvas (`tools::shape`).
 
 pub mod first;
-mod greys;
+mod grays;
 mod ink;
 mod list;
 pub mod new;
@@ -33,7 +33,7 @@ record!(ShapeSettings { tool, size, hardness, height, share, normal, radius, rea
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InflationPreset(pub Inflation);
 
-/// Whether there is a part for each colour was the question before places were known.
+/// Whether there is a part for each color was the question before places were known.
 impl ReplayValue for PartFor {
     fn written(&self) -> Value {
         match self {
@@ -77,7 +77,7 @@ actions! {
         /// all others.
         "add" Add { kind: NewPart }
         /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat
-        /// colours (`true`) or from each place of them (`"places"`), and a lit Base.
+        /// colors (`true`) or from each place of them (`"places"`), and a lit Base.
         "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: PartFor }
         /// A part in a new version, as recipes write it; shown only, until it is `done`.
         "set" Set { part: Value, done: bool }
@@ -87,7 +87,7 @@ actions! {
         "order" Order { part: String, index: usize }
         "visible" Visible { part: String, on: bool }
         "duplicate" Duplicate { part: String }
-        /// A part of a colour in several places becomes a part for each.
+        /// A part of a color in several places becomes a part for each.
         "split" Split { part: String }
         /// A drawing becomes a layer for each part that has its outline from it, which goes with
         /// the part.

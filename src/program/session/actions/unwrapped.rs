@@ -29,7 +29,7 @@ pub fn export(
     let deep = (format == ExportFormat::Exr).then_some(Highlights::Kept).or(options.deep);
     let options = UnwrapOptions { deep, ..options };
     let seen = match unwrapped(document, None, options, progress) {
-        _ if progress.is_cancelled() => return Ok(()),
+        _ if progress.is_canceled() => return Ok(()),
         seen => seen.map_err(|why| Error::unsupported(file, why))?,
     };
     // A JPEG has no transparency for what lies between the pieces.

@@ -157,7 +157,7 @@ pub fn range(listed: &[LayerId], from: LayerId, to: LayerId) -> Vec<LayerId> {
 
 /// The layer above (positive) or beneath another one, groups opened and counted after what is in
 /// them; at an end the layer itself.
-pub fn neighbour(document: &Document, layer: LayerId, by: i32) -> LayerId {
+pub fn neighbor(document: &Document, layer: LayerId, by: i32) -> LayerId {
     let all: Vec<LayerId> = document.walk().iter().map(|(_, layer)| layer.id).collect();
     let at = all.iter().position(|id| *id == layer).unwrap_or(0);
     let to = at.saturating_add_signed(by as isize).min(all.len().saturating_sub(1));
@@ -223,7 +223,7 @@ mod tests {
         let next = open.document().without_layer(ids[1]).unwrap();
         open.commit("Delete layer", next);
         assert_eq!(open.chosen_layers(), [ids[0], ids[2]]);
-        assert_eq!(neighbour(open.document(), ids[2], -1), ids[0]);
-        assert_eq!(neighbour(open.document(), ids[4], 1), ids[4]);
+        assert_eq!(neighbor(open.document(), ids[2], -1), ids[0]);
+        assert_eq!(neighbor(open.document(), ids[4], 1), ids[4]);
     }
 }

@@ -1,6 +1,6 @@
 //! What steps of the history are called: what was done, and to which layer. Floor 6.
 
-use crate::document::{Document, EditLabel, LabelledLayer, Layer, LayerId};
+use crate::document::{Document, EditLabel, LabeledLayer, Layer, LayerId};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -26,9 +26,9 @@ pub fn label(name: String, before: &Document, after: &Document) -> EditLabel {
     };
     let (came, gone) = (apart(after, &new, &old), apart(before, &old, &new));
     let layer = match (&came[..], &gone[..], &innermost[..]) {
-        ([one], _, _) => new.get(one).map(|layer| LabelledLayer::Listed(layer.name.clone())),
-        ([], [one], _) => old.get(one).map(|layer| LabelledLayer::Listed(layer.name.clone())),
-        ([], [], [one]) => new.get(one).map(|layer| LabelledLayer::Changed(layer.name.clone())),
+        ([one], _, _) => new.get(one).map(|layer| LabeledLayer::Listed(layer.name.clone())),
+        ([], [one], _) => old.get(one).map(|layer| LabeledLayer::Listed(layer.name.clone())),
+        ([], [], [one]) => new.get(one).map(|layer| LabeledLayer::Changed(layer.name.clone())),
         _ => None,
     };
     EditLabel { name, layer }
@@ -52,10 +52,10 @@ fn by_id(document: &Document) -> HashMap<LayerId, &Arc<Layer>> {
 pub fn sentence(label: &EditLabel) -> String {
     let name = &label.name;
     match &label.layer {
-        Some(LabelledLayer::Changed(layer)) if !name.ends_with("layer") => {
+        Some(LabeledLayer::Changed(layer)) if !name.ends_with("layer") => {
             format!("{name} on “{layer}”")
         }
-        Some(LabelledLayer::Changed(layer) | LabelledLayer::Listed(layer)) => {
+        Some(LabeledLayer::Changed(layer) | LabeledLayer::Listed(layer)) => {
             format!("{name} “{layer}”")
         }
         None => name.clone(),

@@ -9,7 +9,7 @@ use crate::session::autosave::{Autosave, RestoredDocument};
 use crate::session::{OpenDocument, actions::files, storage};
 use std::path::PathBuf;
 
-/// A drawing in flat colours with a shape, its base lit.
+/// A drawing in flat colors with a shape, its base lit.
 fn shaped() -> Session {
     let size = crate::math::Size::new(160, 120);
     let texel = |i: usize| {
@@ -135,7 +135,7 @@ fn after_a_crash_a_drawing_has_its_shape() {
 }
 
 #[test]
-fn a_recovery_that_is_cancelled_is_offered_again() {
+fn a_recovery_that_is_canceled_is_offered_again() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = shaped();
     session.autosave = Some(Autosave::new(folder.path().into()));
@@ -162,7 +162,7 @@ fn a_document_whose_shape_is_still_to_be_made_is_shown_exported_and_saved_with_i
     let [_, exported, merged, opened] = everywhere(&flat, folder.path());
     let shown = picture(document);
     assert!(shown == exported && shown == merged && shown == opened);
-    // What waits for the shape can be cancelled while it waits.
+    // What waits for the shape can be canceled while it waits.
     let given_up = Progress::default();
     given_up.cancel();
     let file = folder.path().join("b.ora");

@@ -12,9 +12,9 @@ const SIZE: Size = Size::new(200, 130);
 /// Bands of gray that get lighter from left to right, 20 px wide; the sixth is separate from the
 /// rest.
 fn bands() -> Document {
-    let grey = |x: usize| (x / 20 * 20) as u8;
+    let gray = |x: usize| (x / 20 * 20) as u8;
     let rgba: Vec<u8> =
-        (0..200 * 130).flat_map(|i| [grey(i % 200), grey(i % 200), 0, 255]).collect();
+        (0..200 * 130).flat_map(|i| [gray(i % 200), gray(i % 200), 0, 255]).collect();
     let tiles = TileGrid::from_straight_rgba(&rgba, 200, 130, 0, 0);
     let layer = Layer::new("bands", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     Document { layers: vec![Arc::new(layer)], ..Document::empty(SIZE) }

@@ -1,6 +1,6 @@
 //! The possible meanings of maps, seen under a light. Floor 7.
 
-use crate::math::{Size, srgb::quantise, vec3};
+use crate::math::{Size, srgb::quantize, vec3};
 use crate::raster::Picture;
 use crate::surface::Surface;
 
@@ -33,7 +33,7 @@ pub fn lit(surface: &Surface, [flip_x, flip_y]: [bool; 2]) -> Option<Picture> {
         let mut n = surface.normal(x, y);
         n.x = if flip_x { -n.x } else { n.x };
         n.y = if flip_y { -n.y } else { n.y };
-        let shade = quantise(0.1 + 0.85 * n.dot(light).max(0.0).sqrt());
+        let shade = quantize(0.1 + 0.85 * n.dot(light).max(0.0).sqrt());
         [shade, shade, shade, surface.coverage(x, y)]
     };
     Picture::srgb8(small, (0..small.area()).map(texel).collect())

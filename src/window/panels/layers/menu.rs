@@ -53,7 +53,7 @@ pub fn show(
             let text = eframe::egui::RichText::new(name);
             let text = color_of(label).map_or(text.clone(), |color| text.strong().color(color));
             if ui.add(Button::selectable(layer.label == label, text)).clicked() {
-                set(requests, &paths, Property::Labelled { label }, true);
+                set(requests, &paths, Property::Labeled { label }, true);
                 ui.close();
             }
         }

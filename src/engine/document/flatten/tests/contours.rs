@@ -264,7 +264,7 @@ fn rim(surface: &Arc<Surface>, pixels: impl Fn(i32, i32) -> [f32; 4]) -> Vec<(f3
 }
 
 #[test]
-fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centres_lie() {
+fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centers_lie() {
     let on_ground =
         |layers: Vec<Layer>| std::iter::once(unclipped("#203038")).chain(layers).collect();
     let white = || fill("#e0d0c0");

@@ -8,7 +8,7 @@ use crate::raster::TileGrid;
 use crate::shading::{RadianceScaling, Shading};
 use std::sync::Arc;
 
-/// One colour everywhere.
+/// One color everywhere.
 impl From<Color> for Content {
     fn from(color: Color) -> Self {
         Content::Fill(color)
@@ -29,7 +29,7 @@ impl From<PlacedImage> for Content {
     }
 }
 
-/// A colour ramp that is bent over the surface.
+/// A color ramp that is bent over the surface.
 impl From<Gradient> for Content {
     fn from(gradient: Gradient) -> Self {
         Content::Gradient(Live::new(gradient))
@@ -66,7 +66,7 @@ impl From<RadianceScaling> for Content {
     }
 }
 
-/// What lies beneath, its colours adjusted.
+/// What lies beneath, its colors adjusted.
 impl From<ColorAdjustment> for Content {
     fn from(adjustment: ColorAdjustment) -> Self {
         Content::Adjustment(LiveAdjustment::new(adjustment))

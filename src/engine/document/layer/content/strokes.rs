@@ -30,7 +30,7 @@ impl Marks for StrokeList {
 
     /// Strokes whose dabs are too many to be kept would be laid again for every tile.
     fn together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
-        let is_wanted = || !progress.is_cancelled();
+        let is_wanted = || !progress.is_canceled();
         let seen: Vec<TileAt> =
             tiles.iter().copied().filter(|&at| !scene.area(at).is_empty()).collect();
         if !seen.is_empty()
@@ -79,7 +79,7 @@ impl LayerKind for Live<StrokeList> {
             let bend = Bend { operator: stroke.operator(), ..Bend::default() };
             Deformation::new(scene.surface.as_deref(), scene.size, &bend);
         }
-        let (missing, is_wanted) = (self.missing(scene), || !progress.is_cancelled());
+        let (missing, is_wanted) = (self.missing(scene), || !progress.is_canceled());
         let strokes = &self.params().strokes;
         if !missing.is_empty()
             && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true)
@@ -92,7 +92,7 @@ impl LayerKind for Live<StrokeList> {
     }
 
     fn warm_far_side(&self, far: &Scene, progress: &Progress) {
-        let (front, is_wanted) = (far.front(), || !progress.is_cancelled());
+        let (front, is_wanted) = (far.front(), || !progress.is_canceled());
         let (missing, strokes) = (self.missing_far_sides(&front), &self.params().strokes);
         if missing.is_empty()
             || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true)

@@ -132,7 +132,7 @@ fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
 }
 
 #[test]
-fn three_colours_that_meet_in_a_pixel_lose_nothing() {
+fn three_colors_that_meet_in_a_pixel_lose_nothing() {
     let tiles = drawings::drawn(|p| {
         let turn = (p - vec2(300.3, 200.6)).to_angle().to_degrees().rem_euclid(360.0);
         let colors = [[220.0, 60.0, 60.0], [60.0, 180.0, 60.0], [60.0, 80.0, 200.0]];

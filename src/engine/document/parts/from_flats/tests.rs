@@ -97,7 +97,7 @@ fn ink_belongs_to_what_it_runs_along() {
 }
 
 #[test]
-fn a_line_keeps_two_places_of_one_colour_apart() {
+fn a_line_keeps_two_places_of_one_color_apart() {
     let tiles = inked(&[([230.0, 220.0], 120.0, HEAD), ([360.0, 200.0], 90.0, HEAD)]);
     assert_eq!(parts(&tiles, PartFor::Color).parts.len(), 1);
     let made = parts(&tiles, PartFor::Place);
@@ -108,7 +108,7 @@ fn a_line_keeps_two_places_of_one_colour_apart() {
 }
 
 #[test]
-fn a_colour_that_is_shaded_is_one_part_and_two_tones_with_an_edge_are_two() {
+fn a_color_that_is_shaded_is_one_part_and_two_tones_with_an_edge_are_two() {
     let shaded = drawn(|p| {
         let (away, light) = (p.distance(vec2(300.0, 200.0)), 1.1 - p.x / 1200.0);
         (away < 150.0).then(|| HEAD.map(|v| v * light))

@@ -58,10 +58,10 @@ fn pictures_of_a_draft_are_read_as_coarsely_as_its_pixels_are() {
             _ => 0,
         };
         let small = DocumentReducer::new(0.25).of(&document).unwrap();
-        let grey = flatten(&small, &Progress::default()).unwrap().pixel(32, 16);
+        let gray = flatten(&small, &Progress::default()).unwrap().pixel(32, 16);
         assert!(
-            filter == ImageFilter::Bilinear || scale > 1.0 || grey[0].abs_diff(128) < 4,
-            "{grey:?}"
+            filter == ImageFilter::Bilinear || scale > 1.0 || gray[0].abs_diff(128) < 4,
+            "{gray:?}"
         );
         (width(&small), width(&document.scaled(0.25).unwrap()))
     };

@@ -2,7 +2,7 @@
 //! covered (`round`).
 
 use super::{AT_CENTER, BEYOND, CHUNK, RoundTip, RowPaint, RowZones, WITHIN, add_within, zone_of};
-use crate::paint::dab::{DeformationField, PixelSpan, SpanNeighbours};
+use crate::paint::dab::{DeformationField, PixelSpan, SpanNeighbors};
 use crate::raster::TILE;
 use crate::raster::tile::TILE_AREA;
 use crate::surface::links;
@@ -50,7 +50,7 @@ crate::widest! {
     }
 
     /// Bent: J by differences within each pixel's piece of surface.
-    pub(in crate::paint::dab) fn bent_row(d: SpanNeighbours, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
+    pub(in crate::paint::dab) fn bent_row(d: SpanNeighbors, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
         let n = paint.coverage.len().min(TILE);
         judge(d, 0..n, tip, row);
         tip.add(row, 0..n, paint);
@@ -142,7 +142,7 @@ fn flat_span(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, paint: RowPaint
 
 #[inline(always)]
 fn bent_span(
-    d: SpanNeighbours,
+    d: SpanNeighbors,
     sure: (&[f32], &[f32]),
     tip: &RoundTip,
     row: &mut RowZones,
@@ -190,7 +190,7 @@ fn sort(x: &[f32], y: &[f32], sure: (&[f32], &[f32]), tip: &RoundTip, near: &mut
 
 /// What pixels of a row are classified by: D at them and at their neighbors.
 #[inline(always)]
-fn judge(d: SpanNeighbours, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
+fn judge(d: SpanNeighbors, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
     if are_inside(&d.linked[pixels.clone()]) {
         judge_inside(d, pixels, tip, row);
     } else {
@@ -210,7 +210,7 @@ fn are_inside(linked: &[u8]) -> bool {
 /// Within one piece of surface: J by central differences.
 #[inline(always)]
 fn judge_inside<'d>(
-    d: SpanNeighbours<'d>,
+    d: SpanNeighbors<'d>,
     pixels: Range<usize>,
     tip: &RoundTip,
     row: &mut RowZones,
@@ -234,7 +234,7 @@ fn judge_inside<'d>(
 
 /// Along a silhouette, a depth jump or outside: J from linked neighbors only.
 #[inline(always)]
-fn judge_rim<'d>(d: SpanNeighbours<'d>, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
+fn judge_rim<'d>(d: SpanNeighbors<'d>, pixels: Range<usize>, tip: &RoundTip, row: &mut RowZones) {
     let n = pixels.len();
     let around = |row: &'d [f32]| &row[pixels.start..pixels.end + 2];
     let (cx, cy) = (around(d.row.0), around(d.row.1));

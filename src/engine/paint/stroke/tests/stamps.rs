@@ -20,7 +20,7 @@ fn leaf() -> Tip {
 }
 
 #[test]
-fn a_coloured_stamp_turns_counter_clockwise_and_keeps_its_colours() {
+fn a_colored_stamp_turns_counter_clockwise_and_keeps_its_colors() {
     let brush = Brush { size: 64.0, rotation: 90.0, tip: leaf(), ..Brush::default() };
     let stroke =
         Stroke::new(brush, Operator::None, Color::BLACK, vec![Sample::at(vec2(70.0, 70.0))]);
@@ -59,7 +59,7 @@ fn a_bent_stamp_over_tile_borders_equals_the_picture_read_at_d() {
 }
 
 #[test]
-fn a_grey_tip_is_painted_in_the_strokes_colour_and_softness_spreads_it() {
+fn a_gray_tip_is_painted_in_the_strokes_color_and_softness_spreads_it() {
     let picture = Picture::srgb8(Size::new(16, 16), vec![[255, 255, 255, 255]; 256]).unwrap();
     let tip = Tip::Picture(PictureSource::new("square.png".into(), picture, Adjust::default()));
     let painted = |softness: f32| {

@@ -103,7 +103,7 @@ fn straight_ahead() -> Shading {
 }
 
 #[test]
-fn a_level_part_lit_from_straight_ahead_keeps_its_colour() {
+fn a_level_part_lit_from_straight_ahead_keeps_its_color() {
     let scene = ball(Size::new(300, 300), true);
     for color in [[0.9, 0.8, 0.7], [0.3, 0.5, 0.9], [0.05, 0.1, 0.02]] {
         let mut tile = crate::raster::PlanarTile::transparent();

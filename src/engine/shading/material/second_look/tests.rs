@@ -157,7 +157,7 @@ fn where_light_is_the_same_everywhere_a_perfect_mirror_does_not_see_itself() {
 }
 
 #[test]
-fn a_glossy_ball_takes_the_colour_of_the_one_beside_it() {
+fn a_glossy_ball_takes_the_color_of_the_one_beside_it() {
     let scene = scene(&PAIR);
     let red = Color { r: 220, g: 20, b: 20, a: 255 };
     let glossy = |bounces: u32| Shading {

@@ -44,7 +44,7 @@ pub(in crate::surface::deformation) fn try_fill_dab(
         }
         let start = span.x - rect.x0 as usize;
         let (out_x, out_y) = (&mut out_x[start..start + span.n], &mut out_y[start..start + span.n]);
-        let first = deformation.centre(span.x as i32, y).into();
+        let first = deformation.center(span.x as i32, y).into();
         let (row, coverage) = (DabRow { first, pin }, span.of(surface.coverage_plane()));
         let [x, y, z] = surface.normal_planes();
         match kernel {
@@ -98,7 +98,7 @@ fn try_fill_laid(
         }
         let start = span.x - rect.x0 as usize;
         let (out_x, out_y) = (&mut out_x[start..start + span.n], &mut out_y[start..start + span.n]);
-        let first = deformation.centre(span.x as i32, y).into();
+        let first = deformation.center(span.x as i32, y).into();
         let row = LaidRow {
             first,
             object: fit.object,

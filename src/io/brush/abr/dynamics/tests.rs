@@ -115,7 +115,7 @@ fn only_what_is_used_and_lost_is_told() {
 
 #[test]
 fn a_texture_is_the_collection_s_pattern() {
-    let pattern = PatternResource::grey("p", crate::math::Size::new(2, 1), &[0, 200]);
+    let pattern = PatternResource::gray("p", crate::math::Size::new(2, 1), &[0, 200]);
     let values = |blend: &[u8]| {
         DescriptorObject::of(vec![
             ("useTexture", Flag(true)),

@@ -1,7 +1,7 @@
 //! New parts: from the selected layer, the selection or the chosen stroke, or bodies in the middle
 //! of the canvas. Floor 6.
 
-use super::{PartRefusal, free_id, greys};
+use super::{PartRefusal, free_id, grays};
 use crate::document::parts::{CoverageFile, OutlineSource, Part, PartKind, PartMaps};
 use crate::document::{Document, Inflation, LayerId};
 use crate::math::{Vec2, vec2};
@@ -108,10 +108,10 @@ pub fn make_part(kind: NewPart, open: &OpenDocument) -> Result<Part, PartRefusal
             lines: Lines::default(),
         },
         NewPart::Relief => {
-            let picture = greys::detail(document, selected(open)?)?;
+            let picture = grays::detail(document, selected(open)?)?;
             PartKind::Relief { on: form_of_chosen(open)?, picture, detail: Detail::default() }
         }
-        NewPart::Profiles => PartKind::Profiles { outline: None, shadings: greys::shadings(open)? },
+        NewPart::Profiles => PartKind::Profiles { outline: None, shadings: grays::shadings(open)? },
     };
     let name = match (kind, open.selected.and_then(|id| document.layer(id))) {
         (
@@ -174,7 +174,7 @@ fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
 fn of_selection(document: &Document) -> Option<OutlineSource> {
     let coverage = Arc::new(document.selected()?.to_plane(document.size.rect()));
     Some(OutlineSource::File(CoverageFile {
-        file: greys::free_files(document, "outline").next()?,
+        file: grays::free_files(document, "outline").next()?,
         coverage,
     }))
 }

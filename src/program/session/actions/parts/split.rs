@@ -3,7 +3,7 @@
 
 use super::{PartRefusal, free_id};
 use crate::document::Document;
-use crate::document::parts::from_flats::MOST_COLOURS;
+use crate::document::parts::from_flats::MOST_COLORS;
 use crate::document::parts::{Part, PartKind};
 use crate::shape::flats::places::SplitPlaces;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub fn by_place(document: &Document, part: &Part) -> Result<Document, PartRefusa
     let points = places.points();
     match points.len() {
         0 | 1 => return Err("The color of this part is in one place only."),
-        n if n > MOST_COLOURS => {
+        n if n > MOST_COLORS => {
             return Err("The color of this part is in too many places: more than 64.");
         }
         _ => {}

@@ -102,7 +102,7 @@ impl StoryFiles {
             }),
             ("import brush", _) => found(&|name| name.starts_with("picture")),
             _ => found(&|name| {
-                name.starts_with("picture") || name.starts_with("normal") || name == "grey.png"
+                name.starts_with("picture") || name.starts_with("normal") || name == "gray.png"
             }),
         }
     }

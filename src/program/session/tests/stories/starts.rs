@@ -109,7 +109,7 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
     let deep = ImageBuffer::from_fn(32, 32, |x, y| {
         Rgb([(x * 2000 + 17) as u16, (y * 2000 + 3) as u16, (x * y * 60) as u16])
     });
-    let grey = ImageBuffer::from_fn(48, 36, |x, y| Luma([((x * 5) ^ (y * 7)) as u8]));
+    let gray = ImageBuffer::from_fn(48, 36, |x, y| Luma([((x * 5) ^ (y * 7)) as u8]));
     let inked = ImageBuffer::from_fn(48, 36, |x, y| match (x.min(47 - x).min(y).min(35 - y), x) {
         (0..4, _) => Rgba([0; 4]),
         (4..6, _) | (_, 23..25) => Rgba([28, 22, 30, 255]),
@@ -125,7 +125,7 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
         ("picture.png", DynamicImage::ImageRgba8(picture)),
         ("inked.png", DynamicImage::ImageRgba8(inked)),
         ("picture-deep.png", DynamicImage::ImageRgb16(deep)),
-        ("grey.png", DynamicImage::ImageLuma8(grey)),
+        ("gray.png", DynamicImage::ImageLuma8(gray)),
     ];
     let encoded = |image: DynamicImage| {
         let mut bytes = Cursor::new(Vec::new());

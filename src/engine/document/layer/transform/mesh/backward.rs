@@ -126,7 +126,7 @@ impl<'m> Backward<'m> {
     pub(super) fn lattice(&self) -> Lattice {
         let by = |k: usize| self.found[k].map(|p| self.closer(self.node(k), p) - self.node(k));
         let mut by: Vec<Option<Vec2>> = (0..self.found.len()).into_par_iter().map(by).collect();
-        self.continue_from_neighbours(&mut by);
+        self.continue_from_neighbors(&mut by);
         // Where nothing is known at all, nothing shows.
         let nowhere = Vec2::splat(Lattice::FARTHEST_PX);
         let mut out = Lattice::default();
@@ -139,7 +139,7 @@ impl<'m> Backward<'m> {
     }
 
     /// Nodes that the mesh does not reach have the displacement of those next to them.
-    fn continue_from_neighbours(&self, by: &mut [Option<Vec2>]) {
+    fn continue_from_neighbors(&self, by: &mut [Option<Vec2>]) {
         let rows = by.len() / self.across;
         let mut edge: Vec<usize> = (0..by.len()).filter(|&k| by[k].is_some()).collect();
         while !edge.is_empty() {

@@ -21,7 +21,7 @@ fn ringed(p: Vec2) -> Pixel {
 }
 
 #[test]
-fn a_colour_goes_on_beneath_nearer_colours_inside_of_it_and_a_hole_stays() {
+fn a_color_goes_on_beneath_nearer_colors_inside_of_it_and_a_hole_stays() {
     for side in [1.0, 2.2] {
         let flats = Flats::of(&drawn(side, ringed), SIZE.rect(), &[]).unwrap();
         let mut share = flats.share_of(color(BODY), &[]);

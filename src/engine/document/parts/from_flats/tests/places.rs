@@ -138,7 +138,7 @@ fn a_part_takes_only_the_area_around_its_point() {
 }
 
 #[test]
-fn shares_of_all_places_add_up_to_that_of_the_colour() {
+fn shares_of_all_places_add_up_to_that_of_the_color() {
     let tiles = face(&EYES);
     let flats = Flats::of(&tiles, tiles.bounds(), &[]).unwrap();
     let color = Color::parse("#fafafa").unwrap();

@@ -17,7 +17,7 @@ pub const PUPIL: [u8; 4] = [145, 10, 0, 255];
 
 /// A creature of four flats that touch, the nearest last.
 pub fn at(p: Vec2) -> Pixel {
-    let within = |centre: Vec2, half: Vec2| ((p - centre) / half).length() < 1.0;
+    let within = |center: Vec2, half: Vec2| ((p - center) / half).length() < 1.0;
     let shapes = [
         (PUPIL, within(vec2(122.0, 61.0), vec2(5.0, 6.0))),
         (EYE, within(vec2(120.0, 60.0), vec2(13.0, 14.0))),
@@ -32,11 +32,11 @@ pub fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
     const N: usize = 8;
     let mut rgba = Vec::with_capacity(SIZE.area() * 4);
     for i in 0..SIZE.area() {
-        let centre = vec2((i % SIZE.width as usize) as f32, (i / SIZE.width as usize) as f32) + 0.5;
+        let center = vec2((i % SIZE.width as usize) as f32, (i / SIZE.width as usize) as f32) + 0.5;
         let mut sum = [0u32; 4];
         for k in 0..N * N {
             let step = (vec2((k % N) as f32, (k / N) as f32) + 0.5) / N as f32 - 0.5;
-            let [r, g, b, a] = at(centre + step * side);
+            let [r, g, b, a] = at(center + step * side);
             [r, g, b, a].into_iter().zip(&mut sum).for_each(|(v, sum)| *sum += u32::from(v));
         }
         let alpha = sum[3].max(1);
@@ -68,7 +68,7 @@ fn the_shares_of_a_pixel_add_up_to_what_is_painted_of_it() {
 }
 
 #[test]
-fn only_areas_are_colours() {
+fn only_areas_are_colors() {
     // A long straight edge half-way through its pixels is a long row of one mixed color.
     let halves = drawn(1.0, |p| if p.x < 90.5 { BODY } else { WING });
     assert_eq!(Flats::of(&halves, SIZE.rect(), &[]).unwrap().colors().len(), 2);

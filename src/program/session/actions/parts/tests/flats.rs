@@ -9,7 +9,7 @@ use crate::session::actions::placing::of_picture;
 use std::path::Path;
 
 #[test]
-fn each_flat_colour_becomes_a_part() {
+fn each_flat_color_becomes_a_part() {
     let mut session = opened(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"tube","flats":true}"#);
     assert_eq!(ids(&session), ["part-1", "part-2"]);
@@ -37,7 +37,7 @@ fn pair() -> Document {
 }
 
 #[test]
-fn each_place_of_a_colour_becomes_a_part_at_once() {
+fn each_place_of_a_color_becomes_a_part_at_once() {
     let mut session = opened(pair());
     tell(
         &mut session,

@@ -10,7 +10,7 @@ use moxcms::{ColorProfile, DataColorSpace, Layout, RenderingIntent, TransformOpt
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     Bitmap,
-    Grey,
+    Gray,
     Indexed,
     Rgb,
     Cmyk,
@@ -22,7 +22,7 @@ pub enum Mode {
 impl Mode {
     /// By its number in the header.
     pub fn of(number: u16) -> Option<Self> {
-        let modes = [Mode::Bitmap, Mode::Grey, Mode::Indexed, Mode::Rgb, Mode::Cmyk];
+        let modes = [Mode::Bitmap, Mode::Gray, Mode::Indexed, Mode::Rgb, Mode::Cmyk];
         match number {
             7 => Some(Mode::Multichannel),
             8 => Some(Mode::Duotone),
@@ -34,7 +34,7 @@ impl Mode {
     /// Channels of color, at least.
     pub fn channels(self) -> u16 {
         match self {
-            Mode::Bitmap | Mode::Grey | Mode::Indexed | Mode::Duotone | Mode::Multichannel => 1,
+            Mode::Bitmap | Mode::Gray | Mode::Indexed | Mode::Duotone | Mode::Multichannel => 1,
             Mode::Rgb | Mode::Lab => 3,
             Mode::Cmyk => 4,
         }
@@ -43,7 +43,7 @@ impl Mode {
 
 /// The colors of one file.
 #[derive(Clone, Copy, Debug)]
-pub struct Colours<'a> {
+pub struct Colors<'a> {
     pub mode: Mode,
     /// Channels of color that the file has, at most four.
     pub channels: usize,
@@ -66,40 +66,40 @@ pub struct StraightPixels {
 }
 
 /// A channel's value whose colors are known.
-pub trait ColourValue: ChannelValue {
-    /// As [`Colours::to_srgb`].
+pub trait ColorValue: ChannelValue {
+    /// As [`Colors::to_srgb`].
     fn pixels(
-        colours: Colours,
+        colors: Colors,
         size: Size,
         planes: &[Option<Vec<Self>>; 4],
         alpha: Option<&[Self]>,
     ) -> StraightPixels;
 }
 
-impl ColourValue for u8 {
+impl ColorValue for u8 {
     fn pixels(
-        colours: Colours,
+        colors: Colors,
         size: Size,
         planes: &[Option<Vec<u8>>; 4],
         alpha: Option<&[u8]>,
     ) -> StraightPixels {
-        StraightPixels { rgba: colours.to_srgb(size, planes, alpha), deep: Vec::new() }
+        StraightPixels { rgba: colors.to_srgb(size, planes, alpha), deep: Vec::new() }
     }
 }
 
-impl ColourValue for u16 {
+impl ColorValue for u16 {
     fn pixels(
-        colours: Colours,
+        colors: Colors,
         size: Size,
         planes: &[Option<Vec<u16>>; 4],
         alpha: Option<&[u16]>,
     ) -> StraightPixels {
-        let deep = colours.to_srgb_deep(size, planes, alpha);
+        let deep = colors.to_srgb_deep(size, planes, alpha);
         StraightPixels { rgba: deep.as_flattened().iter().map(|v| v.byte()).collect(), deep }
     }
 }
 
-impl Colours<'_> {
+impl Colors<'_> {
     /// Of a mode, without profile or table.
     pub fn of_mode(mode: Mode) -> Self {
         let channels = usize::from(mode.channels());
@@ -122,16 +122,16 @@ impl Colours<'_> {
         let opacity = |i: usize| {
             alpha.map_or(u16::WHOLE, |alpha| alpha.get(i).copied().unwrap_or(u16::WHOLE))
         };
-        let is_grey = self.mode == Mode::Grey;
-        let colour =
-            |i: usize| if is_grey { [value(0, i); 3] } else { [0, 1, 2].map(|c| value(c, i)) };
+        let is_gray = self.mode == Mode::Gray;
+        let color =
+            |i: usize| if is_gray { [value(0, i); 3] } else { [0, 1, 2].map(|c| value(c, i)) };
         let texel = |i: usize| {
-            let [r, g, b] = colour(i);
+            let [r, g, b] = color(i);
             [r, g, b, opacity(i)]
         };
         let texels = (0..size.area()).map(texel).collect();
         match self.profile() {
-            Some(icc) => picture::to_srgb_deep(size, texels, is_grey, icc),
+            Some(icc) => picture::to_srgb_deep(size, texels, is_gray, icc),
             None => texels,
         }
     }
@@ -152,10 +152,10 @@ impl Colours<'_> {
             planes[c].as_ref().and_then(|plane| plane.get(i)).copied().unwrap_or(0)
         };
         let opacity = |i: usize| alpha.map_or(255, |alpha| alpha.get(i).copied().unwrap_or(255));
-        let pixels = |colour: &dyn Fn(usize) -> [u8; 3]| -> Vec<u8> {
+        let pixels = |color: &dyn Fn(usize) -> [u8; 3]| -> Vec<u8> {
             let mut rgba = Vec::with_capacity(area * 4);
             for i in 0..area {
-                rgba.extend(colour(i));
+                rgba.extend(color(i));
                 rgba.push(opacity(i));
             }
             rgba
@@ -163,7 +163,7 @@ impl Colours<'_> {
         match self.mode {
             Mode::Bitmap | Mode::Duotone => pixels(&|i| [value(0, i); 3]),
             Mode::Multichannel if self.channels < 3 => pixels(&|i| [value(0, i); 3]),
-            Mode::Grey => self.through_profile(size, pixels(&|i| [value(0, i); 3])),
+            Mode::Gray => self.through_profile(size, pixels(&|i| [value(0, i); 3])),
             Mode::Rgb => {
                 self.through_profile(size, pixels(&|i| [value(0, i), value(1, i), value(2, i)]))
             }
@@ -206,7 +206,7 @@ impl Colours<'_> {
 
     fn through_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {
         match self.profile() {
-            Some(icc) => picture::to_srgb(size, rgba, self.mode == Mode::Grey, icc),
+            Some(icc) => picture::to_srgb(size, rgba, self.mode == Mode::Gray, icc),
             None => rgba,
         }
     }
@@ -243,7 +243,7 @@ fn lab_to_srgb([l, a, b]: [u8; 3]) -> [u8; 3] {
     };
     let xyz = [linear(x) * WHITE[0], linear(y) * WHITE[1], linear(z) * WHITE[2]];
     TO_SRGB.map(|row| {
-        srgb::quantise(srgb::encode((row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]).max(0.0)))
+        srgb::quantize(srgb::encode((row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]).max(0.0)))
     })
 }
 
@@ -295,7 +295,7 @@ impl Press {
         const AT_ONCE: usize = 4096;
         let light = |v: u16| {
             let linear = (srgb::decode(f32::from(v) / 65535.0) - self.black) / (1.0 - self.black);
-            srgb::quantise(srgb::encode(linear.max(0.0)))
+            srgb::quantize(srgb::encode(linear.max(0.0)))
         };
         for (part, pixels) in rgba.chunks_mut(AT_ONCE * 4).enumerate() {
             let count = pixels.len() / 4;
@@ -304,10 +304,10 @@ impl Press {
                 (0..count).flat_map(|i| ink(part * AT_ONCE + i).map(share)).collect();
             let mut rgb = vec![0; count * 3];
             if self.transform.transform(&inks, &mut rgb).is_ok() {
-                for (pixel, colour) in
+                for (pixel, color) in
                     pixels.as_chunks_mut::<4>().0.iter_mut().zip(rgb.as_chunks::<3>().0)
                 {
-                    pixel[..3].copy_from_slice(&colour.map(light));
+                    pixel[..3].copy_from_slice(&color.map(light));
                 }
             }
         }
@@ -318,31 +318,31 @@ impl Press {
 mod tests {
     use super::*;
 
-    fn colours(mode: Mode, channels: usize) -> Colours<'static> {
-        Colours { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
+    fn colors(mode: Mode, channels: usize) -> Colors<'static> {
+        Colors { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
     }
 
-    fn one(colours: &Colours, values: [u8; 4]) -> [u8; 4] {
+    fn one(colors: &Colors, values: [u8; 4]) -> [u8; 4] {
         let planes = values.map(|v| Some(vec![v]));
-        colours.to_srgb(Size::new(1, 1), &planes, Some(&[200])).try_into().unwrap()
+        colors.to_srgb(Size::new(1, 1), &planes, Some(&[200])).try_into().unwrap()
     }
 
     #[test]
-    fn every_mode_gives_the_colours_it_means() {
-        assert_eq!(one(&colours(Mode::Bitmap, 1), [255, 0, 0, 0]), [255, 255, 255, 200]);
-        assert_eq!(one(&colours(Mode::Rgb, 3), [1, 2, 3, 0]), [1, 2, 3, 200]);
+    fn every_mode_gives_the_colors_it_means() {
+        assert_eq!(one(&colors(Mode::Bitmap, 1), [255, 0, 0, 0]), [255, 255, 255, 200]);
+        assert_eq!(one(&colors(Mode::Rgb, 3), [1, 2, 3, 0]), [1, 2, 3, 200]);
         assert_eq!(
-            one(&colours(Mode::Cmyk, 4), [255, 0, 255, 128]),
+            one(&colors(Mode::Cmyk, 4), [255, 0, 255, 128]),
             [128, 0, 128, 200],
             "magenta and half black"
         );
         assert_eq!(
-            one(&colours(Mode::Multichannel, 3), [255, 0, 255, 0]),
+            one(&colors(Mode::Multichannel, 3), [255, 0, 255, 0]),
             [255, 0, 255, 200],
             "no black ink"
         );
         let table =
-            Colours { table: &[9, 8, 7, 6, 5, 4], nothing: Some(1), ..colours(Mode::Indexed, 1) };
+            Colors { table: &[9, 8, 7, 6, 5, 4], nothing: Some(1), ..colors(Mode::Indexed, 1) };
         assert_eq!(one(&table, [0; 4]), [9, 7, 5, 200]);
         assert_eq!(one(&table, [1; 4])[3], 0, "the color that stands for nothing");
         assert_eq!(one(&table, [2; 4])[..3], [0; 3], "beyond the table");
@@ -350,10 +350,10 @@ mod tests {
 
     #[test]
     fn lab_is_read_in_the_connection_space_s_white() {
-        assert_eq!(one(&colours(Mode::Lab, 3), [255, 128, 128, 0])[..3], [255; 3]);
-        assert_eq!(one(&colours(Mode::Lab, 3), [0, 128, 128, 0])[..3], [0; 3]);
+        assert_eq!(one(&colors(Mode::Lab, 3), [255, 128, 128, 0])[..3], [255; 3]);
+        assert_eq!(one(&colors(Mode::Lab, 3), [0, 128, 128, 0])[..3], [0; 3]);
         // L 53.24, a 80.09, b 67.2 under D65 is pure red; under D50 54.29, 80.8, 69.9.
-        let red = one(&colours(Mode::Lab, 3), [138, 209, 198, 0]);
+        let red = one(&colors(Mode::Lab, 3), [138, 209, 198, 0]);
         assert!(red[0] > 250 && red[1] < 12 && red[2] < 12, "{red:?}");
     }
 }

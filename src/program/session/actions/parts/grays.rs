@@ -4,7 +4,7 @@
 use super::PartRefusal;
 use crate::document::parts::{CoverageFile, Part, ProfilePicture};
 use crate::document::{Document, Layer, LayerId};
-use crate::math::srgb::{decode, encode, luminance, quantise};
+use crate::math::srgb::{decode, encode, luminance, quantize};
 use crate::math::{Vec3, vec3};
 use crate::raster::{Plane, TileGrid};
 use crate::session::OpenDocument;
@@ -44,15 +44,15 @@ pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, PartR
     let straight = Plane::from_fn(document.size, |x, y| {
         let [r, g, b, a] = tiles.pixel(x as i32, y as i32);
         let whole = |v: u8| f32::from(v) / f32::from(a.max(1));
-        (grey(whole(r), whole(g), whole(b)), a)
+        (gray(whole(r), whole(g), whole(b)), a)
     });
     let (mut sum, mut weight) = (0.0f64, 0.0f64);
-    for (grey, a) in straight.values() {
-        sum += f64::from(*grey) * f64::from(*a);
+    for (gray, a) in straight.values() {
+        sum += f64::from(*gray) * f64::from(*a);
         weight += f64::from(*a);
     }
     let mean = (sum / weight.max(1.0)) as f32;
-    let coverage = straight.map(|(grey, a)| quantise(mean + (grey - mean) * f32::from(a) / 255.0));
+    let coverage = straight.map(|(gray, a)| quantize(mean + (gray - mean) * f32::from(a) / 255.0));
     let file = free_files(document, "relief").next().ok_or(PAINTS_NOTHING)?;
     Ok(CoverageFile { file, coverage: Arc::new(coverage) })
 }
@@ -74,7 +74,7 @@ pub fn shadings(open: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal>
         let tiles: TileGrid = painted(document, layer.id).ok_or(PAINTS_NOTHING)?;
         let coverage = Plane::from_fn(document.size, |x, y| {
             let [r, g, b, _] = tiles.pixel(x as i32, y as i32).map(|v| f32::from(v) / 255.0);
-            quantise(grey(r, g, b))
+            quantize(gray(r, g, b))
         });
         let picture = CoverageFile { file, coverage: Arc::new(coverage) };
         Ok(ProfilePicture { picture, light: lights.next().unwrap_or(Vec3::Z) })
@@ -97,7 +97,7 @@ fn lights_of(names: &[&str]) -> Vec<Vec3> {
 }
 
 /// The luminance of an encoded color, encoded.
-fn grey(r: f32, g: f32, b: f32) -> f32 {
+fn gray(r: f32, g: f32, b: f32) -> f32 {
     if r == g && g == b { r } else { encode(luminance(decode(r), decode(g), decode(b))) }
 }
 
