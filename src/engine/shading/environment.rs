@@ -67,10 +67,10 @@ pub struct EnvironmentLight {
 
 /// One of the directions that represent a whole environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parcel {
+pub struct EnvironmentSample {
     /// Toward the light, unit, camera space.
     pub direction: Vec3,
-    /// Steradians; those of all parcels add up to 4π.
+    /// Steradians; those of all samples add up to 4π.
     pub solid_angle: f32,
     /// Mean linear light over that solid angle.
     pub radiance: Vec3,
@@ -199,13 +199,17 @@ impl EnvironmentLight {
 
     /// `count` directions spread evenly over the sphere (a Fibonacci spiral), each with the light
     /// around it.
-    pub fn parcels(&self, count: usize) -> Vec<Parcel> {
+    pub fn samples(&self, count: usize) -> Vec<EnvironmentSample> {
         let solid_angle = 4.0 * std::f32::consts::PI / count.max(1) as f32;
-        let parcel = |i: usize| {
+        let sample = |i: usize| {
             let direction = projection::spread(i, count);
-            Parcel { direction, solid_angle, radiance: self.around(direction, solid_angle.sqrt()) }
+            EnvironmentSample {
+                direction,
+                solid_angle,
+                radiance: self.around(direction, solid_angle.sqrt()),
+            }
         };
-        (0..count).map(parcel).collect()
+        (0..count).map(sample).collect()
     }
 
     /// Cached; the first caller computes it.

@@ -105,7 +105,7 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
             span_across(outline, middle, across, shift - far, shift + far)
         })
         .collect();
-    let sides = calmed(&sides);
+    let sides = smooth_sides(&sides);
     let inside = outline.inside();
     Plane::from_fn(size, |x, y| {
         if !inside.at(x, y) {
@@ -130,18 +130,18 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
 
 /// How far along the axis sides are compared, px either way, and how far off a side read from
 /// coverage may be: larger differences are drawn on purpose.
-const CALM_PX: usize = 5;
+const SMOOTH_PX: usize = 5;
 const READ_WITHIN_PX: f32 = 0.4;
 
 /// Sides without their reading error of a tenth of a pixel, which would show as ripples in the
 /// light: each is replaced by the value of the parabola nearest to those around it. Drawn steps are
 /// kept.
-fn calmed(sides: &[Option<(f32, f32)>]) -> Vec<Option<(f32, f32)>> {
-    let calm = |i: usize| {
+fn smooth_sides(sides: &[Option<(f32, f32)>]) -> Vec<Option<(f32, f32)>> {
+    let smooth = |i: usize| {
         let own = sides[i]?;
         let is_there = |i: &usize| sides.get(*i).is_some_and(Option::is_some);
         // As many on both sides, and fewer near the ends, where sides turn inward.
-        let reach = (1..=2 * CALM_PX)
+        let reach = (1..=2 * SMOOTH_PX)
             .take_while(|k| i.checked_sub(*k).is_some_and(|i| is_there(&i)) && is_there(&(i + k)));
         let reach = reach.count() / 2;
         let side = |of: fn((f32, f32)) -> f32| {
@@ -151,7 +151,7 @@ fn calmed(sides: &[Option<(f32, f32)>]) -> Vec<Option<(f32, f32)>> {
         };
         Some((side(|s| s.0), side(|s| s.1)))
     };
-    (0..sides.len()).map(calm).collect()
+    (0..sides.len()).map(smooth).collect()
 }
 
 /// The middle value of the parabola that is nearest to the values from `-reach` to `reach`, by
@@ -249,8 +249,8 @@ mod tests {
     fn a_step_that_is_drawn_stays() {
         let sides: Vec<Option<(f32, f32)>> =
             (0..60).map(|i| Some(if i < 30 { (-40.0, 40.0) } else { (-30.0, 30.0) })).collect();
-        let calm = calmed(&sides);
-        for (i, (was, now)) in sides.iter().zip(&calm).enumerate() {
+        let smooth = smooth_sides(&sides);
+        for (i, (was, now)) in sides.iter().zip(&smooth).enumerate() {
             let (was, now) = (was.unwrap(), now.unwrap());
             assert!(
                 (was.0 - now.0).abs() <= READ_WITHIN_PX && (was.1 - now.1).abs() <= READ_WITHIN_PX,

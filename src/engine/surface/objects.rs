@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 /// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbor
 /// nearest in depth. The area is relative to the longer side squared, so that a picture splits the
 /// same way at any size.
-const CRUMB_SIDE: (f32, f32) = (0.006, 4.0);
+const FRAGMENT_SIDE: (f32, f32) = (0.006, 4.0);
 
 /// Which object each pixel of a surface belongs to.
 pub struct Objects {
@@ -52,7 +52,7 @@ impl Objects {
             return Self::of_parts(surface, parts);
         }
         let mut pieces = PieceForest::of(surface);
-        pieces.join_crumbs(surface);
+        pieces.join_fragments(surface);
         pieces.numbered(surface)
     }
 
@@ -160,9 +160,9 @@ impl PieceForest {
 
     /// Merges pieces that are too small into their neighbors, across the smallest depth steps
     /// first.
-    fn join_crumbs(&mut self, surface: &Surface) {
-        let side = (CRUMB_SIDE.0 * surface.size().longer_side()).max(CRUMB_SIDE.1);
-        let crumb_px = (side * side) as u32;
+    fn join_fragments(&mut self, surface: &Surface) {
+        let side = (FRAGMENT_SIDE.0 * surface.size().longer_side()).max(FRAGMENT_SIDE.1);
+        let fragment_px = (side * side) as u32;
         let covered = |i: usize| surface.coverage_plane().values()[i] > 0;
         let depth = surface.depth_plane().values();
         let mut torn = Vec::new();
@@ -172,7 +172,7 @@ impl PieceForest {
             {
                 if has && linked & bit == 0 && covered(i) && covered(i - step) {
                     let (a, b) = (self.first(i), self.first(i - step));
-                    if self.area[a].min(self.area[b]) < crumb_px {
+                    if self.area[a].min(self.area[b]) < fragment_px {
                         torn.push(((depth[i] - depth[i - step]).abs(), i, i - step));
                     }
                 }
@@ -181,7 +181,7 @@ impl PieceForest {
         torn.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         for (_, i, j) in torn {
             let (a, b) = (self.first(i), self.first(j));
-            if self.area[a].min(self.area[b]) < crumb_px {
+            if self.area[a].min(self.area[b]) < fragment_px {
                 self.join(a, b);
             }
         }

@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     part(ui, "Spread and color", spread);
     part(ui, "Grain", grain);
     part(ui, "Stroke", stroke);
-    part(ui, "Mixing and stylus", habits);
+    part(ui, "Mixing and stylus", mixing_and_stylus);
     part(ui, "Dynamics", dynamics);
     if let Some(brush) = changed {
         requests.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
@@ -222,7 +222,7 @@ enum StabilizerChoice {
     Lag,
 }
 
-const CALMINGS: [(StabilizerChoice, &str); 4] = [
+const STABILIZERS: [(StabilizerChoice, &str); 4] = [
     (StabilizerChoice::None, "none"),
     (StabilizerChoice::Average, "trailing average"),
     (StabilizerChoice::String, "pulled string"),
@@ -236,7 +236,7 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         Stabilizer::String { .. } => StabilizerChoice::String,
         Stabilizer::Lag { .. } => StabilizerChoice::Lag,
     };
-    let chosen = choice_row(ui, "Stabilizer", kind, &CALMINGS).map(|kind| match kind {
+    let chosen = choice_row(ui, "Stabilizer", kind, &STABILIZERS).map(|kind| match kind {
         StabilizerChoice::None => Stabilizer::None,
         StabilizerChoice::Average => Stabilizer::Average { weight: 0.7 },
         StabilizerChoice::String => Stabilizer::String { length_px: 30.0 },
@@ -272,8 +272,9 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let measured = has_length
         .then(|| choice_row(ui, "Smooth on", brush.stabilizer_on, &DistanceMetric::ALL))
         .flatten();
-    let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
-    let calmed = calmed.or(measured.map(|stabilizer_on| Brush { stabilizer_on, ..brush.clone() }));
+    let stabilized = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
+    let stabilized =
+        stabilized.or(measured.map(|stabilizer_on| Brush { stabilizer_on, ..brush.clone() }));
     let blended = choice_row(ui, "Blend", brush.blend, &BlendMode::LABELS)
         .map(|blend| Brush { blend, ..brush.clone() });
     let erases = check(ui, "Erases", "The stroke erases", brush.erases);
@@ -285,11 +286,11 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         brush.keeps_alpha,
     );
     let keeps = keeps.map(|keeps_alpha| Brush { keeps_alpha, ..brush.clone() });
-    calmed.or(blended).or(erases).or(keeps)
+    stabilized.or(blended).or(erases).or(keeps)
 }
 
-/// The hints of a brush's habits, in their order.
-fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
+/// The hints of a brush's mixing_and_stylus, in their order.
+fn mixing_and_stylus(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to = brush.clone();
     let mut changed = false;
     let mut took = |is_chosen: bool| changed |= is_chosen;

@@ -9,7 +9,7 @@ use crate::math::{Vec3, Vec3A, srgb};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
-/// Rows of the parcels of light that are summed (2.8° each) and of the resulting map: a cosine lobe
+/// Rows of the samples of light that are summed (2.8° each) and of the resulting map: a cosine lobe
 /// is so wide that a bilinear lookup stays close to the sum over every texel
 /// (`the_small_map_is_the_sum_over_every_texel`).
 const ROWS: usize = 64;
@@ -21,8 +21,8 @@ pub struct Irradiance {
 }
 
 /// The light of one part of the sphere.
-struct LightParcel {
-    /// Its mean direction, unit: a small sun in a large parcel keeps its position.
+struct LightSample {
+    /// Its mean direction, unit: a small sun in a large sample keeps its position.
     toward: Vec3,
     /// Radiance × solid angle.
     light: Vec3,
@@ -31,10 +31,10 @@ struct LightParcel {
 impl Irradiance {
     /// That of a map.
     pub fn of(map: &EnvironmentMap) -> Self {
-        let parcels = parcels(map.level(8 * ROWS));
+        let samples = samples(map.level(8 * ROWS));
         let gather = |i: usize| {
             let n = center(i, ROWS);
-            let sum: Vec3 = parcels.iter().map(|p| p.light * n.dot(p.toward).max(0.0)).sum();
+            let sum: Vec3 = samples.iter().map(|p| p.light * n.dot(p.toward).max(0.0)).sum();
             Vec3A::from(sum / PI)
         };
         let texels: Vec<Vec3A> = (0..2 * ROWS * ROWS).into_par_iter().map(gather).collect();
@@ -64,8 +64,8 @@ fn center(i: usize, rows: usize) -> Vec3 {
     lat_long_direction((column as f32 + 0.5) / (2 * rows) as f32, (row as f32 + 0.5) / rows as f32)
 }
 
-/// The level's light in at most `ROWS` rows of parcels.
-fn parcels(fine: &SphereLevel) -> Vec<LightParcel> {
+/// The level's light in at most `ROWS` rows of samples.
+fn samples(fine: &SphereLevel) -> Vec<LightSample> {
     let rows = fine.rows().min(ROWS);
     let per_side = fine.rows() / rows;
     let gathered = |i: usize| {
@@ -79,7 +79,7 @@ fn parcels(fine: &SphereLevel) -> Vec<LightParcel> {
                 light += here;
             }
         }
-        LightParcel { toward: toward.normalize_or(Vec3::Y), light }
+        LightSample { toward: toward.normalize_or(Vec3::Y), light }
     };
     (0..2 * rows * rows).into_par_iter().map(gathered).collect()
 }

@@ -220,10 +220,10 @@ fn half_a_sky_lights_by_the_cosine() {
 }
 
 #[test]
-fn parcels_hold_all_the_light() {
+fn samples_hold_all_the_light() {
     let seen = lat_long(256, 128, sky).environment_light();
-    let parcels = seen.parcels(300);
-    let sum: Vec3 = parcels.iter().map(|p| p.radiance * p.solid_angle).sum();
+    let samples = seen.samples(300);
+    let sum: Vec3 = samples.iter().map(|p| p.radiance * p.solid_angle).sum();
     assert!((sum / (4.0 * std::f32::consts::PI) - Vec3::ONE).abs().max_element() < 0.01, "{sum}");
 }
 

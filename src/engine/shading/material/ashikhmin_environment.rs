@@ -18,7 +18,7 @@ use bounced::BouncedLight;
 use std::f32::consts::PI;
 
 /// Directions that the matt term is lit from.
-const PARCELS: usize = 128;
+const SAMPLES: usize = 128;
 /// Half vectors of the glossy term.
 const HALVES: usize = 32;
 
@@ -48,11 +48,11 @@ impl EnvironmentSamples {
         let environment_light = shading.environment.as_ref()?.environment_light();
         // Light from a solid angle Ω counts Ω / π: matt white is as bright as an even environment
         // around it.
-        let light = |p: &crate::shading::environment::Parcel| DirectedLight {
+        let light = |p: &crate::shading::environment::EnvironmentSample| DirectedLight {
             direction: p.direction,
             radiance: (p.radiance * (p.solid_angle / PI)).to_array(),
         };
-        let lights = environment_light.parcels(PARCELS).iter().map(light).collect();
+        let lights = environment_light.samples(SAMPLES).iter().map(light).collect();
         let halves = (0..HALVES).map(|i| half(i, shading.nu, shading.nv)).collect();
         // The solid angle of the half vectors' lobe, 2π / (ν + 1), is four times as large in ℓ.
         let lobe_rad = (8.0 * PI / ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt()).sqrt();

@@ -36,9 +36,9 @@ impl ColorPlaces {
         let mut labels = rooms(&inside, flats.gap_px());
         let least = least_area(size);
         let areas = areas(&labels);
-        // Crumbs behind a narrow passage belong to the area at its other end.
-        let is_crumb = |label: u32| label == 0 || areas[label as usize - 1].1 < least;
-        let mut large = labels.map(|label| if is_crumb(label) { 0 } else { label });
+        // Fragments behind a narrow passage belong to the area at its other end.
+        let is_fragment = |label: u32| label == 0 || areas[label as usize - 1].1 < least;
+        let mut large = labels.map(|label| if is_fragment(label) { 0 } else { label });
         spread(&mut large, |x, y| labels.at(x, y) > 0);
         for (label, large) in labels.values_mut().iter_mut().zip(large.values()) {
             if *large > 0 {

@@ -4,7 +4,7 @@ use crate::surface::Maps;
 
 const SIZE: Size = Size::new(120, 80);
 
-/// A plate from column 10 on, a disc of 20 px that floats before its middle, and a crumb of 2 × 2
+/// A plate from column 10 on, a disc of 20 px that floats before its middle, and a fragment of 2 × 2
 /// px behind both.
 fn plate_and_disc() -> Arc<Surface> {
     plate_and_disc_of(SIZE)
@@ -13,8 +13,8 @@ fn plate_and_disc() -> Arc<Surface> {
 fn plate_and_disc_of(size: Size) -> Arc<Surface> {
     let disc =
         |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(60.0, 40.0)) < 20.0;
-    let crumb = |x: usize, y: usize| (100..102).contains(&x) && (60..62).contains(&y);
-    let depth = Plane::from_fn(size, |x, y| match (disc(x, y), crumb(x, y)) {
+    let fragment = |x: usize, y: usize| (100..102).contains(&x) && (60..62).contains(&y);
+    let depth = Plane::from_fn(size, |x, y| match (disc(x, y), fragment(x, y)) {
         (true, _) => 0.2,
         (_, true) => 1.0,
         _ => 0.6,
@@ -42,7 +42,7 @@ fn workers_that_need_the_objects_at_once_never_wait_for_themselves() {
 }
 
 #[test]
-fn a_disc_before_a_plate_is_an_object_of_its_own_and_a_crumb_is_none() {
+fn a_disc_before_a_plate_is_an_object_of_its_own_and_a_fragment_is_none() {
     let surface = plate_and_disc();
     let objects = surface.objects();
     assert_eq!(objects.count(), 2);

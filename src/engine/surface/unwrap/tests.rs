@@ -233,7 +233,7 @@ fn normals_of_eight_bits_and_no_depth_unwrap_a_sphere_as_well() {
 }
 
 #[test]
-fn a_thousand_holes_and_crumbs_leave_it_finite_and_whole() {
+fn a_thousand_holes_and_fragments_leave_it_finite_and_whole() {
     let size = Size::new(200, 160);
     let hole = |x: f32, y: f32| hash::unit(7, x as u32, y as u32) < 0.1;
     let surface = of_height(size, |x, y| {

@@ -122,7 +122,7 @@ fn offset(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Bru
     brush
 }
 
-/// How the hand is read and calmed.
+/// How the hand is read and stabilized.
 pub fn ways(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Brush {
     let stabilizer = match settings.plain("slow_tracking", 0.0) {
         // Hundredths of a second.

@@ -38,7 +38,7 @@ const KNOB_PT: f32 = 22.0;
 const LEAST_PX: usize = 24;
 
 impl PieceGizmo {
-    /// `None` for a crumb.
+    /// `None` for a fragment.
     pub fn of(piece: &LaidPiece, px_per_pt: f32) -> Option<Self> {
         let Rect { x0, y0, x1, y1 } = piece.rect;
         let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(|v| v as f32);
