@@ -193,7 +193,7 @@ fn one_tile_of_20_layers(bencher: Bencher) {
 
 const SCENE: Size = Size::new(2048, 2048);
 
-/// Balls in rows before a wall, each `side` px wide: their contours are seen by two populations.
+/// Balls in rows before a wall, each `side` px wide: their contours are seen by two sides.
 /// One as wide as the canvas has few.
 fn balls(side: f32) -> Arc<Surface> {
     let at = |x: usize, y: usize| {

@@ -148,7 +148,7 @@ fn every_kind_of_layer_and_any_number_of_them_is_smooth_at_contours() {
     let mut far = Vec::new();
     let mut judge = |name: String, layers: &[Layer], most: f64| {
         let [one, own] = errors(layers, &surfaces);
-        eprintln!("{name}: one sample {one:.4}, two populations {own:.4}, ratio {:.3}", own / one);
+        eprintln!("{name}: one sample {one:.4}, two sides {own:.4}, ratio {:.3}", own / one);
         if own > most * one {
             far.push(format!("{name}: {own:.4} of {one:.4}"));
         }

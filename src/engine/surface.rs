@@ -115,7 +115,7 @@ pub struct Surface {
     base: Option<Arc<Surface>>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
     parts: Option<Arc<Plane<u32>>>,
-    /// The pixels that two populations see.
+    /// The pixels that two sides see.
     contours: Arc<Contours>,
     /// Their normals, where detail was combined onto them.
     far_normals: Option<Plane<Vec3>>,

@@ -1,5 +1,5 @@
 //! Composes one tile of a document: its layers from bottom to top, in f32. By the same rules it
-//! composes what the other populations of its contour pixels see (`far_side`). Floor 4. `prepare`
+//! composes what the other sides of its contour pixels see (`far_side`). Floor 4. `prepare`
 //! selects the layers, `content` renders them, `raster::blend` mixes the pixels.
 
 use super::deep::DeepTiles;
@@ -145,7 +145,7 @@ impl Composer<'_> {
     }
 
     /// What a displaced layer shows; `None` where it shows itself, and for one that is not
-    /// displaced. Both populations of a contour pixel see the same, as with paint.
+    /// displaced. Both sides of a contour pixel see the same, as with paint.
     fn displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
         let shown = node.warp.as_ref()?.shown(self.at, &|at| self.in_place(node, at))?;
         let Some(tile) = shown else { return Some(TileContent::Nothing) };
@@ -313,7 +313,7 @@ impl PreparedLayer {
     }
 }
 
-/// An adjustment of what the other populations see.
+/// An adjustment of what the other sides see.
 fn adjust_far_side(
     adjustment: &dyn Adjustment,
     scene: &FarScene,

@@ -1,4 +1,4 @@
-//! The other populations of a tile's contour pixels, packed into rows: only as many pixels as there
+//! The other sides of a tile's contour pixels, packed into rows: only as many pixels as there
 //! are contour pixels (MATH 10). Layers are rendered and composed on them like on a tile. Floor 4.
 //! Here: their order and their pixels. Not here: composing them (`compose`), rendering them
 //! (`content`).
@@ -11,7 +11,7 @@ use crate::raster::{PlanarTile, TILE, Tile, TileAt, TilePaint};
 use crate::surface::contours::{ContourPixel, TileContours, place_of};
 use std::sync::Arc;
 
-/// The other populations of one tile. Rows of those that see a surface come first; rows of those
+/// The other sides of one tile. Rows of those that see a surface come first; rows of those
 /// that see none follow.
 #[derive(Clone, Copy)]
 pub struct FarTile<'c> {
@@ -19,7 +19,7 @@ pub struct FarTile<'c> {
     contours: TileContours<'c>,
 }
 
-/// Pixels of a layer as other populations see them: row after row, like a tile's.
+/// Pixels of a layer as other sides see them: row after row, like a tile's.
 pub struct PackedTile {
     pixels: PackedPixels,
     opaque: bool,
@@ -35,7 +35,7 @@ enum PackedPixels {
 pub struct FarScene<'s> {
     pub tile: FarTile<'s>,
     pub front: &'s Scene,
-    /// `None` where no other population sees a surface.
+    /// `None` where no other side sees a surface.
     pub far: Option<&'s Scene>,
 }
 
@@ -66,7 +66,7 @@ impl<'c> FarTile<'c> {
         Some((self.contours.far.x0 as usize + x, self.contours.far.y0 as usize + y))
     }
 
-    /// Some other population sees no surface.
+    /// Some other side sees no surface.
     pub fn has_bare(&self) -> bool {
         self.contours.seen < self.contours.pixels.len()
     }
@@ -116,7 +116,7 @@ impl<'c> FarTile<'c> {
         packed
     }
 
-    /// Packs the pixels of a tile itself: both populations see the same.
+    /// Packs the pixels of a tile itself: both sides see the same.
     pub fn same(&self, tile: &Tile) -> PackedTile {
         let corner = self.at.rect();
         let place =
@@ -155,7 +155,7 @@ impl<'c> FarTile<'c> {
         }
     }
 
-    /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10). Where one
+    /// Mixes both sides of each contour pixel: c · own + (1 − c) · other (MATH 10). Where one
     /// of them sees no surface, the share is an opacity, wherever the pixel's center lies.
     ///
     /// * `brightest`: the straight encoded color above which light is clipped; 1 is white.
@@ -179,7 +179,7 @@ impl<'c> FarTile<'c> {
 }
 
 impl FarTile<'_> {
-    /// As [`FarTile::mix_into`], but where one population alone sees a surface the pixel is wholly
+    /// As [`FarTile::mix_into`], but where one side alone sees a surface the pixel is wholly
     /// that one's.
     pub fn take_surface_into(&self, other: &PlanarTile, own: &mut PlanarTile) {
         let corner = self.at.rect();

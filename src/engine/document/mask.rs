@@ -38,7 +38,7 @@ pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
     clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), TileCover::Whole))
 }
 
-/// The same for the other populations of a tile's contour pixels.
+/// The same for the other sides of a tile's contour pixels.
 pub(super) fn coverage_on_far_side(node: &PreparedLayer, far: &FarTile) -> TileCoverage {
     let mut coverage = TileCoverage::uniform(node.layer.opacity);
     if clip(node).is_some() && far.has_bare() {
@@ -52,7 +52,7 @@ pub(super) fn coverage_on_far_side(node: &PreparedLayer, far: &FarTile) -> TileC
     if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) =
         (&mask.kind, &node.scene.surface)
     {
-        // Read from the other population's piece, nearby.
+        // Read from the other side's piece, nearby.
         let grid = surface.region(region);
         let way = |c: u8| f32::from(if mask.invert { 255 - c } else { c }) / 255.0;
         let value = |_, pixel: &ContourPixel| match pixel.is_other_on_surface() {

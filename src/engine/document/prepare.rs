@@ -22,7 +22,7 @@ pub struct PreparedDocument {
     pub(super) size: Size,
     /// Bottom first.
     pub(super) stack: Vec<PreparedLayer>,
-    /// The pixels that two populations see.
+    /// The pixels that two sides see.
     pub(super) contours: Option<Arc<Contours>>,
     /// The surface's rim counts as wholly covered; else every pixel is mixed from what it shows.
     pub(super) whole_rims: bool,

@@ -44,7 +44,7 @@ impl Document {
         self.flattening_bytes() + self.deep_bytes() + self.size.area() as u64 * DEEP_TILE_BYTES
     }
 
-    /// What the other populations of contour pixels take: their readings, and the pixels of live
+    /// What the other sides of contour pixels take: their readings, and the pixels of live
     /// layers, in whole rows of a tile's width.
     fn far_side_bytes(&self, contours: &Contours) -> u64 {
         let is_live = |layer: &Layer| {

@@ -245,7 +245,7 @@ impl StrokeTile {
         }
     }
 
-    /// The same on what represents a tile on a far side: there the other population's piece of surface
+    /// The same on what represents a tile on a far side: there the other side's piece of surface
     /// counts. `selected`: for the tile.
     pub fn limit_far_side(
         &mut self,

@@ -27,7 +27,7 @@ pub struct SurfaceRow<'a> {
     /// How many pixels lie on the canvas.
     pub width: usize,
     /// Camera space: right, up, to the viewer. Those of contour pixels lie in the middle of what
-    /// their own population sees.
+    /// their own side sees.
     pub normal: [RowValues; 3],
     /// Present if the surface is seen from nearby.
     near: Option<Box<PerspectiveRow>>,
@@ -96,7 +96,7 @@ impl<'a> SurfaceRow<'a> {
         self.prefetch(y + 2);
     }
 
-    /// Moves the normals of contour pixels to the middle of what their own population sees (MATH
+    /// Moves the normals of contour pixels to the middle of what their own side sees (MATH
     /// 10).
     fn turn_to_own_shares(&mut self) {
         let at = TileAt::new((self.x0 / TILE) as i32, (self.y / TILE) as i32);

@@ -5,7 +5,7 @@ use super::pyramid::MapPyramids;
 use super::*;
 
 impl Surface {
-    /// The pixels that two populations see.
+    /// The pixels that two sides see.
     pub fn contours(&self) -> &Arc<Contours> {
         &self.contours
     }
@@ -25,7 +25,7 @@ impl Surface {
         shares
     }
 
-    /// What this is the far side of, if it is one: its pixels are readings of other populations, not
+    /// What this is the far side of, if it is one: its pixels are readings of other sides, not
     /// pixels of the canvas.
     pub fn as_far_side(&self) -> Option<&FarSide> {
         self.far_side_of.as_ref()

@@ -363,7 +363,7 @@ impl Surface {
 
     /// The place on a ball that each pixel shows, so that whole brush marks of the ball are seen.
     /// It depends on normals, contours and parts alone: when the ball is painted, the places stay.
-    /// For a far side it is that of the other population's nearest pixel. Cached; call it once
+    /// For a far side it is that of the other side's nearest pixel. Cached; call it once
     /// before going parallel.
     pub fn ball_places(&self, settings: &ChunkSettings) -> Arc<BallPlaces> {
         const KEPT: usize = 2;

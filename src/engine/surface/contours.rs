@@ -1,7 +1,7 @@
 //! Contours: where one piece of the surface ends before another, or before nothing. A pixel there
-//! is seen by two populations: its own, whose readings the maps hold, and the other, for which the
+//! is seen by two sides: its own, whose readings the maps hold, and the other, for which the
 //! maps are continued from its side (MATH 10). Floor 2. Here: which pixels these are, the share of
-//! each population, and where the other one's readings are kept. Not here: mixing both
+//! each side, and where the other one's readings are kept. Not here: mixing both
 //! (`document::compose`).
 
 mod both_sides;
@@ -34,30 +34,30 @@ pub(super) use line::bits;
 pub(super) use maps::ContourMaps;
 pub(super) use window::{BESIDE, PixelWindow};
 
-/// A pixel that two populations see.
+/// A pixel that two sides see.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContourPixel {
     /// Canvas pixel.
     pub x: i32,
     /// Its row on the canvas.
     pub y: i32,
-    /// The share that its own population sees, `[0, 1]`: the one whose readings the maps hold at
+    /// The share that its own side sees, `[0, 1]`: the one whose readings the maps hold at
     /// the pixel, or no surface where they hold none.
     pub share: f32,
-    /// Its own population sees a surface.
+    /// Its own side sees a surface.
     is_own_on_surface: bool,
-    /// Which pixels of the window around it belong to the other population's piece of surface; none
+    /// Which pixels of the window around it belong to the other side's piece of surface; none
     /// where it sees no surface.
     others: u64,
-    /// The middle of what the other population sees, from the pixel's center, px: what is read for
+    /// The middle of what the other side sees, from the pixel's center, px: what is read for
     /// it is read there.
     other_at: Vec2,
-    /// How n̄ differs in the middle of what its own population sees from the pixel's center.
+    /// How n̄ differs in the middle of what its own side sees from the pixel's center.
     own_turn: Vec2,
 }
 
 impl ContourPixel {
-    /// The unit normal (camera space) in the middle of what the pixel's own population sees, from
+    /// The unit normal (camera space) in the middle of what the pixel's own side sees, from
     /// that at its center.
     pub fn own_normal(&self, center: Vec3) -> Vec3 {
         if self.own_turn == Vec2::ZERO || center.z <= 0.0 {
@@ -67,17 +67,17 @@ impl ContourPixel {
         vec3(nbar.x, -nbar.y, continued::nz_of(nbar))
     }
 
-    /// The other population sees a surface.
+    /// The other side sees a surface.
     pub fn is_other_on_surface(&self) -> bool {
         self.others != 0
     }
 
-    /// Its own population sees a surface: the mask covers the pixel.
+    /// Its own side sees a surface: the mask covers the pixel.
     pub fn is_own_on_surface(&self) -> bool {
         self.is_own_on_surface
     }
 
-    /// Both populations see a surface.
+    /// Both sides see a surface.
     pub fn is_between_parts(&self) -> bool {
         self.is_own_on_surface && self.is_other_on_surface()
     }
@@ -95,7 +95,7 @@ pub struct Contours {
     far_rows: Vec<Range<u32>>,
 }
 
-/// Where a tile's pixels lie among all: those whose other population sees a surface first.
+/// Where a tile's pixels lie among all: those whose other side sees a surface first.
 #[derive(Clone, Copy)]
 struct TilePixels {
     start: u32,
@@ -108,7 +108,7 @@ struct TilePixels {
 /// The contour pixels of one tile.
 #[derive(Clone, Copy)]
 pub struct TileContours<'c> {
-    /// Those whose other population sees a surface first.
+    /// Those whose other side sees a surface first.
     pub pixels: &'c [ContourPixel],
     /// How many those are.
     pub seen: usize,
@@ -129,7 +129,7 @@ impl<'c> TileContours<'c> {
 }
 
 impl Contours {
-    /// The most pixels of a tile whose other population sees a surface; of more, those most evenly
+    /// The most pixels of a tile whose other side sees a surface; of more, those most evenly
     /// shared are taken. Their readings fill a tile of the far side.
     pub const MOST_SEEN: usize = 1024;
 
@@ -184,7 +184,7 @@ impl Contours {
         self.on(TileAt::of_pixel(x, y))?.in_row(y).find(|pixel| pixel.x == x)
     }
 
-    /// The tiles with pixels whose other population sees a surface.
+    /// The tiles with pixels whose other side sees a surface.
     pub fn seen_tiles(&self) -> impl Iterator<Item = TileAt> + '_ {
         let columns = self.columns.max(1);
         let at = move |i: usize| TileAt::new(i as i32 % columns, i as i32 / columns);
@@ -195,7 +195,7 @@ impl Contours {
             .map(move |(i, _)| at(i))
     }
 
-    /// Bytes that they and the other populations' readings take.
+    /// Bytes that they and the other sides' readings take.
     pub fn bytes(&self) -> u64 {
         let pixels = self.pixels.len() * size_of::<ContourPixel>();
         (pixels + self.far_rows.len() * far_side::COLUMNS * far_side::BLOCK * FarSide::BYTES) as u64

@@ -113,7 +113,7 @@ impl Surface {
     /// `blur_px` (0: not at all).
     ///
     /// Neither the blur nor the differences cross the mask's edge or a depth jump. For a far side it
-    /// is that of the other populations' pixels nearby. Cached. Call it once before going parallel:
+    /// is that of the other sides' pixels nearby. Cached. Call it once before going parallel:
     /// threads that call it at the same time may each compute it.
     pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
         // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.

@@ -77,7 +77,7 @@ caches! {
     bounds: MapPyramids,
     /// The pieces of the surface.
     objects: RecentCache<(), Objects>,
-    /// What the other populations of contour pixels read.
+    /// What the other sides of contour pixels read.
     far_sides: RecentCache<(), Surface>,
 }
 

@@ -35,7 +35,7 @@ impl Objects {
         surface.on_either_side(
             || Self::in_front(surface),
             |far, front| {
-                // Those of the other populations: nobody needs to know where they lie.
+                // Those of the other sides: nobody needs to know where they lie.
                 let whole = front.map(Surface::objects);
                 let label =
                     |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.labels.at(x, y));

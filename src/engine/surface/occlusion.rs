@@ -186,7 +186,7 @@ impl Surface {
     /// Occluders count less the farther they are, those `radius_px` away (in the picture and in
     /// depth) not at all; nor does what floats in front, beyond a depth jump of half the radius. It
     /// depends on depth alone: normal layers do not change it. For a far side it is that of the other
-    /// populations' pixels nearby. Cached; call it once before going parallel.
+    /// sides' pixels nearby. Cached; call it once before going parallel.
     pub fn occlusion(&self, radius_px: f32) -> Arc<Plane<f32>> {
         const KEPT: usize = 3;
         // NaN.max is the other one.

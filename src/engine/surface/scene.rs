@@ -6,7 +6,7 @@ use crate::math::Size;
 use std::sync::Arc;
 
 /// The canvas that a layer sees. `surface`, where present, has the size of the canvas, or is the far
-/// side of one: then the pixels are its readings, and what is rendered is what the other populations
+/// side of one: then the pixels are its readings, and what is rendered is what the other sides
 /// of contour pixels see (`contours`).
 #[derive(Clone)]
 pub struct Scene {

@@ -264,7 +264,7 @@ impl Surface {
 
     /// The share of a lamp that every pixel sees, off the surface every pixel of the page. It
     /// depends on depth alone: normal layers do not change it. For a far side it is that of the other
-    /// populations' pixels nearby. Cached; call it once before going parallel.
+    /// sides' pixels nearby. Cached; call it once before going parallel.
     ///
     /// * `keep`: how many shadows are held, the last ones.
     pub fn shadow(&self, lamp: &ShadowLamp, keep: usize) -> Arc<ShareMap> {

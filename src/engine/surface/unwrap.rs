@@ -92,7 +92,7 @@ impl Unwrapping {
         Some(Self { x, y, bounds: OnceLock::new() })
     }
 
-    /// What the other populations of contour pixels lie on.
+    /// What the other sides of contour pixels lie on.
     fn on_far_side(
         size: Size,
         far: &FarSide,

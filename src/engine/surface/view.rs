@@ -107,7 +107,7 @@ impl Surface {
         }
     }
 
-    /// The same of a contour pixel, in the middle of what its own population sees (MATH 10).
+    /// The same of a contour pixel, in the middle of what its own side sees (MATH 10).
     pub fn own_facing(&self, pixel: &ContourPixel) -> f32 {
         let (x, y) = (pixel.x as usize, pixel.y as usize);
         pixel.own_normal(self.normal(x, y)).dot(self.view(x, y))

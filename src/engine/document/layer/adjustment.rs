@@ -58,7 +58,7 @@ pub enum AdjustedPlace<'a> {
         /// Which tile.
         at: TileAt,
     },
-    /// Rows of pixels as the other populations of contour pixels see them.
+    /// Rows of pixels as the other sides of contour pixels see them.
     Packed {
         /// What they see.
         surface: Option<&'a Surface>,

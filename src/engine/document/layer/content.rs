@@ -101,7 +101,7 @@ trait LayerKind {
         TileContent::Nothing
     }
 
-    /// What the other populations of a tile's contour pixels see of it.
+    /// What the other sides of a tile's contour pixels see of it.
     fn painted_far_side(&self, _scene: &FarScene) -> TileContent {
         TileContent::Nothing
     }

@@ -32,7 +32,7 @@ struct TileCells {
     cols: i32,
     rows: i32,
     cells: Vec<OnceLock<Option<Arc<Tile>>>>,
-    /// What the other populations of contour pixels see.
+    /// What the other sides of contour pixels see.
     far: Vec<OnceLock<FarPixels>>,
 }
 
@@ -215,7 +215,7 @@ impl<T> Live<T> {
         once(cells.cell(at)?, || render().map(Arc::new)).clone()
     }
 
-    /// The layer as the other populations of a tile's contour pixels see it, rendered by `render`
+    /// The layer as the other sides of a tile's contour pixels see it, rendered by `render`
     /// if it is not cached.
     ///
     /// * `stays`: where they see no surface the tile's own pixels stay; else there are none.

@@ -11,7 +11,7 @@ pub(in crate::document) trait Marks {
     /// One tile, not rounded to bytes; `None` where there is nothing. Colors may be brighter than
     /// white.
     fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile>;
-    /// Where another population of a contour pixel sees no surface the tile's own pixels stay.
+    /// Where another side of a contour pixel sees no surface the tile's own pixels stay.
     fn is_kept_off_surface(&self) -> bool {
         true
     }

@@ -2,7 +2,7 @@
 //!
 //! Both are one displacement backward, evaluated a tile at a time: a pixel of the canvas shows what
 //! the layer would show elsewhere. Paint and masks are sampled once through it and their
-//! transforms. Live layers and groups are composed undisplaced, both populations of a contour pixel
+//! transforms. Live layers and groups are composed undisplaced, both sides of a contour pixel
 //! mixed, and seen through it; what was composed is kept while only the displacement changes. Tiles
 //! that show themselves are composed as if there were no warp.
 

@@ -97,7 +97,7 @@ impl Surface {
 }
 
 impl Scene {
-    /// What the other populations of contour pixels see; `None` where no pixel has another one on a
+    /// What the other sides of contour pixels see; `None` where no pixel has another one on a
     /// surface.
     pub fn far_side(&self) -> Option<Scene> {
         let far = self.surface.as_ref()?.far_side()?;

@@ -14,7 +14,7 @@ const LEAST_FOR_A_PLANE: u32 = 6;
 /// The longest n̄ that a plane may give.
 const RIM_NBAR: f32 = 0.999;
 
-/// What a population reads at a pixel.
+/// What a side reads at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Continued {
     nbar: [LeastSquaresPlane; 2],
@@ -45,7 +45,7 @@ impl Continued {
 }
 
 /// Any map of the canvas, continued likewise, at a distance from the middle of what a contour
-/// pixel's other population sees, px.
+/// pixel's other side sees, px.
 pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_center: Vec2) -> f32 {
     let ridge = if pixel.others.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
     let fitted = LeastSquaresPlane::weighted(bits(pixel.others), ridge, |i| {

@@ -170,7 +170,7 @@ impl DividedPixel {
 }
 
 impl ContourPixel {
-    /// The line between both populations, its own on the nearer side: the share and the middle of
+    /// The line between both sides, its own on the nearer side: the share and the middle of
     /// what the other one sees determine it. `None` where no line was found.
     fn line(&self) -> Option<ContourLine> {
         let (rest, at) = (1.0 - self.share, self.other_at);

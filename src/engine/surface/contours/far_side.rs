@@ -1,4 +1,4 @@
-//! The far side of a surface: a small one that holds what the other populations read. Renderers read
+//! The far side of a surface: a small one that holds what the other sides read. Renderers read
 //! it like any surface. Floor 2. Not here: what both sides answer alike (`both_sides`).
 //!
 //! Each contour pixel takes 2 × 2 pixels of it: the pixel itself, and the readings one pixel to the
@@ -145,7 +145,7 @@ impl FarSide {
     }
 
     /// A map over the far side, from each contour pixel's number and the members of its other
-    /// population.
+    /// side.
     pub fn map<T: Copy + Send + Sync + Default>(
         &self,
         size: Size,
@@ -156,7 +156,7 @@ impl FarSide {
 }
 
 impl ContourPixel {
-    /// The other population's pixel nearest to this one.
+    /// The other side's pixel nearest to this one.
     pub fn nearest_other(&self) -> Option<(i32, i32)> {
         let away = |i: u32| {
             let (dx, dy) = steps_of(i);
@@ -166,7 +166,7 @@ impl ContourPixel {
         Some((self.x + dx, self.y + dy))
     }
 
-    /// The mean of a map of the canvas over the other population's pixels nearby.
+    /// The mean of a map of the canvas over the other side's pixels nearby.
     pub fn other_mean(&self, map: impl Fn(usize, usize) -> f32) -> f32 {
         super::mean_of(self.others, (self.x, self.y), map)
     }
@@ -196,7 +196,7 @@ impl FarMaps {
 }
 
 impl Surface {
-    /// What the other populations of contour pixels read; `None` where no pixel has another one on
+    /// What the other sides of contour pixels read; `None` where no pixel has another one on
     /// a surface. Cached.
     pub fn far_side(self: &Arc<Self>) -> Option<Arc<Surface>> {
         let rows = self.contours().far_rows.len();

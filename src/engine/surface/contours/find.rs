@@ -1,4 +1,4 @@
-//! Finds contour pixels, the share of each population, and readings that belong to neither (MATH
+//! Finds contour pixels, the share of each side, and readings that belong to neither (MATH
 //! 10). Floor 2.
 
 use super::continued::{Continued, nz_of};
@@ -26,7 +26,7 @@ pub struct AmendedReading {
     pub depth: f32,
 }
 
-/// From this share on a pixel is seen by its own population alone.
+/// From this share on a pixel is seen by its own side alone.
 const WHOLLY: f32 = 0.998;
 /// Partly covered pixels for each pixel of a hard rim, from which on coverage gives the outer
 /// contours.
@@ -147,7 +147,7 @@ struct Across {
 /// How a pixel is shared.
 #[derive(Clone, Copy)]
 struct Shared {
-    /// What its own population sees.
+    /// What its own side sees.
     own: f32,
     /// The middle of what the other one sees, from the pixel's center, px.
     other_at: Vec2,
@@ -182,7 +182,7 @@ impl Examined {
         Self { contour, amended: unmixed(&window, across) }
     }
 
-    /// A pixel that the mask covers in part: its own population sees the surface in the middle of
+    /// A pixel that the mask covers in part: its own side sees the surface in the middle of
     /// that part.
     fn shaded(
         maps: &ContourMaps,
@@ -292,7 +292,7 @@ fn across(window: &PixelWindow, linked: u8, is_soft: bool) -> Option<Across> {
     found.map(|(_, across)| across)
 }
 
-/// A pixel of which both populations see something.
+/// A pixel of which both sides see something.
 ///
 /// * `own`, `others`: pixels of the window that belong to either.
 fn contour_pixel(

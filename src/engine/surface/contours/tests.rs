@@ -79,7 +79,7 @@ fn reference(x: usize, y: usize) -> (f32, bool) {
     (mean, shows.iter().any(|s| s.map(|s| s.0) != first))
 }
 
-/// Mean error on contour pixels of one sample, and of two populations.
+/// Mean error on contour pixels of one sample, and of two sides.
 fn errors(surface: &Arc<Surface>) -> [f32; 2] {
     let far = surface.far_side().unwrap();
     let mut mixed = Plane::from_fn(SIZE, |x, y| {
@@ -122,7 +122,7 @@ fn smooth_bodies_come_within_a_fifth_of_one_samples_error() {
     for bits in [0, 16, 8] {
         let surface = surface(bits);
         let [one, two] = errors(&surface);
-        eprintln!("bits {bits}: one sample {one}, two populations {two}, ratio {}", two / one);
+        eprintln!("bits {bits}: one sample {one}, two sides {two}, ratio {}", two / one);
         assert!(two < 0.2 * one, "{bits} bits: {two} of {one}");
     }
 }
@@ -133,7 +133,7 @@ fn samples(x: i32, y: i32) -> impl Iterator<Item = Option<(usize, Vec3, f32)>> {
     (0..144).map(move |k| seen(x as f32 + at(k % 12), y as f32 + at(k / 12)))
 }
 
-/// How far the maps' n̄ are from the mean of what a pixel's own population sees, and how far its
+/// How far the maps' n̄ are from the mean of what a pixel's own side sees, and how far its
 /// own normal's.
 fn errors_of_own_normals(
     surface: &Arc<Surface>,

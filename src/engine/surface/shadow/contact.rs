@@ -141,7 +141,7 @@ fn add(h: &[f32], blurred: &[f32], per_px: f32, higher: &mut [f32], lower: Optio
 
 impl Surface {
     /// How the surroundings of each pixel stand to it, up to a size in px. Cached; call it once
-    /// before going parallel. For a far side it is that of the other populations' pixels nearby.
+    /// before going parallel. For a far side it is that of the other sides' pixels nearby.
     pub fn contact(&self, largest_px: f32) -> Arc<ContactShade> {
         const KEPT: usize = 2;
         let key = largest_px.to_bits();

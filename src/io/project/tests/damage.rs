@@ -163,7 +163,7 @@ mod generated {
             let seen = read_back(&bytes).document;
             let picture = |d: &Document| flatten(d, &Progress::default()).unwrap();
             let (ours, theirs) = (picture(&document), picture(&seen));
-            // A contour pixel's two populations are mixed in the whole picture, not layer by layer.
+            // A contour pixel's two sides are mixed in the whole picture, not layer by layer.
             let surface = document.surface.as_deref();
             let contours = surface.into_iter().flat_map(|surface| surface.contours().pixels());
             let mixed: HashSet<_> = contours.map(|pixel| (pixel.x, pixel.y)).collect();

@@ -1,4 +1,4 @@
-//! Pixels that two populations see: coverage acts once, whatever is stacked; what is behind a
+//! Pixels that two sides see: coverage acts once, whatever is stacked; what is behind a
 //! contour shows in its share.
 
 use super::*;

@@ -176,7 +176,7 @@ fn a_glossy_ball_takes_the_color_of_the_one_beside_it() {
 }
 
 #[test]
-fn behind_contours_rays_begin_where_the_other_population_lies() {
+fn behind_contours_rays_begin_where_the_other_sides_lies() {
     // One ball before the other: contour pixels between both.
     let balls = [(vec3(-14.0, 2.0, 14.0), 26.0), (vec3(16.0, -2.0, -10.0), 28.0)];
     let scene = scene(&balls);
@@ -193,7 +193,7 @@ fn behind_contours_rays_begin_where_the_other_population_lies() {
             let start = second.start(x, y, surface.normal(x, y), Vec3::Z);
             let (px, py) = of.canvas_pixel(x as i32, y as i32);
             assert_eq!(start.at, vec2(px as f32 + 0.5, py as f32 + 0.5));
-            // Not where the canvas's own population lies.
+            // Not where the canvas's own side lies.
             let front = scene.surface.as_deref().unwrap().depth(px as usize, py as usize);
             seen += usize::from((second.map.nearness_of(front) - start.nearness).abs() > 2.0);
         }
