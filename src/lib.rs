@@ -123,9 +123,9 @@ pub mod paint {
 pub mod shading {
     #[doc(inline)]
     pub use rilievo_engine::shading::{
-        BallStrokes, Environment, FeatureScale, Features, Light, LightKind, LightSetting,
-        LitSphere, Model, Mood, Painter, Projection, RadianceScaling, Reference, Scaling, Shading,
-        Shadows, Term,
+        BallStrokes, Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Mood,
+        NumberSetting, Painter, Projection, RadianceScaling, Reference, Scaling, Shading, Shadows,
+        Term,
     };
 }
 

@@ -6,6 +6,7 @@ pub mod fast;
 pub mod hash;
 pub mod named;
 pub mod noise;
+pub(crate) mod number_settings;
 pub mod plane_map;
 pub mod range;
 pub mod rect;
@@ -14,6 +15,7 @@ pub mod srgb;
 pub mod union_find;
 
 pub use glam::{Affine2, DVec2, Mat2, Mat3, Vec2, Vec3, Vec3A, Vec4, vec2, vec3};
+pub use number_settings::NumberSetting;
 pub use plane_map::PlaneMap;
 pub use range::{COORDINATE, Range, TURNS, UNIT};
 pub use rect::{Rect, Size};

@@ -10,6 +10,7 @@ mod dab;
 mod dab_walker;
 pub mod dynamics;
 pub mod fill;
+pub mod form_drawing;
 pub mod gradient;
 pub mod grain;
 pub mod home;
@@ -45,6 +46,7 @@ pub use brush_options::{
 };
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use fill::Fill;
+pub use form_drawing::{DrawingHand, FormDrawing, FormPattern};
 pub use gradient::{Gradient, GradientStop};
 pub use home::{HomeFrame, StrokeHome};
 pub use image::{PictureSource, PlacedImage, Placement};

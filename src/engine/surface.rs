@@ -19,6 +19,7 @@ mod derived;
 pub mod differentiate;
 pub mod fit;
 pub mod flow;
+pub mod form_lines;
 pub mod grain;
 pub mod integrate;
 pub mod links;

@@ -27,6 +27,7 @@
 mod adjustments;
 mod brush;
 mod brush_options;
+mod form_drawings;
 mod guides;
 mod images;
 mod layers;

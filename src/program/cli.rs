@@ -10,7 +10,9 @@ mod crash;
 mod force;
 mod info;
 pub mod limits;
+mod lines;
 mod manual;
+mod object;
 mod open;
 mod painted;
 mod progress;
@@ -47,6 +49,7 @@ enum CliCommand {
     Brush(brush::BrushArgs),
     Convert(convert::ConvertArgs),
     Info(info::InfoArgs),
+    Lines(lines::LinesArgs),
     Manual(manual::ManualArgs),
     Open(open::OpenArgs),
     Render(render::RenderArgs),
@@ -101,6 +104,7 @@ fn dispatched(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result
         Some(CliCommand::Brush(args)) => brush::run(&args),
         Some(CliCommand::Convert(args)) => convert::run(&args),
         Some(CliCommand::Info(args)) => info::run(&args),
+        Some(CliCommand::Lines(args)) => lines::run(&args),
         Some(CliCommand::Manual(args)) => manual::run(&args),
         Some(CliCommand::Open(args)) => open::run(args, window),
         Some(CliCommand::Render(args)) => render::run(&args),

@@ -11,6 +11,7 @@ pub mod colors;
 mod crop;
 mod curve;
 pub mod fill;
+mod form_drawing;
 pub mod history;
 mod home;
 pub mod layers;

@@ -178,6 +178,9 @@ impl Total {
                 self.values += light::A_SCALE * scaling.features.scales.len()
             }
             Content::Adjustment(live) => self.values += marks::adjustment_values(live.params()),
+            Content::FormDrawing(live) => {
+                self.values += marks::form_drawing_values(live.params());
+            }
             Content::Fill(_)
             | Content::Pixels(_)
             | Content::Normals(_)
@@ -227,6 +230,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
                 if let Some(Content::Strokes(old)) = old { &old.params().strokes[..] } else { &[] };
             marks::strokes(old, &live.params().strokes)
         }
+        Content::FormDrawing(live) => marks::form_drawing(live.params()),
         Content::Shading(live) => light::shading(live.params()),
         Content::RadianceScaling(scaling) => light::radiance_scaling(scaling),
         Content::Normals(normals) => {

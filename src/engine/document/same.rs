@@ -224,6 +224,9 @@ fn content(a: &Content, b: &Content) -> Option<&'static str> {
         (Content::Strokes(a), Content::Strokes(b)) => {
             ("strokes", a.ptr_eq(b) || are_same_strokes(a.params(), b.params()))
         }
+        (Content::FormDrawing(a), Content::FormDrawing(b)) => {
+            ("lines or how they are drawn", a.ptr_eq(b) || a.params() == b.params())
+        }
         (Content::Shading(a), Content::Shading(b)) => {
             ("material", a.ptr_eq(b) || a.params() == b.params())
         }

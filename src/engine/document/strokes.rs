@@ -49,6 +49,19 @@ impl Document {
         })
     }
 
+    /// With the strokes of a drawing by the form as a stroke layer, to be edited one by one; `None`
+    /// if the layer is no such drawing.
+    pub fn with_made_strokes(&self, layer: LayerId) -> Option<Document> {
+        let found = self.layer(layer).filter(|layer| layer.lock != LayerLock::All)?;
+        let Content::FormDrawing(live) = &found.content else { return None };
+        let strokes = live.params().strokes(&self.scene_of(layer)?).to_vec();
+        self.with_layer(layer, |layer| {
+            layer.content = Content::Strokes(Live::new(StrokeList { strokes }));
+            // Outlines lie half beyond what they bound, and lines of the form on the canvas.
+            (layer.clip_to_surface, layer.transform, layer.on) = (false, None, None);
+        })
+    }
+
     /// With strokes of a layer moved by so many pixels; `None` if nothing changes.
     pub fn with_moved_strokes(
         &self,

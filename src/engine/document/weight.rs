@@ -14,6 +14,8 @@ const TILE_BYTES: u64 = Tile::most_bytes_a_pixel(false);
 const DEEP_TILE_BYTES: u64 = Tile::most_bytes_a_pixel(true);
 /// A tensor of curvature, and the map of κ made of it, bytes a pixel.
 const CURVATURE_BYTES: u64 = 14;
+/// Blurred normals and what lines are traced in, bytes a pixel.
+const DRAWING_BYTES: u64 = 48;
 /// A surface with other normals, bytes a pixel.
 const SURFACE_BYTES: u64 = 18;
 
@@ -77,6 +79,7 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
         + match &layer.content {
             Content::Fill(_) | Content::Pixels(_) | Content::Ink(_) | Content::Adjustment(_) => 0,
             Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
+            Content::FormDrawing(_) => area * (TILE_BYTES + DRAWING_BYTES),
             Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,
             Content::Shading(live) => {
                 area * (TILE_BYTES + CURVATURE_BYTES + live.params().kept_bytes())

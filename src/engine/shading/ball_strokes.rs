@@ -1,12 +1,12 @@
 //! A lit sphere whose brush marks stay whole: its settings. Floor 3. Not here: which place of the
 //! ball each pixel shows (`surface::chunks`), its colors (`sphere`).
 
-use super::numbers::settings;
+use crate::math::number_settings::number_settings;
 use crate::surface::Surface;
 use crate::surface::chunks::{BallPlaces, ChunkSettings};
 use std::sync::Arc;
 
-settings! {
+number_settings! {
     /// How the brush marks of a painted ball lie on a figure.
     pub struct BallStrokes {
         /// The ball's diameter on the canvas, px: how large its marks are.

@@ -1,10 +1,10 @@
 //! The settings of the painter's light. Floor 3. Not here: its equations (`material::painter`), its
 //! ready-made moods (`mood`).
 
-use super::numbers::settings;
+use crate::math::number_settings::number_settings;
 use crate::math::srgb::Color;
 
-settings! {
+number_settings! {
     /// How a painter would light a figure: each term that is not among those of other models.
     pub struct Painter {
         /// w: how far the key reaches beyond the terminator.

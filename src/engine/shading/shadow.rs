@@ -1,14 +1,14 @@
 //! Cast shadows of lamps: settings that every model with lamps has. Floor 3. Not here: where
 //! shadows fall (`surface::shadow`).
 
-use super::numbers::settings;
 use super::{Light, LightKind};
+use crate::math::number_settings::number_settings;
 use crate::math::srgb::Color;
 use crate::surface::Surface;
 use crate::surface::shadow::{LampPlace, ShadowLamp, ShareMap};
 use std::sync::Arc;
 
-settings! {
+number_settings! {
     /// How lamps cast shadows.
     pub struct Shadows {
         /// The share of a lamp's light that its shadow takes away.

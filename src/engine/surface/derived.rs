@@ -6,6 +6,7 @@ use super::Surface;
 use super::cache::{Cache, HeapSize, RecentCache};
 use super::chunks::BallPlaces;
 use super::curvature::{Curvature, CurvatureRims, Kappa};
+use super::form_lines::{FormLines, LineKey, SmoothNormals};
 use super::objects::Objects;
 use super::pyramid::MapPyramids;
 use super::ray::RayMap;
@@ -59,6 +60,10 @@ caches! {
     contacts: RecentCache<u32, ContactShade>,
     /// Which place of a painted ball each pixel shows, by its settings, as bits.
     ball_places: RecentCache<[u32; 4], BallPlaces>,
+    /// Lines where an illustrator puts them, by what is asked of them.
+    form_lines: RecentCache<LineKey, FormLines>,
+    /// Normals blurred within each piece, by σ, as bits.
+    smooth_normals: RecentCache<u32, SmoothNormals>,
     /// What rays are marched through.
     ray_maps: RecentCache<(), RayMap>,
     /// Coverage of selections by the surface.
@@ -128,6 +133,7 @@ mod tests {
     use super::*;
     use crate::math::{Size, Vec3};
     use crate::surface::Maps;
+    use crate::surface::form_lines::LineSettings;
     use crate::surface::operator::UnwrapSettings;
 
     #[test]
@@ -153,6 +159,8 @@ mod tests {
         grew("curvature", &mut last);
         surface.occlusion(8.0);
         grew("occlusion", &mut last);
+        surface.form_lines(&LineSettings::default());
+        grew("lines", &mut last);
         surface.ray_map();
         grew("rays", &mut last);
         surface.unwrapped(settings);

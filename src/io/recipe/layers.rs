@@ -3,7 +3,7 @@
 
 use super::LayerReader;
 use super::value::RecipeValue;
-use super::{images, liquify, masks, normals, shading, strokes, transforms};
+use super::{form_drawings, images, liquify, masks, normals, shading, strokes, transforms};
 use crate::document::{
     Content, Group, HomeFrame, InkLayer, Layer, LayerLabel, LayerLock, Live, PixelLayer,
     SelectionList,
@@ -25,12 +25,13 @@ const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
 /// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
-const KINDS: [(ReadContent, &str); 11] = [
+const KINDS: [(ReadContent, &str); 12] = [
     (|_, fields, _| Ok(Content::Fill(fields.color("color", Color::BLACK)?)), "fill"),
     (|reader, fields, _| Ok(Content::Pixels(reader.pixels(fields)?)), "pixels"),
     (|reader, fields, _| Ok(Content::Image(Live::new(reader.image(fields)?))), "image"),
     (|reader, fields, _| Ok(Content::Gradient(Live::new(reader.gradient(fields)?))), "gradient"),
     (|reader, fields, _| Ok(Content::Strokes(Live::new(reader.strokes(fields)?))), "strokes"),
+    (|reader, fields, _| Ok(Content::FormDrawing(Live::new(reader.form_lines(fields)?))), "lines"),
     (|reader, fields, _| Ok(Content::Shading(Live::new(reader.shading(fields)?))), "shading"),
     (
         |_, fields, _| Ok(Content::RadianceScaling(shading::radiance_scaling(fields)?)),
@@ -190,6 +191,7 @@ fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
         Content::Image(live) => images::write_image(out, live.params(), canvas),
         Content::Gradient(live) => images::write_gradient(out, live.params()),
         Content::Strokes(_) => {}
+        Content::FormDrawing(live) => form_drawings::write(out, live.params()),
         Content::Shading(live) => shading::write(out, live.params()),
         Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
         Content::Adjustment(live) => out.set("adjust", live.params().to_json()),

@@ -6,7 +6,7 @@ use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{COORDINATE, Vec3, srgb::Color};
 use crate::shading::{
-    BallStrokes, FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference,
+    BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, Reference,
     Scaling, Shadows, Term,
 };
 use serde_json::Value;
@@ -142,7 +142,10 @@ impl RecipeValue for Reference {
 }
 
 /// Reads an object; refuses fields that `read` does not know.
-fn of_object<T>(node: &JsonNode, read: impl FnOnce(&mut Fields) -> Result<T>) -> Result<T> {
+pub(super) fn of_object<T>(
+    node: &JsonNode,
+    read: impl FnOnce(&mut Fields) -> Result<T>,
+) -> Result<T> {
     let mut fields = node.fields()?;
     let value = read(&mut fields)?;
     fields.finish()?;
@@ -218,7 +221,11 @@ pub fn term(fields: &mut Fields, base: Term) -> Result<Term> {
 }
 
 /// The numbers of a table, each in its range.
-fn settings<T>(fields: &mut Fields, table: &'static [LightSetting<T>], mut all: T) -> Result<T> {
+pub(super) fn settings<T>(
+    fields: &mut Fields,
+    table: &'static [NumberSetting<T>],
+    mut all: T,
+) -> Result<T> {
     for setting in table {
         let to = fields.number(setting.name, (setting.get)(&all), setting.range.clone())?;
         (setting.set)(&mut all, to);
@@ -226,7 +233,12 @@ fn settings<T>(fields: &mut Fields, table: &'static [LightSetting<T>], mut all: 
     Ok(all)
 }
 
-fn write_settings<T>(out: &mut JsonObject, table: &'static [LightSetting<T>], all: &T, base: &T) {
+pub(super) fn write_settings<T>(
+    out: &mut JsonObject,
+    table: &'static [NumberSetting<T>],
+    all: &T,
+    base: &T,
+) {
     for setting in table {
         out.number(setting.name, (setting.get)(all), (setting.get)(base));
     }

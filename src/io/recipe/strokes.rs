@@ -77,7 +77,11 @@ impl LayerReader<'_> {
 
     /// A preset, an inline brush, or a preset or the brush of the stroke before with some of its
     /// fields changed.
-    fn brush(&mut self, node: &JsonNode, before: Option<Brush>) -> Result<(Brush, Operator)> {
+    pub(super) fn brush(
+        &mut self,
+        node: &JsonNode,
+        before: Option<Brush>,
+    ) -> Result<(Brush, Operator)> {
         let mut fields = node.fields()?;
         let (base, operator) = match fields.get("preset") {
             Some(name) => presets::named(&name)?,

@@ -50,7 +50,10 @@ pub fn is_of_second_version(document: &Document) -> bool {
             || layer.transform.is_some()
             || layer.liquify.is_some()
             || layer.label != LayerLabel::None
-            || matches!(layer.content, Content::Adjustment(_) | Content::Ink(_))
+            || matches!(
+                layer.content,
+                Content::Adjustment(_) | Content::Ink(_) | Content::FormDrawing(_)
+            )
     };
     has_matrix
         || !document.parts.is_empty()

@@ -2,24 +2,19 @@
 //! Floor 7.
 
 use super::force::Force;
+use super::object::{LoadedDocument, ObjectArgs, loaded};
 use super::painted::{refuse_incomplete, scaled};
 use super::told::tell;
 use super::{LimitArgs, progress, values};
-use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
-use crate::document::{Document, SurfaceSource};
+use crate::document::Document;
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
-use crate::io::files::{TrackedFiles, read_file};
-use crate::io::open::FileKind;
-use crate::io::recipe::{self, LiveLook, OtherSurface, RecipeSource};
-use crate::io::{Budget, RecipeFolder, UserFiles, deep_paint, open};
+use crate::io::recipe::LiveLook;
 use crate::math::srgb::Color;
 use crate::{Error, Result};
-use clap::ArgGroup;
 use std::path::{Path, PathBuf};
 
 /// Render a project or a recipe to a picture
 #[derive(clap::Args)]
-#[command(group(ArgGroup::new("maps").args(["normal", "depth"]).multiple(true)))]
 pub struct RenderArgs {
     /// The project (.ora), or the recipe: a JSON file, next to the files that it names. May be left
     /// out with --look and maps
@@ -29,21 +24,8 @@ pub struct RenderArgs {
     /// with --force
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Put the painting on another object: its normal map
-    #[arg(long, value_name = "FILE")]
-    normal: Option<PathBuf>,
-    /// Put the painting on another object: its depth map
-    #[arg(long, value_name = "FILE")]
-    depth: Option<PathBuf>,
-    /// Convention of its normals: auto (detected), opengl (green up) or directx (green down)
-    #[arg(long, value_name = "WORD", default_value = "auto", requires = "normal", value_parser = convention)]
-    convention: NormalConvention,
-    /// Which end of its depth is near: auto (detected), low or high
-    #[arg(long, value_name = "END", default_value = "auto", requires = "depth", value_parser = near)]
-    near: Near,
-    /// The other object's mask
-    #[arg(long, value_name = "FILE", requires = "maps")]
-    mask: Option<PathBuf>,
+    #[command(flatten)]
+    onto: ObjectArgs,
     /// Show it in a look that comes with the program, such as oil-sketch, clay or blueprint
     #[arg(long, value_name = "NAME", value_parser = look)]
     look: Option<LiveLook>,
@@ -69,20 +51,9 @@ pub struct RenderArgs {
     limits: LimitArgs,
 }
 
-fn convention(word: &str) -> std::result::Result<NormalConvention, String> {
-    NormalConvention::from_word(word)
-        .ok_or_else(|| format!("one of {}", NormalConvention::WORDS.join(", ")))
-}
-
 fn look(word: &str) -> std::result::Result<LiveLook, String> {
     LiveLook::of_key(word)
         .ok_or_else(|| format!("one of {}", LiveLook::keys().collect::<Vec<_>>().join(", ")))
-}
-
-fn near(word: &str) -> std::result::Result<Near, String> {
-    Near::from_name(word).ok_or_else(|| {
-        format!("one of {}", Near::ALL.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", "))
-    })
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
@@ -90,7 +61,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     ExportFormat::of(&args.output)?.bits(&args.output, args.bits)?;
     args.limits.install(|| {
         let told_of = args.named();
-        let LoadedDocument { document, notes, reads } = load(args)?;
+        let LoadedDocument { document, notes, reads } =
+            loaded(args.document.as_deref(), &args.onto, &args.limits)?;
         refuse_incomplete(told_of, &document)?;
         let target = OutputFile::new(&args.output, args.force.export(reads))?;
         let document = dressed(args, document)?;
@@ -116,8 +88,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 impl RenderArgs {
     /// What messages name: the document, or the map that stands for it.
     fn named(&self) -> &Path {
-        let given = [&self.document, &self.normal, &self.depth];
-        given.into_iter().flatten().next().map_or(Path::new(""), PathBuf::as_path)
+        self.onto.named(self.document.as_deref())
     }
 }
 
@@ -129,75 +100,6 @@ fn dressed(args: &RenderArgs, document: Document) -> Result<Document> {
         return Err(Error::unsupported(args.named(), reason));
     }
     look.on(&document)
-}
-
-struct LoadedDocument {
-    document: Document,
-    notes: Vec<String>,
-    /// Every file that it was made from.
-    reads: Vec<PathBuf>,
-}
-
-fn load(args: &RenderArgs) -> Result<LoadedDocument> {
-    let budget = args.limits.budget();
-    let mut given = UserFiles::default();
-    let surface = other_object(args, &mut given);
-    let given = TrackedFiles::new(given);
-    let onto = surface.as_ref().map(|surface| OtherSurface { surface, files: &given });
-    let Some(file) = &args.document else {
-        // Maps alone, to be shown in a look: a recipe of nothing else.
-        let read = |budget: &Budget| {
-            let source =
-                RecipeSource { file: args.named(), files: &UserFiles::default(), budget, onto };
-            recipe::read_noting(b"{}", source)
-        };
-        let (document, notes) = read(&budget)?;
-        return Ok(LoadedDocument { document, notes, reads: given.read_paths() });
-    };
-    let files = TrackedFiles::new(RecipeFolder::beside(file));
-    let bytes = read_file(file, budget.file_bytes)?;
-    let mut reads = vec![file.clone()];
-    let (document, notes) = match FileKind::of(&bytes) {
-        FileKind::Recipe => {
-            let read = |budget: &Budget| {
-                recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto })
-            };
-            let ((document, mut notes), rounded) =
-                deep_paint::fitted(file, &budget, read, |(document, _)| document)?;
-            notes.extend(rounded);
-            (document, notes)
-        }
-        _ => {
-            let opened = open(file, &budget)?;
-            let document = onto.map_or(Ok(opened.document.clone()), |onto| {
-                recipe::put_onto(&opened.document, file, onto, &budget)
-            })?;
-            (document, opened.notes)
-        }
-    };
-    reads.extend(files.read_paths());
-    reads.extend(given.read_paths());
-    Ok(LoadedDocument { document, notes, reads })
-}
-
-/// The object from the command line, if any.
-fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSource> {
-    let mut name = |path: &Option<PathBuf>| path.as_deref().map(|path: &Path| given.add(path));
-    let (normal, depth, mask) = (name(&args.normal), name(&args.depth), name(&args.mask));
-    (normal.is_some() || depth.is_some()).then(|| SurfaceSource {
-        normal: normal.map(|file| MapSource {
-            file,
-            channel: None,
-            convention: args.convention.clone(),
-        }),
-        depth: depth.map(|file| MapSource {
-            file,
-            channel: None,
-            convention: DepthConvention { near: args.near, ..DepthConvention::default() },
-        }),
-        mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
-        matrix: None,
-    })
 }
 
 fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {

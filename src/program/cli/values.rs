@@ -22,3 +22,8 @@ pub fn scale(text: &str) -> std::result::Result<f32, String> {
 pub fn color(text: &str) -> std::result::Result<Color, String> {
     Color::parse(text).ok_or_else(|| "a color is written #rrggbb or #rrggbbaa".to_owned())
 }
+
+pub fn share(text: &str) -> std::result::Result<f32, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "a share is a number between 0 and 1".to_owned())
+}

@@ -9,11 +9,12 @@ use crate::document::{
     Content, DerivedMask, DetailSource, Layer, LayerLabel, LayerLock, LayerTransform, Live,
     NormalLayer,
 };
+use crate::io::recipe::preset_brush;
 use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
-    Adjust, ColorAdjustment, Gradient, GradientStop, ImageFilter, LiveAdjustment, PictureSource,
-    PlacedImage, Placement,
+    Adjust, Brush, ColorAdjustment, DrawingHand, FormDrawing, FormPattern, Gradient, GradientStop,
+    ImageFilter, LiveAdjustment, PictureSource, PlacedImage, Placement,
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
@@ -21,6 +22,7 @@ use crate::shading::{
     BallStrokes, Features, Light, Model, Mood, Painter, Projection, RadianceScaling, Scaling,
     Shading, Shadows, Term,
 };
+use crate::surface::form_lines::LineSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
 use values::set_mask;
@@ -55,6 +57,14 @@ actions! {
         "outside" Beyond { outside: Outside }
         "filter" Filtered { filter: ImageFilter }
         "adjust" Adjusted { adjust: Adjust }
+        /// Which lines a drawing by the form has.
+        "lines" Lines { lines: LineSettings }
+        /// How a hand follows the lines of such a drawing.
+        "hand" Hand { hand: DrawingHand }
+        /// The size of its brush, px.
+        "line size" LineSize { to: f32 }
+        /// A brush that comes with the program, by its key, in the size that lines have.
+        "drawn with" DrawnWith { preset: String }
         "stops" Stops { stops: Vec<GradientStop> }
         "ends" Ends { from: Vec2, to: Vec2 }
         /// A mask derived from the surface, or none.
@@ -123,6 +133,9 @@ impl Property {
             Property::Beyond { .. } => "Outside",
             Property::Filtered { .. } => "Filter",
             Property::Adjusted { .. } => "Adjust image",
+            Property::Lines { .. } => "Form lines",
+            Property::Hand { .. } => "Hand",
+            Property::LineSize { .. } | Property::DrawnWith { .. } => "Brush of the lines",
             Property::Stops { .. } => "Gradient stops",
             Property::Ends { .. } => "Gradient ends",
             Property::Mask { .. }
@@ -218,6 +231,11 @@ impl Property {
                     *live = Live::new(next);
                 }
             }
+            Content::FormDrawing(live) => {
+                if let Some(next) = self.form_drawing(live.params()) {
+                    *live = Live::new(next);
+                }
+            }
             Content::Shading(live) => {
                 if let Some(next) = self.shading(live.params()) {
                     *live = Live::new(next);
@@ -261,6 +279,22 @@ impl Property {
             Property::Ends { from, to } => (next.from, next.to) = (*from, *to),
             Property::Pieces { pieces } => next.pieces.clone_from(pieces),
             Property::Filtered { filter } => next.filter = *filter,
+            _ => return None,
+        }
+        Some(next)
+    }
+
+    fn form_drawing(&self, drawing: &FormDrawing) -> Option<FormDrawing> {
+        let mut next = drawing.clone();
+        match (self, &mut next.pattern) {
+            (Property::Lines { lines }, FormPattern::Lines(own)) => *own = *lines,
+            (Property::Hand { hand }, _) => next.hand = *hand,
+            (Property::Fill { color }, _) => next.color = *color,
+            (Property::LineSize { to }, _) => next.brush.size = held(*to, &Brush::SIZE),
+            (Property::DrawnWith { preset }, _) => {
+                let (brush, _) = preset_brush(preset).filter(|(b, _)| !b.mode.is_retouching())?;
+                next.brush = Brush { size: next.brush.size, ..brush };
+            }
             _ => return None,
         }
         Some(next)

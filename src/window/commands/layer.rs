@@ -2,7 +2,8 @@
 //! Floor 7.
 
 use super::row::{
-    LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift,
+    LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, has_surface, key, row,
+    shift,
 };
 use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
 use crate::file_purpose::FilePurpose;
@@ -99,6 +100,11 @@ fn is_so_of_mask(session: &Session, is: impl FnOnce(&LayerMask) -> bool) -> bool
     is_so_of_layer(session, |layer| layer.mask.as_ref().is_some_and(is))
 }
 
+/// Whether the selected layer is drawn by the form.
+fn has_form_drawing(session: &Session) -> bool {
+    session.layer().is_some_and(|layer| matches!(layer.content, Content::FormDrawing(_)))
+}
+
 fn is_on_mask(session: &Session) -> bool {
     session.active().is_some_and(|open| open.on_mask)
 }
@@ -119,6 +125,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| add(requests, NewLayer::Strokes),
     ),
     row("New fill layer", &[], "A layer of one color", has_document, |_, requests| add(requests, NewLayer::Fill)),
+    row(
+        "New form lines",
+        &[],
+        "Outlines, creases and folds of the shape in ink; they follow it",
+        has_surface,
+        |_, requests| add(requests, NewLayer::Lines),
+    ),
     row(
         "New gradient layer",
         &[],
@@ -174,6 +187,16 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| {
             let bare = session.layer_path().map(|layer| Action::Part(PartAction::Paper { layer }));
             requests.actions.extend(bare);
+        },
+    ),
+    row(
+        "Make strokes",
+        &[],
+        "The lines that were drawn by the form become strokes, to be edited one by one",
+        has_form_drawing,
+        |session, requests| {
+            let made = session.layer_path().map(|layer| LayerAction::MakeStrokes { layer });
+            made.into_iter().for_each(|made| requests.act(Action::Layer(made)));
         },
     ),
     row(

@@ -26,6 +26,7 @@ pub fn kind_icon(content: &Content) -> Icon {
         Content::Image(_) => Icon::Tool(ToolKind::Image),
         Content::Gradient(_) => Icon::Tool(ToolKind::Gradient),
         Content::Strokes(_) => Icon::Tool(ToolKind::Strokes),
+        Content::FormDrawing(_) => Icon::FormLines,
         Content::Shading(_) => Icon::Shading,
         Content::RadianceScaling(_) => Icon::Scaling,
         Content::Adjustment(_) => Icon::Adjustment,

@@ -6,7 +6,7 @@ use super::setter::LayerSetter;
 use crate::math::srgb::Color;
 use crate::mood_pictures::MoodPictures;
 use crate::session::Property;
-use crate::shading::{LightSetting, Mood, Painter, Shading, Shadows};
+use crate::shading::{Mood, NumberSetting, Painter, Shading, Shadows};
 use crate::widgets::{NumberField, check, named, title};
 use eframe::egui::{self, Ui};
 
@@ -16,7 +16,7 @@ type ColorOf = fn(&mut Painter) -> &mut Color;
 /// A row for each number of a table.
 pub fn settings<T: Copy + 'static>(
     ui: &mut Ui,
-    table: &'static [LightSetting<T>],
+    table: &'static [NumberSetting<T>],
     all: T,
     setter: &mut LayerSetter,
     put: fn(T) -> Property,

@@ -2,7 +2,7 @@
 //! materials and lights (`material`).
 
 use super::setter::LayerSetter;
-use super::{adjustment, colors, home, mask, material, options, ramp, strokes};
+use super::{adjustment, colors, form_drawing, home, mask, material, options, ramp, strokes};
 use crate::document::{Content, DetailSource, Document, Histogram, Layer, NormalLayer, Progress};
 use crate::file_purpose::FilePurpose;
 use crate::math::{Vec2, vec2};
@@ -43,6 +43,9 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         }
         Content::Strokes(live) => {
             strokes::show(ui, session, &setter.layer, &live.params().strokes, setter.requests);
+        }
+        Content::FormDrawing(live) => {
+            form_drawing::show(ui, session, live.params(), has_surface, &mut setter);
         }
         Content::Image(live) => image(ui, live.params(), &mut setter),
         Content::Gradient(live) => gradient(ui, live.params(), &mut setter),

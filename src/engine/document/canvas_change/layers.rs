@@ -11,7 +11,7 @@ use crate::document::{
     LayerTransform, Live, MaskKind, NormalLayer, PixelLayer, StrokeList, TransformShape,
 };
 use crate::math::{Mat2, PlaneMap, Size, Vec2, vec2, vec3};
-use crate::paint::{Gradient, PlacedImage, Stroke};
+use crate::paint::{FormDrawing, FormPattern, Gradient, PlacedImage, Stroke};
 use crate::raster::warp::{warped, warped_plane_onto};
 use crate::raster::{BlendMode, TileAt};
 use crate::shading::{LightKind, Shading};
@@ -166,6 +166,9 @@ impl Carrier<'_> {
                     .collect();
                 Content::Strokes(Live::new(StrokeList { strokes }))
             }
+            Content::FormDrawing(live) => {
+                Content::FormDrawing(Live::new(self.form_drawing(live.params())))
+            }
             Content::Shading(live) => Content::Shading(Live::new(self.shading(live.params()))),
             Content::Normals(normals) => Content::Normals(self.normals(normals, frame)),
             Content::Group(group) => {
@@ -230,6 +233,14 @@ impl Carrier<'_> {
         let next =
             Stroke::new(moved.brush().clone(), operator, stroke.color(), moved.samples().to_vec());
         next.within(stroke.selection().map(|own| self.selections.of_stroke(own)))
+    }
+
+    fn form_drawing(&self, drawing: &FormDrawing) -> FormDrawing {
+        let mut next = drawing.clone();
+        let FormPattern::Lines(lines) = &mut next.pattern;
+        let along = self.change.matrix() * vec2(lines.light.x, -lines.light.y);
+        lines.light = vec3(along.x, -along.y, lines.light.z);
+        next
     }
 
     fn shading(&self, shading: &Shading) -> Shading {

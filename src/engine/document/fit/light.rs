@@ -5,7 +5,7 @@ use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
 use crate::math::{COORDINATE, TURNS};
 use crate::shading::{
-    BallStrokes, Environment, FeatureScale, Features, Light, LightKind, LightSetting, Painter,
+    BallStrokes, Environment, FeatureScale, Features, Light, LightKind, NumberSetting, Painter,
     RadianceScaling, Reference, Scaling, Shading, Shadows, Term,
 };
 
@@ -49,7 +49,7 @@ pub fn shading(shading: &Shading) -> Fit {
     shading.environment.as_ref().map_or(Ok(()), environment)
 }
 
-fn settings<T>(all: &T, table: &'static [LightSetting<T>]) -> Fit {
+fn settings<T>(all: &T, table: &'static [NumberSetting<T>]) -> Fit {
     table.iter().try_for_each(|setting| within(setting.label, (setting.get)(all), &setting.range))
 }
 

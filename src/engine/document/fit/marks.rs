@@ -3,15 +3,16 @@
 
 use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
-use crate::math::{COORDINATE, TURNS, UNIT, Vec2};
+use crate::math::{COORDINATE, NumberSetting, TURNS, UNIT, Vec2};
 use crate::paint::adjustment::ToneCurve;
 use crate::paint::grain::{BrushGrain, GrainSpace};
 use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
-    Adjust, Brush, BrushMode, ColorAdjustment, ColorJitter, Gradient, PlacedImage, Placement,
-    Sample, Stabilizer, Stroke, StrokeSelection, Tip,
+    Adjust, Brush, BrushMode, ColorAdjustment, ColorJitter, DrawingHand, FormDrawing, FormPattern,
+    Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke, StrokeSelection, Tip,
 };
+use crate::surface::form_lines::LineSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Bend, Operator, Weights};
 use std::sync::Arc;
@@ -55,6 +56,32 @@ pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
         before = Some(stroke);
     }
     (samples, values)
+}
+
+/// The values that a drawing by the form takes.
+pub fn form_drawing_values(drawing: &FormDrawing) -> usize {
+    let drives = drawing.brush.dynamics.drives().iter();
+    A_STROKE + A_BRUSH + drives.map(|drive| 20 + 3 * drive.curve.points()).sum::<usize>()
+}
+
+/// Whether a file can hold a drawing by the form.
+pub fn form_drawing(drawing: &FormDrawing) -> Fit {
+    if drawing.brush.mode.is_retouching() {
+        return Err("lines are painted: smudge, blur and clone do not work here".into());
+    }
+    match &drawing.pattern {
+        FormPattern::Lines(lines) => {
+            numbers(lines, LineSettings::SETTINGS)?;
+            let reach = -1e6..=1e6;
+            lines.light.to_array().iter().try_for_each(|v| within("the light", *v, &reach))?;
+        }
+    }
+    numbers(&drawing.hand, DrawingHand::SETTINGS)?;
+    brush(&drawing.brush)
+}
+
+fn numbers<T>(all: &T, table: &'static [NumberSetting<T>]) -> Fit {
+    table.iter().try_for_each(|setting| within(setting.label, (setting.get)(all), &setting.range))
 }
 
 /// The new strokes that are not among the old ones, by pointer.

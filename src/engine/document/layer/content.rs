@@ -4,6 +4,7 @@
 
 mod adjustment;
 mod fill;
+mod form_drawing;
 mod from;
 mod gradient;
 mod group;
@@ -32,7 +33,7 @@ use crate::document::Progress;
 use crate::document::far_side::{FarScene, FarTile};
 use crate::document::memory_use::MemoryCount;
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::paint::{Gradient, LiveAdjustment, PlacedImage, Scene};
+use crate::paint::{FormDrawing, Gradient, LiveAdjustment, PlacedImage, Scene};
 use crate::raster::{Picture, TileAt};
 use crate::shading::{RadianceScaling, Shading};
 use crate::surface::Bend;
@@ -54,6 +55,8 @@ pub enum Content {
     Gradient(Live<Gradient>),
     /// Strokes that stay editable.
     Strokes(Live<StrokeList>),
+    /// Strokes along lines of the surface.
+    FormDrawing(Live<FormDrawing>),
     /// The surface lit.
     Shading(Live<Shading>),
     /// What lies beneath, brighter or darker by the curvature.
@@ -233,6 +236,7 @@ impl Content {
             Content::Image(image) => image,
             Content::Gradient(gradient) => gradient,
             Content::Strokes(strokes) => strokes,
+            Content::FormDrawing(drawing) => drawing,
             Content::Shading(shading) => shading,
             Content::RadianceScaling(scaling) => scaling,
             Content::Adjustment(adjustment) => adjustment,
@@ -388,6 +392,7 @@ impl Content {
             (Content::Image(a), Content::Image(b)) => a.ptr_eq(b),
             (Content::Gradient(a), Content::Gradient(b)) => a.ptr_eq(b),
             (Content::Strokes(a), Content::Strokes(b)) => a.ptr_eq(b),
+            (Content::FormDrawing(a), Content::FormDrawing(b)) => a.ptr_eq(b),
             (Content::Shading(a), Content::Shading(b)) => a.ptr_eq(b),
             (Content::Pixels(a), Content::Pixels(b)) => a.tiles.ptr_eq(&b.tiles),
             (Content::Normals(a), Content::Normals(b)) => a == b,

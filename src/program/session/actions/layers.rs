@@ -11,11 +11,13 @@ pub use new::NewLayer;
 pub(super) use steps::copied;
 
 use crate::document::{
-    Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, MaskKind, Progress,
+    Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress,
 };
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
-use crate::paint::{ColorAdjustment, Gradient, GradientStop, ImageFilter, LiveAdjustment};
+use crate::paint::{
+    ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment,
+};
 use crate::raster::Plane;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
@@ -52,6 +54,10 @@ actions! {
         "flatten" Flatten {}
         /// A live layer becomes paint.
         "bake" Bake { layer: LayerPaths }
+        /// The strokes of a drawing by the form become a stroke layer.
+        "make strokes" MakeStrokes { layer: LayerPath }
+        /// A drawing by the form gets the brush and the color in hand.
+        "draw with" DrawWith { layer: LayerPath }
         /// A shading layer of a model, with the material it begins with.
         "add shading" AddShading { model: Model }
         /// A look that comes with the program, by its key, on top of all layers.
@@ -130,6 +136,9 @@ impl LayerAction {
         if let LayerAction::PaintBall { layer, hollows } = self {
             return self.paint_ball(session, layer, *hollows);
         }
+        if let LayerAction::DrawWith { layer } = self {
+            return self.draw_with(session, layer);
+        }
         let target = session.tools.transform.target;
         let Some(open) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
@@ -169,7 +178,9 @@ impl LayerAction {
                 open.repair();
             }
             LayerAction::Pivot { at } => open.set_pivot(target, *at),
-            LayerAction::Unadjust {} | LayerAction::PaintBall { .. } => {}
+            LayerAction::Unadjust {}
+            | LayerAction::PaintBall { .. }
+            | LayerAction::DrawWith { .. } => {}
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 open.solo = if open.solo == id { None } else { id };
@@ -196,6 +207,24 @@ impl LayerAction {
         match (refusal, found) {
             (Some(why), _) => session.say(why),
             (None, found) => found.into_iter().for_each(|id| session.paint_ball(id, hollows)),
+        }
+    }
+
+    fn draw_with(&self, session: &mut Session, layer: &LayerPath) {
+        let (brush, color) = (session.tools.brush.clone(), session.tools.color);
+        let Some(open) = session.active_mut() else { return };
+        if let Some(why) = self.refusal(open.document()) {
+            return session.say(why);
+        }
+        open.forget_preview();
+        let Some(id) = layer.find(open.document()).map(|found| found.id) else { return };
+        let next = open.document().with_layer(id, |layer| {
+            if let Content::FormDrawing(live) = &mut layer.content {
+                *live = Live::new(FormDrawing { brush, color, ..live.params().clone() });
+            }
+        });
+        if let Some(next) = next {
+            open.commit("Brush of the lines", next);
         }
     }
 
@@ -228,6 +257,10 @@ impl LayerAction {
             }
             LayerAction::AddShading { model } => added(open, lit_layer(*model, document))?,
             LayerAction::Look { name } => looks::dressed(document, name)?,
+            LayerAction::MakeStrokes { layer: path } => {
+                let id = layer(path)?.id;
+                ("Make strokes", document.with_made_strokes(id)?, vec![id])
+            }
             LayerAction::PaintedBall { layer: path, name, hollows } => {
                 let layer = layer(path)?;
                 looks::with_ball(document, &layer, name, *hollows)?
@@ -331,6 +364,7 @@ impl LayerAction {
             | LayerAction::TakeAlong { .. }
             | LayerAction::Pivot { .. }
             | LayerAction::PaintBall { .. }
+            | LayerAction::DrawWith { .. }
             | LayerAction::Set { .. } => return None,
         };
         Some(Edit { label, document, select })

@@ -4,13 +4,14 @@
 use crate::document::{DerivedMask, Layer, LayerLabel, LayerLock, LayerMask, LayerTransform};
 use crate::io::json::JsonNode;
 use crate::io::recipe::transforms;
-use crate::paint::{Adjust, ColorAdjustment, GradientStop, ImageFilter, Placement};
+use crate::paint::{Adjust, ColorAdjustment, DrawingHand, GradientStop, ImageFilter, Placement};
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
 use crate::shading::{
     BallStrokes, Features, Light, Model, Mood, Painter, Projection, Scaling, Shadows, Term,
 };
+use crate::surface::form_lines::LineSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
@@ -26,6 +27,7 @@ as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
 as_in_recipes!(ColorAdjustment);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
 as_in_recipes!(Shadows, Painter, BallStrokes);
+as_in_recipes!(LineSettings, DrawingHand);
 
 /// As documents write it.
 impl crate::session::replay::ReplayValue for LayerTransform {

@@ -10,13 +10,14 @@ use crate::document::{
 use crate::io::{Budget, project};
 use crate::math::{Size, vec2};
 use crate::paint::{
-    Adjust, ColorAdjustment, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage,
-    Placement,
+    Adjust, ColorAdjustment, FormDrawing, FormPattern, Gradient, GradientStop, ImageFilter,
+    PictureSource, PlacedImage, Placement,
 };
 use crate::raster::{Outside, Picture, Plane};
 use crate::session::actions::Style;
 use crate::session::property::Property;
 use crate::shading::{Environment, Model, RadianceScaling, Shading};
+use crate::surface::form_lines::LineSettings;
 use crate::surface::{Maps, NoiseRelief, Surface};
 use edits::{NUMBERS, OTHERS, PROPERTIES, STROKE};
 use proptest::prelude::*;
@@ -78,6 +79,9 @@ pub(super) fn everything() -> Document {
         }),
         Content::Group(Group::default()),
         Content::Ink(InkLayer::of("pixels")),
+        Content::FormDrawing(Live::new(FormDrawing::new(FormPattern::Lines(
+            LineSettings::DEFAULT,
+        )))),
     ];
     let layers = contents
         .into_iter()
@@ -90,7 +94,7 @@ pub(super) fn everything() -> Document {
 fn edit() -> impl Strategy<Value = String> {
     let numbers = prop::collection::vec(prop::sample::select(NUMBERS.to_vec()), 8);
     let all: Vec<&str> = PROPERTIES.iter().chain(OTHERS).copied().collect();
-    (prop::sample::select(all), 0..11usize, numbers).prop_map(|(template, layer, numbers)| {
+    (prop::sample::select(all), 0..12usize, numbers).prop_map(|(template, layer, numbers)| {
         let mut numbers = numbers.into_iter().cycle();
         let template = match template.starts_with("{\"in\"") {
             true => template.to_owned(),

@@ -79,34 +79,11 @@ impl LayerKind for Live<StrokeList> {
             let bend = Bend { operator: stroke.operator(), ..Bend::default() };
             Deformation::new(scene.surface.as_deref(), scene.size, &bend);
         }
-        let (missing, is_wanted) = (self.missing(scene), || !progress.is_canceled());
-        let strokes = &self.params().strokes;
-        if !missing.is_empty()
-            && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true)
-        {
-            // Once canceled, they are rendered when needed.
-            let _ = stroke::render_tiles(strokes, scene, &missing, is_wanted, |at, tile| {
-                self.tile(scene, at, || tile);
-            });
-        }
+        warm_strokes(self, &self.params().strokes, scene, progress);
     }
 
     fn warm_far_side(&self, far: &Scene, progress: &Progress) {
-        let (front, is_wanted) = (far.front(), || !progress.is_canceled());
-        let (missing, strokes) = (self.missing_far_sides(&front), &self.params().strokes);
-        if missing.is_empty()
-            || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true)
-        {
-            return;
-        }
-        let Some(surface) = &front.surface else { return };
-        let _ = stroke::render_tiles(strokes, far, &missing, is_wanted, |at, tile| {
-            let Some(contours) = surface.contours().on(at) else { return };
-            self.set_far_side(
-                &FarScene { tile: FarTile::new(at, contours), front: &front, far: Some(far) },
-                tile,
-            );
-        });
+        warm_far_sides(self, &self.params().strokes, far, progress);
     }
 
     fn scaled(&self, scale: &CanvasScale) -> Content {
@@ -191,6 +168,48 @@ impl LayerKind for Live<StrokeList> {
             differing.flat_map(|stroke| TileAt::covering(stroke.bounds(&scene).intersect(canvas)));
         Changed::Tiles(tiles.filter(|&at| !same(at)).collect())
     }
+}
+
+/// Renders the tiles of strokes that are better rendered together.
+pub(super) fn warm_strokes<T: Send + Sync>(
+    live: &Live<T>,
+    strokes: &[Arc<Stroke>],
+    scene: &Scene,
+    progress: &Progress,
+) {
+    let (missing, is_wanted) = (live.missing(scene), || !progress.is_canceled());
+    if !missing.is_empty()
+        && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true)
+    {
+        // Once canceled, they are rendered when needed.
+        let _ = stroke::render_tiles(strokes, scene, &missing, is_wanted, |at, tile| {
+            live.tile(scene, at, || tile);
+        });
+    }
+}
+
+/// The same behind contours.
+pub(super) fn warm_far_sides<T: Send + Sync>(
+    live: &Live<T>,
+    strokes: &[Arc<Stroke>],
+    far: &Scene,
+    progress: &Progress,
+) {
+    let (front, is_wanted) = (far.front(), || !progress.is_canceled());
+    let missing = live.missing_far_sides(&front);
+    if missing.is_empty()
+        || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true)
+    {
+        return;
+    }
+    let Some(surface) = &front.surface else { return };
+    let _ = stroke::render_tiles(strokes, far, &missing, is_wanted, |at, tile| {
+        let Some(contours) = surface.contours().on(at) else { return };
+        live.set_far_side(
+            &FarScene { tile: FarTile::new(at, contours), front: &front, far: Some(far) },
+            tile,
+        );
+    });
 }
 
 impl Live<StrokeList> {

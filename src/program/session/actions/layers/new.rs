@@ -4,12 +4,13 @@
 use crate::document::{
     Content, DetailSource, Document, Group, Layer, Live, NormalLayer, PixelLayer, StrokeList,
 };
-use crate::math::vec2;
-use crate::paint::{Gradient, Placement};
+use crate::math::{Size, vec2};
+use crate::paint::{FormDrawing, FormPattern, Gradient, Placement};
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::names;
 use crate::shading::{Model, RadianceScaling, Shading};
 use crate::surface::NoiseRelief;
+use crate::surface::form_lines::LineSettings;
 
 rilievo_engine::named! {
     /// Kinds of new layers.
@@ -17,6 +18,7 @@ rilievo_engine::named! {
     pub enum NewLayer {
         Paint = "paint" => "Paint layer",
         Strokes = "strokes" => "Stroke layer",
+        Lines = "lines" => "Form lines",
         Fill = "fill" => "Fill layer",
         Gradient = "gradient" => "Gradient layer",
         Shading = "shading" => "Shading layer",
@@ -52,6 +54,12 @@ pub(super) fn lit_layer(model: Model, document: &Document) -> Layer {
     layer
 }
 
+/// What lengths of a canvas of 1024 px are multiplied by on another: finer ones would not be seen,
+/// nor coarser ones look drawn.
+fn on_canvas(size: Size) -> f32 {
+    (size.longer_side() / 1024.0).max(0.5).min(8.0)
+}
+
 /// “ambient-occlusion” as the name of a layer.
 fn model_name(model: Model) -> String {
     let word = if model == Model::Painter { "painter's light" } else { model.name() };
@@ -69,6 +77,10 @@ pub(super) fn make_layer(
     let (name, content) = match kind {
         NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),
         NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
+        NewLayer::Lines => {
+            let lines = FormDrawing::new(FormPattern::Lines(LineSettings::DEFAULT));
+            ("Form lines", Content::FormDrawing(Live::new(lines.scaled(on_canvas(size)))))
+        }
         NewLayer::Fill => (
             "Fill",
             Content::Fill(

@@ -3,7 +3,7 @@
 
 use super::LayerAction;
 use super::steps::homed;
-use crate::document::{Content, Document, Layer, LayerId, Mesh};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock, Mesh};
 use crate::io::recipe::{LiveLook, PaintedBall};
 use crate::session::LayerPaths;
 use crate::shading::Model;
@@ -72,6 +72,15 @@ impl LayerAction {
                 match layer.find(document).is_some_and(shows_ball) {
                     true => Ok(()),
                     false => Err("Select a shading layer of a lit sphere first."),
+                }
+            }
+            LayerAction::MakeStrokes { layer } | LayerAction::DrawWith { layer } => {
+                let is_drawing =
+                    |layer: &&Arc<Layer>| matches!(layer.content, Content::FormDrawing(_));
+                match layer.find(document).filter(is_drawing) {
+                    None => Err("Select a layer of form lines first."),
+                    Some(layer) if layer.lock == LayerLock::All => Err("The layer is locked."),
+                    Some(_) => Ok(()),
                 }
             }
             LayerAction::Home { layer, part } => {

@@ -240,7 +240,7 @@ impl Drawn for String {
         let facts = &dice.facts;
         let known = match (dice.word, dice.field) {
             (_, "part") => facts.parts.iter().map(|part| part.id.clone()).collect(),
-            ("preset", _) => facts.presets.clone(),
+            ("preset" | "drawn with", _) => facts.presets.clone(),
             ("keep" | "take" | "forget", _) => ["a", "b", "sky"].map(str::to_owned).to_vec(),
             ("overlay", _) => facts.views.clone(),
             ("look", _) => LiveLook::keys().map(str::to_owned).collect(),

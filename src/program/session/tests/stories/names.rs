@@ -59,7 +59,10 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         Transformed { .. } | Sampled { .. } => &["transform"],
         Unliquified {} => &["liquify"],
         PassThrough { .. } => &["passing through"],
-        Fill { .. } => &["color"],
+        Fill { .. } => &["color", "lines or how they are drawn"],
+        Lines { .. } | Hand { .. } | LineSize { .. } | DrawnWith { .. } => {
+            &["lines or how they are drawn"]
+        }
         Anchors { .. } | Power { .. } | Adjusted { .. } => &["picture or how it lies"],
         Bend { .. } | Pieces { .. } | Filtered { .. } => &["picture or how it lies", "gradient"],
         Place { .. } | Beyond { .. } => &["picture or how it lies", "detail"],

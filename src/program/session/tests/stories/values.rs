@@ -11,14 +11,15 @@ use crate::math::{DVec2, Range, Size};
 use crate::paint::adjustment::{
     ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
 };
-use crate::paint::{Adjust, BrushMode, ColorAdjustment, GradientStop, Placement};
+use crate::paint::{Adjust, BrushMode, ColorAdjustment, DrawingHand, GradientStop, Placement};
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
 use crate::shading::{
-    BallStrokes, FeatureScale, Features, Light, LightKind, LightSetting, Painter, Reference,
+    BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, Reference,
     Scaling, Shadows, Term,
 };
+use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::surface::{Anchor, NoiseRelief, Operator};
@@ -215,7 +216,7 @@ impl Drawn for Term {
 }
 
 /// Every number of a table, somewhere in its range.
-fn settings<T>(dice: &mut Dice, table: &'static [LightSetting<T>], mut all: T) -> T {
+fn settings<T>(dice: &mut Dice, table: &'static [NumberSetting<T>], mut all: T) -> T {
     for setting in table.iter().filter(|_| dice.is(40)).collect::<Vec<_>>() {
         let (low, high) = (*setting.range.start(), setting.range.end().min(60.0));
         (setting.set)(&mut all, dice.within(low, high));
@@ -235,6 +236,22 @@ impl Drawn for BallStrokes {
     fn drawn(dice: &mut Dice) -> Self {
         let numbers = settings(dice, BallStrokes::SETTINGS, BallStrokes::DEFAULT);
         BallStrokes { on: dice.is(80), ..numbers }
+    }
+}
+
+impl Drawn for LineSettings {
+    fn drawn(dice: &mut Dice) -> Self {
+        let numbers = settings(dice, LineSettings::SETTINGS, LineSettings::DEFAULT);
+        let with = |kinds: LineKinds, (kind, is_in)| kinds.with(kind, is_in);
+        let kinds = LineKind::ALL.map(|(kind, _)| (kind, dice.is(50)));
+        let kinds = kinds.into_iter().fold(LineKinds::NONE, with);
+        LineSettings { kinds, light: dice.value(dice.word, "light"), ..numbers }
+    }
+}
+
+impl Drawn for DrawingHand {
+    fn drawn(dice: &mut Dice) -> Self {
+        settings(dice, DrawingHand::SETTINGS, DrawingHand::DEFAULT)
     }
 }
 

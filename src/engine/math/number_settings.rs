@@ -1,10 +1,10 @@
 //! Tables of numbers: name, words, range and default of each in one place, next to its type, which
-//! readers, writers, checks, sliders and replays ask. Floor 3.
+//! readers, writers, checks, sliders and replays ask. Floor 0.
 
-use crate::math::Range;
+use super::Range;
 
 /// One number of a group of settings.
-pub struct LightSetting<T> {
+pub struct NumberSetting<T> {
     /// Its name in documents.
     pub name: &'static str,
     /// Its name in the window.
@@ -19,7 +19,7 @@ pub struct LightSetting<T> {
     pub set: fn(&mut T, f32),
 }
 
-impl<T> LightSetting<T> {
+impl<T> NumberSetting<T> {
     /// Sets it to the nearest number that it may be; what is not finite leaves it as it is.
     pub fn put(&self, settings: &mut T, to: f32) {
         if to.is_finite() {
@@ -30,7 +30,7 @@ impl<T> LightSetting<T> {
 
 /// Declares a struct of numbers with their table, `SETTINGS`, and their defaults; after `and`,
 /// fields of other types.
-macro_rules! settings {
+macro_rules! number_settings {
     (
         $(#[$meta:meta])*
         $vis:vis struct $type:ident {
@@ -47,7 +47,7 @@ macro_rules! settings {
 
         impl $type {
             /// Its numbers.
-            pub const SETTINGS: &[$crate::shading::LightSetting<$type>] = &[$($crate::shading::LightSetting {
+            pub const SETTINGS: &[$crate::math::NumberSetting<$type>] = &[$($crate::math::NumberSetting {
                 name: stringify!($name),
                 label: $label,
                 hint: $hint,
@@ -66,4 +66,4 @@ macro_rules! settings {
         }
     };
 }
-pub(crate) use settings;
+pub(crate) use number_settings;

@@ -1,0 +1,140 @@
+//! Drawings by the form: strokes of a brush along the lines that a surface has. Floor 3. Here: what
+//! such a drawing is, and its strokes, which are made once for a scene; `hand` is how a hand follows
+//! a line. Not here: where the lines are (`surface::form_lines`), how strokes look (`stroke`).
+
+mod hand;
+
+#[cfg(test)]
+mod tests;
+
+pub use hand::DrawingHand;
+
+use super::brush::Brush;
+use super::dynamics::{Curve, Dynamics, Input, Property};
+use super::scene::Scene;
+use super::stroke::Stroke;
+use crate::math::srgb::Color;
+use crate::surface::form_lines::LineSettings;
+use hand::LightOnLines;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FormPattern {
+    /// Lines where an illustrator puts them.
+    Lines(LineSettings),
+}
+
+/// A drawing by the form: it follows its surface.
+#[derive(Clone, PartialEq)]
+pub struct FormDrawing {
+    /// What is drawn.
+    pub pattern: FormPattern,
+    /// How a hand follows its lines.
+    pub hand: DrawingHand,
+    /// The brush of every line.
+    pub brush: Brush,
+    /// Its color.
+    pub color: Color,
+    /// Its strokes on the scene that they were last made for.
+    pub made: MadeStrokes,
+}
+
+impl FormDrawing {
+    /// The color of ink.
+    pub const INK: Color = Color { r: 0x15, g: 0x15, b: 0x1a, a: 255 };
+
+    /// A pattern in ink, as it begins.
+    pub fn new(pattern: FormPattern) -> Self {
+        Self {
+            pattern,
+            hand: DrawingHand::DEFAULT,
+            brush: Self::pen(),
+            color: Self::INK,
+            made: MadeStrokes::default(),
+        }
+    }
+
+    /// The pen that lines begin with: a nib that pressure widens, black at once.
+    pub fn pen() -> Brush {
+        let dynamics = Dynamics::none().with(Property::Size, Input::Pressure, Curve::Share(0.9));
+        Brush { size: 4.0, hardness: 0.85, spacing: 0.1, dynamics, ..Brush::default() }
+    }
+
+    /// The same on a canvas `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let pattern = match &self.pattern {
+            FormPattern::Lines(lines) => FormPattern::Lines(lines.scaled(factor)),
+        };
+        let (hand, brush) = (self.hand.scaled(factor), self.brush.scaled(factor));
+        Self { pattern, hand, brush, color: self.color, made: MadeStrokes::default() }
+    }
+
+    /// Its strokes on a scene, the lowest first; none without a surface. Those of a far side are
+    /// those of the scene in front.
+    pub fn strokes(&self, scene: &Scene) -> Arc<[Arc<Stroke>]> {
+        let front = scene.front();
+        if let Some(known) = self.made.on(&front) {
+            return known;
+        }
+        let strokes: Arc<[Arc<Stroke>]> = self.drawn(&front).into();
+        self.made.keep(&front, &strokes);
+        strokes
+    }
+
+    fn drawn(&self, scene: &Scene) -> Vec<Arc<Stroke>> {
+        let Some(surface) = scene.surface.as_deref() else { return Vec::new() };
+        match &self.pattern {
+            FormPattern::Lines(settings) => {
+                let light = LightOnLines { surface, light: settings.light };
+                let lines = surface.form_lines(settings);
+                lines.lines.iter().map(|line| self.hand.stroke(self, line, &light)).collect()
+            }
+        }
+    }
+}
+
+/// Strokes that were made for a scene. A clone has none, and all count as equal: they follow from
+/// what is around them.
+#[derive(Default)]
+pub struct MadeStrokes(Mutex<Option<SceneStrokes>>);
+
+/// A scene, and the strokes on it.
+type SceneStrokes = (Scene, Arc<[Arc<Stroke>]>);
+
+impl Clone for MadeStrokes {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl PartialEq for MadeStrokes {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl MadeStrokes {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Option<SceneStrokes>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn on(&self, scene: &Scene) -> Option<Arc<[Arc<Stroke>]>> {
+        let known = self.lock();
+        known.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, strokes)| strokes.clone())
+    }
+
+    fn keep(&self, scene: &Scene, strokes: &Arc<[Arc<Stroke>]>) {
+        *self.lock() = Some((scene.clone(), strokes.clone()));
+    }
+
+    /// Those that were last made, whatever for.
+    pub fn last(&self) -> Option<Arc<[Arc<Stroke>]>> {
+        self.lock().as_ref().map(|(_, strokes)| strokes.clone())
+    }
+
+    /// Drops them: they can be made again.
+    pub fn clear(&self) {
+        *self.lock() = None;
+    }
+}

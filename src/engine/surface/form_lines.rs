@@ -1,0 +1,201 @@
+//! Form lines: where an illustrator puts a line on a surface, as polylines with places between
+//! pixels. Floor 2. Here: which lines there are, what is asked of them, and the cache. `outlines`
+//! traces broken links, `fields` the curves of smooth forms, `chains` joins the steps of both, and
+//! `tidy` leaves those that a hand would draw. Not here: strokes along them (`paint::form_strokes`).
+
+mod chains;
+mod fields;
+mod outlines;
+mod smooth;
+mod tidy;
+
+#[cfg(test)]
+mod tests;
+
+pub use smooth::SmoothNormals;
+
+use super::Surface;
+use super::cache::HeapSize;
+use super::operator::UnwrapSettings;
+use crate::math::number_settings::number_settings;
+use crate::math::{Vec2, Vec3};
+use fields::FormCurves;
+use std::sync::Arc;
+
+crate::named! {
+    /// Why there is a line. In this order: of two lines at one place, the first stays.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum LineKind {
+        /// Where one form ends before another, or before nothing.
+        Outline = "outlines" => ("Outlines", "Where a form ends before another, or before nothing"),
+        /// Where the surface has an edge.
+        Crease = "creases" => ("Creases", "Edges of the form"),
+        /// Where parts meet without a step.
+        Border = "borders" => ("Borders", "Where parts meet without a step"),
+        /// Along the bottom of a hollow (Judd et al. 2007).
+        Valley = "valleys" => ("Valleys", "Along hollows"),
+        /// Where the form would soon hide what is behind it (DeCarlo et al. 2003).
+        Suggestive = "suggestive" => ("Suggestive contours", "Where the form would soon be an outline"),
+        /// Along a crest (Judd et al. 2007).
+        Ridge = "ridges" => ("Ridges", "Along crests"),
+        /// Where the light grazes the form.
+        Light = "light" => ("Edge of light", "Where light ends and shade begins"),
+        /// Wires around the form: lines of the plane that it unwraps to.
+        Wire = "wires" => ("Wires", "Lines around the form, equally far apart on it"),
+    }
+}
+
+/// Which kinds of lines are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LineKinds(u8);
+
+impl LineKinds {
+    /// No kind.
+    pub const NONE: Self = Self(0);
+    /// Those of a pen drawing.
+    pub const PEN: Self = Self(0b1_1111);
+
+    /// Whether a kind is among them.
+    pub const fn has_kind(self, kind: LineKind) -> bool {
+        self.0 >> kind as u8 & 1 == 1
+    }
+
+    /// With a kind, or without it.
+    pub const fn with(self, kind: LineKind, is_in: bool) -> Self {
+        let bit = 1 << kind as u8;
+        Self(if is_in { self.0 | bit } else { self.0 & !bit })
+    }
+}
+
+number_settings! {
+    /// What is asked of lines. Lengths are canvas px.
+    pub struct LineSettings {
+        /// σ: forms smaller than this get no line, px.
+        smooth: "Smallest form", "Forms smaller than this get no line, px", 0.5..=50.0, 2.0;
+        /// How faint a line may be.
+        detail: "Detail", "How faint a fold may be and still get a line", 0.0..=1.0, 0.5;
+        /// The length of the shortest line, px.
+        shortest: "Shortest line", "Shorter lines are left out, px", 0.0..=1000.0, 12.0;
+        /// How far lines stand back behind what passes in front of them, px.
+        gap: "Gap behind", "How far lines stand back behind what passes in front of them, px", 0.0..=100.0, 0.0;
+        /// How much light the edge of light has.
+        lit: "Light at its edge", "How much light there is where the edge of light is drawn", 0.0..=1.0, 0.5;
+        /// The distance between wires, px on the surface.
+        wires: "Wires apart", "The distance between wires, px on the surface", 4.0..=2000.0, 40.0;
+        and
+        /// Which there are.
+        kinds: LineKinds = LineKinds::PEN;
+        /// Toward the light, camera space (y up), any length.
+        light: Vec3 = Vec3::new(-0.5, 0.6, 0.62);
+    }
+}
+
+impl LineSettings {
+    /// The same on a canvas `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut next = *self;
+        for setting in Self::SETTINGS.iter().filter(|s| !["detail", "lit"].contains(&s.name)) {
+            setting.put(&mut next, (setting.get)(self) * factor);
+        }
+        next
+    }
+
+    fn key(&self) -> LineKey {
+        let is_lit = self.kinds.has_kind(LineKind::Light);
+        let light = if is_lit { self.light.normalize_or(Vec3::Z).to_array() } else { [0.0; 3] };
+        let [x, y, z] = light.map(f32::to_bits);
+        let own = [self.smooth, self.detail, self.shortest, self.gap, self.wires];
+        let [a, b, c, d, e] = own.map(f32::to_bits);
+        let lit = if is_lit { self.lit.to_bits() } else { 0 };
+        LineKey { kinds: self.kinds, bits: [a, b, c, d, e, lit, x, y, z] }
+    }
+}
+
+/// What tells lines from others of the same surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::surface) struct LineKey {
+    kinds: LineKinds,
+    bits: [u32; 9],
+}
+
+/// A point of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinePoint {
+    /// Canvas px.
+    pub at: Vec2,
+    /// How clear the line is there, `[0, 1]`.
+    pub strength: f32,
+}
+
+/// A line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FormLine {
+    /// Why it is there.
+    pub kind: LineKind,
+    /// Its points, about a pixel apart. What lies behind an outline is on the right of it (y down).
+    pub points: Vec<LinePoint>,
+    /// It ends where it begins.
+    pub is_closed: bool,
+}
+
+impl FormLine {
+    /// Its length, px.
+    pub fn length_px(&self) -> f32 {
+        let steps = self.points.windows(2).map(|pair| pair[0].at.distance(pair[1].at));
+        let (first, last) = (self.points.first(), self.points.last());
+        let closing = first.zip(last).filter(|_| self.is_closed);
+        steps.sum::<f32>() + closing.map_or(0.0, |(a, b)| a.at.distance(b.at))
+    }
+}
+
+/// The lines of a surface.
+#[derive(Debug, Default, PartialEq)]
+pub struct FormLines {
+    /// Those of one kind after the other.
+    pub lines: Vec<FormLine>,
+}
+
+impl HeapSize for FormLines {
+    fn heap_bytes(&self) -> u64 {
+        let points = |line: &FormLine| line.points.len() * size_of::<LinePoint>();
+        let lines = self.lines.iter().map(|line| size_of::<FormLine>() + points(line));
+        lines.sum::<usize>() as u64
+    }
+}
+
+impl FormLines {
+    fn of(surface: &Surface, settings: &LineSettings) -> Self {
+        let mut lines = outlines::trace(surface, settings);
+        let is_smooth = |kind| settings.kinds.has_kind(kind);
+        let needs_normals = [LineKind::Valley, LineKind::Suggestive, LineKind::Ridge]
+            .into_iter()
+            .chain([LineKind::Light])
+            .any(is_smooth);
+        if needs_normals {
+            let normals = surface.smooth_normals(settings.smooth);
+            lines.extend(FormCurves { surface, normals: &normals, settings }.trace());
+        }
+        if is_smooth(LineKind::Wire) {
+            let unwrapped = surface.unwrapped(UnwrapSettings { amount: 1.0, smooth_px: 2.0 });
+            lines.extend(fields::wires(surface, &unwrapped, settings));
+        }
+        Self { lines: tidy::tidied(lines, settings) }
+    }
+}
+
+impl Surface {
+    /// The lines of the surface, cached. Nothing is differenced across a broken link.
+    pub fn form_lines(&self, settings: &LineSettings) -> Arc<FormLines> {
+        const KEPT: usize = 4;
+        let compute = |_| FormLines::of(self, settings);
+        self.derived.form_lines.get_or_compute(settings.key(), KEPT, compute)
+    }
+
+    /// Its normals, blurred within each piece. Cached.
+    pub fn smooth_normals(&self, smooth_px: f32) -> Arc<SmoothNormals> {
+        const KEPT: usize = 2;
+        let smooth_px = smooth_px.max(0.0).min(0.25 * self.size().longer_side());
+        let compute = |_| SmoothNormals::of(self, smooth_px);
+        self.derived.smooth_normals.get_or_compute(smooth_px.to_bits(), KEPT, compute)
+    }
+}

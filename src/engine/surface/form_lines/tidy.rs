@@ -1,0 +1,357 @@
+//! What is left of traced lines: those that are clear enough, smooth, joined over gaps, of some
+//! length, and no two at one place. Floor 2. Not here: tracing (`outlines`, `fields`).
+
+mod line_grid;
+
+use super::{FormLine, LineKind, LinePoint, LineSettings};
+use crate::math::Vec2;
+use line_grid::{NearPoint, NearPoints};
+use std::collections::HashMap;
+
+/// A line as it was traced.
+#[derive(Clone, Debug)]
+pub struct RawLine {
+    pub kind: LineKind,
+    pub points: Vec<LinePoint>,
+    pub is_closed: bool,
+}
+
+/// From one point to the next, px.
+const STEP_PX: f32 = 1.0;
+/// A line starts where it is clearer than the first, and goes on where it is clearer than the
+/// second of it.
+const FADES_TO: f32 = 0.35;
+/// Gaps that are closed, px, and the cosine of the angle within which both sides agree: 20°.
+const JOIN_PX: f32 = 3.0;
+const JOIN_COS: f32 = 0.94;
+/// The cosine from which a line turns a corner, 45°, and how far both ways it is measured, px.
+const CORNER_COS: f32 = 0.7;
+const CORNER_PX: usize = 5;
+/// Two lines nearer than this are one, px, where the cosine of their angle is at least this.
+const DOUBLE_PX: f32 = 2.0;
+const DOUBLE_COS: f32 = 0.7;
+/// Points at the ends of a line that double nothing: other lines go on there.
+const ENDS: usize = 3;
+
+/// Lines as a hand would draw them, by kind, the longest first.
+pub fn tidied(lines: Vec<RawLine>, settings: &LineSettings) -> Vec<FormLine> {
+    let clear = lines.into_iter().flat_map(|line| clear_runs(line, settings.detail));
+    let smooth = clear.flat_map(|line| {
+        let even = RawLine { points: resampled(&line.points, line.is_closed), ..line };
+        split_at_corners(even).into_iter().map(smoothed)
+    });
+    let joined = joined_over_gaps(smooth.collect());
+    let mut long: Vec<FormLine> =
+        joined.into_iter().map(to_line).filter(|line| is_long(line, settings)).collect();
+    // Ties are broken by place, so that the order of tracing does not matter.
+    let key = |line: &FormLine| {
+        let first = line.points.first().map_or([0; 2], |p| p.at.to_array().map(f32::to_bits));
+        (line.kind, std::cmp::Reverse(line.points.len()), first)
+    };
+    long.sort_by_key(key);
+    let mut known = NearPoints::default();
+    let mut left = Vec::new();
+    for (i, line) in long.into_iter().enumerate() {
+        for part in without_doubles(line, &known, settings) {
+            if is_long(&part, settings) {
+                known.add(i as u32, part.kind, &part.points);
+                left.push(part);
+            }
+        }
+    }
+    if settings.gap > 0.0 {
+        left = behind(left, settings);
+    }
+    left
+}
+
+fn is_long(line: &FormLine, settings: &LineSettings) -> bool {
+    line.points.len() > 2 && line.length_px() >= settings.shortest
+}
+
+fn to_line(raw: RawLine) -> FormLine {
+    FormLine { kind: raw.kind, points: raw.points, is_closed: raw.is_closed }
+}
+
+/// The kinds that fade out.
+fn is_fading(kind: LineKind) -> bool {
+    matches!(kind, LineKind::Valley | LineKind::Suggestive | LineKind::Ridge)
+}
+
+/// The runs of a line that are clear enough.
+fn clear_runs(line: RawLine, detail: f32) -> Vec<RawLine> {
+    if !is_fading(line.kind) {
+        return vec![line];
+    }
+    let high = (0.95 - 0.9 * detail).max(0.02);
+    let low = high * FADES_TO;
+    let runs = runs(line, |_, point| point.strength >= low);
+    let is_clear = |run: &RawLine| run.points.iter().any(|point| point.strength >= high);
+    runs.into_iter().filter(is_clear).collect()
+}
+
+/// The runs of points that are kept. A loop that is cut begins after a cut.
+fn runs(mut line: RawLine, keeps: impl Fn(usize, &LinePoint) -> bool) -> Vec<RawLine> {
+    let mut kept: Vec<bool> = line.points.iter().enumerate().map(|(i, p)| keeps(i, p)).collect();
+    if kept.iter().all(|kept| *kept) {
+        return vec![line];
+    }
+    if line.is_closed {
+        let first = kept.iter().position(|kept| !kept).unwrap_or(0);
+        line.points.rotate_left(first);
+        kept.rotate_left(first);
+    }
+    let mut all = Vec::new();
+    let mut run = Vec::new();
+    for (point, kept) in line.points.iter().zip(kept.iter().copied()) {
+        if kept {
+            run.push(*point);
+        } else if !run.is_empty() {
+            all.push(std::mem::take(&mut run));
+        }
+    }
+    all.push(run);
+    let to_raw = |points| RawLine { kind: line.kind, points, is_closed: false };
+    all.into_iter().filter(|points: &Vec<LinePoint>| points.len() > 1).map(to_raw).collect()
+}
+
+/// Points a pixel apart along a line.
+fn resampled(points: &[LinePoint], is_closed: bool) -> Vec<LinePoint> {
+    let mut path = points.to_vec();
+    if is_closed {
+        path.extend(points.first().copied());
+    }
+    let length: f32 = path.windows(2).map(|pair| pair[0].at.distance(pair[1].at)).sum();
+    let count = (length / STEP_PX).round().max(1.0) as usize;
+    let step = length / count as f32;
+    let mut even = Vec::with_capacity(count + 1);
+    let (mut left, mut wanted) = (0.0, 0.0);
+    for pair in path.windows(2) {
+        let way = pair[0].at.distance(pair[1].at);
+        while wanted <= left + way && even.len() < count {
+            let t = if way > 0.0 { ((wanted - left) / way).clamp(0.0, 1.0) } else { 0.0 };
+            let strength = pair[0].strength + t * (pair[1].strength - pair[0].strength);
+            even.push(LinePoint { at: pair[0].at.lerp(pair[1].at, t), strength });
+            wanted += step;
+        }
+        left += way;
+    }
+    if !is_closed {
+        even.extend(path.last().copied());
+    }
+    even
+}
+
+/// The pieces between sharp corners.
+fn split_at_corners(mut line: RawLine) -> Vec<RawLine> {
+    let n = line.points.len();
+    let splits = matches!(line.kind, LineKind::Outline | LineKind::Crease | LineKind::Border);
+    if !splits || n < 4 * CORNER_PX {
+        return vec![line];
+    }
+    let cos = |i: usize| {
+        let at = |k: isize| {
+            let k = i as isize + k;
+            let k =
+                if line.is_closed { k.rem_euclid(n as isize) } else { k.clamp(0, n as isize - 1) };
+            line.points[k as usize].at
+        };
+        let reach = CORNER_PX as isize;
+        let is_end = !line.is_closed && (i < CORNER_PX || i + CORNER_PX >= n);
+        let turn = |a: Vec2, b: Vec2| a.normalize_or_zero().dot(b.normalize_or_zero());
+        if is_end { 1.0 } else { turn(at(0) - at(-reach), at(reach) - at(0)) }
+    };
+    let turns: Vec<f32> = (0..n).map(cos).collect();
+    let is_corner = |i: usize| {
+        let near = (1..=CORNER_PX).all(|k| {
+            let before = turns[(i + n - k) % n];
+            let after = turns[(i + k) % n];
+            turns[i] <= before && turns[i] < after
+        });
+        turns[i] < CORNER_COS && near
+    };
+    let mut corners: Vec<usize> = (0..n).filter(|&i| is_corner(i)).collect();
+    let Some(&first) = corners.first() else { return vec![line] };
+    if line.is_closed {
+        line.points.rotate_left(first);
+        line.points.extend(line.points.first().copied());
+        corners = corners.into_iter().skip(1).map(|i| i - first).collect();
+    }
+    corners.push(line.points.len() - 1);
+    let mut from = 0;
+    let mut pieces = Vec::new();
+    for to in corners {
+        let points = line.points[from..=to].to_vec();
+        pieces.push(RawLine { kind: line.kind, points, is_closed: false });
+        from = to;
+    }
+    pieces
+}
+
+/// Smooth without shrinking (Taubin 1995); ends stay.
+fn smoothed(mut line: RawLine) -> RawLine {
+    const PASSES: usize = 4;
+    let n = line.points.len();
+    if n < 5 {
+        return line;
+    }
+    for pass in 0..2 * PASSES {
+        let share = if pass % 2 == 0 { 0.5 } else { -0.51 };
+        let from: Vec<LinePoint> = line.points.clone();
+        for (i, point) in line.points.iter_mut().enumerate() {
+            let (before, after) = match (i, line.is_closed) {
+                (0, false) => continue,
+                (i, false) if i + 1 == n => continue,
+                (i, _) => (from[(i + n - 1) % n], from[(i + 1) % n]),
+            };
+            point.at += share * (0.5 * (before.at + after.at) - from[i].at);
+            let mean = 0.5 * (before.strength + after.strength);
+            point.strength += 0.5 * (mean - from[i].strength);
+        }
+    }
+    line
+}
+
+/// An end of a line: which, and whether it is its last point.
+type LineEnd = (usize, bool);
+
+/// Lines of one kind whose ends are near and point at each other, as one.
+fn joined_over_gaps(lines: Vec<RawLine>) -> Vec<RawLine> {
+    let end = |(i, is_last): LineEnd| {
+        let points = &lines[i].points;
+        let far = points.len().saturating_sub(1).min(4);
+        let (at, from) = if is_last {
+            (points[points.len() - 1].at, points[points.len() - 1 - far].at)
+        } else {
+            (points[0].at, points[far].at)
+        };
+        (at, (at - from).normalize_or_zero())
+    };
+    let cell = |at: Vec2| (at / JOIN_PX).floor().as_ivec2();
+    let mut grid: HashMap<(i32, i32), Vec<LineEnd>> = HashMap::new();
+    let ends = || {
+        let open = lines.iter().enumerate().filter(|(_, l)| !l.is_closed && l.points.len() > 1);
+        open.flat_map(|(i, _)| [(i, false), (i, true)])
+    };
+    for own in ends() {
+        let at = cell(end(own).0);
+        grid.entry((at.x, at.y)).or_default().push(own);
+    }
+    let mut pairs: Vec<(f32, LineEnd, LineEnd)> = Vec::new();
+    for own in ends() {
+        let (at, out) = end(own);
+        let c = cell(at);
+        for other in (-1..=1)
+            .flat_map(|dy| (-1..=1).map(move |dx| (c.x + dx, c.y + dy)))
+            .filter_map(|c| grid.get(&c))
+            .flatten()
+            .copied()
+            .filter(|other| *other > own)
+        {
+            let (there, its_out) = end(other);
+            let gap = there - at;
+            let agrees = out.dot(-its_out) >= JOIN_COS
+                && (gap.length() < 0.5 || out.dot(gap.normalize_or_zero()) >= JOIN_COS);
+            let is_near = gap.length() <= JOIN_PX && lines[own.0].kind == lines[other.0].kind;
+            if is_near && agrees && own.0 != other.0 {
+                pairs.push((gap.length(), own, other));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut mates: HashMap<LineEnd, LineEnd> = HashMap::new();
+    for (_, a, b) in pairs {
+        if !mates.contains_key(&a) && !mates.contains_key(&b) {
+            mates.insert(a, b);
+            mates.insert(b, a);
+        }
+    }
+    strung(lines, &mates)
+}
+
+/// Lines strung together at the ends that are mates.
+fn strung(lines: Vec<RawLine>, mates: &HashMap<LineEnd, LineEnd>) -> Vec<RawLine> {
+    let mut used = vec![false; lines.len()];
+    let mut all = Vec::with_capacity(lines.len());
+    // First those that begin with an open end, then rings of lines.
+    for only_open in [true, false] {
+        for i in 0..lines.len() {
+            for is_last in [false, true] {
+                if used[i] || only_open && mates.contains_key(&(i, is_last)) {
+                    continue;
+                }
+                let mut line = RawLine { points: Vec::new(), ..lines[i].clone() };
+                let mut entered = (i, is_last);
+                loop {
+                    used[entered.0] = true;
+                    let mut points = lines[entered.0].points.clone();
+                    if entered.1 {
+                        points.reverse();
+                    }
+                    line.points.extend(points);
+                    match mates.get(&(entered.0, !entered.1)) {
+                        Some(next) if !used[next.0] => entered = *next,
+                        Some(next) => {
+                            line.is_closed |= *next == (i, is_last) && !only_open;
+                            break;
+                        }
+                        None => break,
+                    }
+                }
+                all.push(line);
+            }
+        }
+    }
+    all
+}
+
+/// The parts of a line that no line of an earlier kind, nor a longer one, runs along.
+fn without_doubles(line: FormLine, known: &NearPoints, settings: &LineSettings) -> Vec<FormLine> {
+    let near_px = match line.kind {
+        LineKind::Outline | LineKind::Wire => DOUBLE_PX,
+        LineKind::Crease | LineKind::Border => DOUBLE_PX + 1.0,
+        // Blurred normals turn along the rim of a form.
+        _ => DOUBLE_PX + 1.0 + settings.smooth,
+    };
+    let along = directions(&line.points, line.is_closed);
+    let is_double = |i: usize, point: &LinePoint| {
+        known.has_within(point.at, near_px, |other: &NearPoint| {
+            let reach = if other.kind == line.kind { DOUBLE_PX } else { near_px };
+            let is_wire = other.kind == LineKind::Wire || line.kind == LineKind::Wire;
+            !other.is_end
+                && !(is_wire && other.kind != line.kind)
+                && other.at.distance(point.at) < reach
+                && other.along.dot(along[i]).abs() >= DOUBLE_COS
+        })
+    };
+    let raw = RawLine { kind: line.kind, points: line.points, is_closed: line.is_closed };
+    runs(raw, |i, point| !is_double(i, point)).into_iter().map(to_line).collect()
+}
+
+/// Lines with gaps behind outlines in front of them.
+fn behind(lines: Vec<FormLine>, settings: &LineSettings) -> Vec<FormLine> {
+    let mut fronts = NearPoints::default();
+    for (i, line) in lines.iter().enumerate().filter(|(_, line)| line.kind == LineKind::Outline) {
+        fronts.add(i as u32, line.kind, &line.points);
+    }
+    let cut = |(i, line): (usize, FormLine)| {
+        let hides = |point: &LinePoint| {
+            let nearest = fronts.nearest(point.at, settings.gap, |o| o.line != i as u32);
+            nearest.is_some_and(|o| !o.is_end && o.along.perp_dot(point.at - o.at) > 0.5)
+        };
+        let raw = RawLine { kind: line.kind, points: line.points, is_closed: line.is_closed };
+        runs(raw, |_, point| !hides(point)).into_iter().map(to_line)
+    };
+    let parts = lines.into_iter().enumerate().flat_map(cut);
+    parts.filter(|line| is_long(line, settings)).collect()
+}
+
+/// The direction at each point, unit.
+fn directions(points: &[LinePoint], is_closed: bool) -> Vec<Vec2> {
+    let n = points.len();
+    let at = |i: isize| {
+        let i = if is_closed { i.rem_euclid(n as isize) } else { i.clamp(0, n as isize - 1) };
+        points[i as usize].at
+    };
+    (0..n as isize).map(|i| (at(i + 2) - at(i - 2)).normalize_or_zero()).collect()
+}

@@ -1,0 +1,91 @@
+//! Properties of drawings by the form: which lines, brush and color, the hand, the light. Floor 7.
+
+use super::setter::LayerSetter;
+use super::{colors, painter};
+use crate::io::recipe::presets;
+use crate::math::{Vec3, vec3};
+use crate::paint::{Brush, DrawingHand, FormDrawing, FormPattern};
+use crate::session::actions::LayerAction;
+use crate::session::{Property, Session};
+use crate::surface::form_lines::{LineKind, LineSettings};
+use crate::widgets::{NumberField, check, named, title};
+use eframe::egui::{self, Ui};
+
+/// The panel of one.
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    drawing: &FormDrawing,
+    has_surface: bool,
+    setter: &mut LayerSetter,
+) {
+    if !has_surface {
+        ui.weak("These lines need a shape: give the drawing one, or add maps.");
+    }
+    match drawing.pattern {
+        FormPattern::Lines(lines) => line_settings(ui, lines, setter),
+    }
+    brush(ui, session, drawing, setter);
+    title(ui, "Hand");
+    painter::settings(ui, DrawingHand::SETTINGS, drawing.hand, setter, |hand| Property::Hand {
+        hand,
+    });
+    let hint = "The lines become strokes, to be edited one by one";
+    if ui.button("Make strokes").on_hover_text(hint).clicked() {
+        setter.act(|layer| LayerAction::MakeStrokes { layer });
+    }
+}
+
+fn line_settings(ui: &mut Ui, lines: LineSettings, setter: &mut LayerSetter) {
+    title(ui, "Lines");
+    for (kind, _) in LineKind::ALL {
+        if let Some(on) = check(ui, kind.label(), kind.hint(), lines.kinds.has_kind(kind)) {
+            let kinds = lines.kinds.with(kind, on);
+            setter.set(Property::Lines { lines: LineSettings { kinds, ..lines } }, true);
+        }
+    }
+    painter::settings(ui, LineSettings::SETTINGS, lines, setter, |lines| Property::Lines { lines });
+    light(ui, lines.light, setter, |light| Property::Lines {
+        lines: LineSettings { light, ..lines },
+    });
+}
+
+/// Where the light comes from: its turn in the picture and its height above it.
+fn light(ui: &mut Ui, light: Vec3, setter: &mut LayerSetter, put: impl Fn(Vec3) -> Property) {
+    let to = light.normalize_or(Vec3::Z);
+    let (turn, height) = (to.y.atan2(to.x).to_degrees(), to.z.clamp(-1.0, 1.0).asin().to_degrees());
+    let toward = |turn: f32, height: f32| {
+        let (turn, height) = (turn.to_radians(), height.to_radians());
+        vec3(turn.cos() * height.cos(), turn.sin() * height.cos(), height.sin())
+    };
+    let field = |label, range, hint| NumberField::new(label, range, hint).degrees();
+    let turned = field("Light from", -180.0..=180.0, "0 right, 90 above").row(ui, turn);
+    setter.take(turned.map(|c| c.map(|turn| put(toward(turn, height)))));
+    // Straight from the front it would forget its turn.
+    let raised = field("Light height", 0.0..=89.0, "90 from the viewer").row(ui, height);
+    setter.take(raised.map(|c| c.map(|height| put(toward(turn, height)))));
+}
+
+fn brush(ui: &mut Ui, session: &Session, drawing: &FormDrawing, setter: &mut LayerSetter) {
+    title(ui, "Brush");
+    let changed = colors::button(ui, "Line color", drawing.color);
+    setter.take(changed.map(|c| c.map(|color| Property::Fill { color })));
+    let size = NumberField::new("Line width", Brush::HAND_SIZE, "At full pressure, px");
+    let changed = size.row(ui, drawing.brush.size);
+    setter.take(changed.map(|c| c.map(|to| Property::LineSize { to })));
+    let combo = egui::ComboBox::from_id_salt("brush of the lines").selected_text("Brushes");
+    let response = combo.show_ui(ui, |ui| {
+        for preset in presets().filter(|preset| !preset.brush.mode.is_retouching()) {
+            if ui.selectable_label(false, &preset.name).on_hover_text(&preset.about).clicked() {
+                setter.set(Property::DrawnWith { preset: preset.key }, true);
+            }
+        }
+    });
+    named(&response.response, "Brush of the lines");
+    let hint = "The brush and the color in hand draw the lines";
+    let can_draw = !session.tools.brush.mode.is_retouching();
+    let button = ui.add_enabled(can_draw, egui::Button::new("Use my brush"));
+    if button.on_hover_text(hint).clicked() {
+        setter.act(|layer| LayerAction::DrawWith { layer });
+    }
+}
