@@ -35,6 +35,7 @@ mod stamp;
 pub mod stroke;
 mod stroke_tile;
 mod surface_metric;
+pub mod text;
 mod tint;
 pub mod tip;
 
@@ -57,3 +58,4 @@ pub use scene::{ImageFilter, Scene};
 pub use selection::{Selection, StrokeSelection};
 pub use stabilizer::StabilizedPen;
 pub use stroke::{ActiveStrokes, Backdrop, Stroke};
+pub use text::{Text, TextAlign, TextRun, TextStyle};

@@ -27,7 +27,7 @@ pub use blend::{BlendMode, Mix, TileCoverage, TilePaint};
 pub use coverage::{CoverageGrid, CoverageTile, SelectionMode};
 pub use grid::TileGrid;
 pub use lattice::Lattice;
-pub use picture::Picture;
+pub use picture::{Picture, VectorDrawing};
 pub use planar::PlanarTile;
 pub use plane::Plane;
 pub use texture::{DeepTexture, Outside, Texture};

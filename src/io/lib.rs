@@ -30,6 +30,7 @@ pub mod replace;
 pub mod save;
 pub mod srgb_profile;
 pub mod svg;
+pub mod text;
 pub mod thumbnail;
 
 // The floors beneath, under their own names.

@@ -44,6 +44,7 @@ mod selections;
 mod shading;
 mod strokes;
 pub mod surface;
+mod texts;
 mod tips;
 pub mod transforms;
 pub mod value;

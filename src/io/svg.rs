@@ -7,8 +7,8 @@
 #![warn(missing_docs)]
 
 use super::{Budget, pixels::Painted};
-use crate::math::Size;
-use crate::raster::{Asset, Picture, TileGrid};
+use crate::math::{Size, Vec2, vec2};
+use crate::raster::{self, Asset, Picture, TileGrid};
 use crate::{Error, Result};
 use image::ImageReader;
 use resvg::usvg::fontdb::{Database, Family, Query};
@@ -22,6 +22,9 @@ use std::sync::{Arc, OnceLock};
 /// The least longer side of an SVG that is an image layer, px: it has no pixels of its own, and is
 /// seen from near.
 const LAYER_PX: f32 = 2048.0;
+
+/// How much larger than its own size it is at most for that.
+const MOST_ENLARGED: f32 = 64.0;
 
 /// Whether a file is an SVG drawing, by its first element.
 pub fn is_svg(bytes: &[u8]) -> bool {
@@ -47,11 +50,14 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let drawing = Drawing::parse(file, bytes, budget)?;
     let longer = drawing.tree.size().width().max(drawing.tree.size().height());
     let most = budget.side_px.min(8192) as f32;
-    let (size, texels) = drawing.render(file, longer.max(LAYER_PX).min(most) / longer, budget)?;
+    let scale = longer.max(LAYER_PX.min(MOST_ENLARGED * longer)).min(most) / longer;
+    let (size, texels) = drawing.render(file, scale, budget)?;
     let texels = texels.as_chunks().0.to_vec();
     let picture = Picture::srgb8(size, texels);
     let picture = picture.ok_or_else(|| Error::decode(file, "the drawing has no pixels"))?;
-    Ok(Picture { encoded: Some(drawing.outlined(bytes)), ..picture })
+    let encoded = Some(drawing.outlined(bytes));
+    let drawing = Some(Arc::new(drawing) as Arc<dyn raster::VectorDrawing>);
+    Ok(Picture { encoded, drawing, ..picture })
 }
 
 /// Decodes an SVG as paint at its own size, its corner at a canvas pixel.
@@ -64,32 +70,52 @@ pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Re
 }
 
 /// An SVG that was parsed.
+#[derive(Debug)]
 struct Drawing {
     tree: Tree,
     has_text: bool,
 }
 
+impl raster::VectorDrawing for Drawing {
+    fn size(&self) -> Vec2 {
+        vec2(self.tree.size().width(), self.tree.size().height())
+    }
+
+    fn draw(&self, size: Size) -> Option<Vec<[u8; 4]>> {
+        let scale = size.width as f32 / self.tree.size().width();
+        let texels = self.paint(size, scale)?;
+        Some(texels.as_chunks().0.to_vec())
+    }
+}
+
+/// What an SVG holds, its text in the fonts of this machine.
+pub(super) fn tree(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Tree> {
+    let options = Options {
+        fontdb: if has_text(bytes) { fonts() } else { Arc::default() },
+        font_family: "sans-serif".into(),
+        image_href_resolver: embedded_only(*budget),
+        ..Options::default()
+    };
+    // The parser and the renderer are third-party code: a panic counts as a damaged file.
+    let parsed = catch_unwind(AssertUnwindSafe(|| Tree::from_data(bytes, &options)));
+    match parsed {
+        Ok(Ok(tree)) => Ok(tree),
+        Ok(Err(usvg::Error::InvalidSize)) => Err(Error::decode(
+            file,
+            "the SVG has no size: “width”, “height” and “viewBox” are missing or 0",
+        )),
+        Ok(Err(e)) => Err(Error::decode(file, format!("the SVG cannot be parsed ({e})"))),
+        Err(_) => Err(Error::decode(file, "the SVG is damaged")),
+    }
+}
+
+fn has_text(bytes: &[u8]) -> bool {
+    bytes.windows(5).any(|word| word == b"<text" || word == b":text")
+}
+
 impl Drawing {
     fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Self> {
-        let has_text = bytes.windows(5).any(|word| word == b"<text" || word == b":text");
-        let fonts = if has_text { fonts() } else { Arc::default() };
-        let options = Options {
-            fontdb: fonts,
-            font_family: "sans-serif".into(),
-            image_href_resolver: embedded_only(*budget),
-            ..Options::default()
-        };
-        // The parser and the renderer are third-party code: a panic counts as a damaged file.
-        let parsed = catch_unwind(AssertUnwindSafe(|| Tree::from_data(bytes, &options)));
-        match parsed {
-            Ok(Ok(tree)) => Ok(Self { tree, has_text }),
-            Ok(Err(usvg::Error::InvalidSize)) => Err(Error::decode(
-                file,
-                "the SVG has no size: “width”, “height” and “viewBox” are missing or 0",
-            )),
-            Ok(Err(e)) => Err(Error::decode(file, format!("the SVG cannot be parsed ({e})"))),
-            Err(_) => Err(Error::decode(file, "the SVG is damaged")),
-        }
+        Ok(Self { tree: tree(file, bytes, budget)?, has_text: has_text(bytes) })
     }
 
     /// Straight bytes at a scale.
@@ -100,17 +126,24 @@ impl Drawing {
         let size = budget.size(file, width, height)?;
         // The pixels twice, and layers of groups with opacity, masks or filters.
         budget.room(file, &format!("an SVG of {size} pixels"), 24 * size.area() as u64)?;
-        let damaged = || Error::decode(file, "the SVG cannot be painted");
-        let mut pixmap = Pixmap::new(size.width, size.height).ok_or_else(damaged)?;
+        let texels = self.paint(size, scale);
+        let texels = texels.ok_or_else(|| Error::decode(file, "the SVG cannot be painted"))?;
+        Ok((size, texels))
+    }
+
+    /// Straight bytes of a picture of a size, the drawing enlarged; `None` where it panics, or the
+    /// picture cannot be had.
+    fn paint(&self, size: Size, scale: f32) -> Option<Vec<u8>> {
+        let mut pixmap = Pixmap::new(size.width, size.height)?;
         catch_unwind(AssertUnwindSafe(|| {
             resvg::render(&self.tree, Transform::from_scale(scale, scale), &mut pixmap.as_mut());
         }))
-        .map_err(|_| damaged())?;
+        .ok()?;
         let mut rgba = pixmap.take();
         for texel in rgba.as_chunks_mut().0 {
             *texel = straight(*texel);
         }
-        Ok((size, rgba))
+        Some(rgba)
     }
 
     /// The file with its text as outlines: the same on every machine.
@@ -142,7 +175,7 @@ const EMBEDDED: &str = "Ubuntu";
 
 /// The fonts of this machine, and two of the program's own; read once, and only for a drawing with
 /// text.
-fn fonts() -> Arc<Database> {
+pub(super) fn fonts() -> Arc<Database> {
     static FONTS: OnceLock<Arc<Database>> = OnceLock::new();
     let load = || {
         let mut fonts = Database::new();

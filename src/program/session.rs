@@ -29,7 +29,7 @@ pub use property::Property;
 pub use view::CanvasView;
 
 use crate::Result;
-use crate::document::{Document, Layer};
+use crate::document::{Document, Layer, LayerId};
 use crate::io::fs::Disk;
 use crate::io::recipe::{BrushPreset, presets};
 use crate::io::replace::is_same_file;
@@ -66,6 +66,8 @@ pub struct Session {
     pub hides_selection: bool,
     /// Balls that are painted in documents of their own.
     balls: Vec<balls::BallLink>,
+    /// The text that the text tool was last pressed on.
+    pub writing: Option<Writing>,
     /// What was copied last.
     pub copied: Option<Copied>,
     /// A view of the surface shown over the picture, by its name.
@@ -91,6 +93,17 @@ pub struct Session {
     untitled: usize,
 }
 
+/// A place in a text where the hand wants to type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Writing {
+    /// The layer of the text.
+    pub layer: LayerId,
+    /// The bytes of the text before that place; `None`: all of it is to be replaced.
+    pub byte: Option<usize>,
+    /// Counts the presses.
+    pub turn: u32,
+}
+
 impl Default for Session {
     fn default() -> Self {
         let preset = "soft-round";
@@ -107,6 +120,7 @@ impl Default for Session {
             recent_colors: Vec::new(),
             hides_selection: false,
             balls: Vec::new(),
+            writing: None,
             copied: None,
             overlay: None,
             overlay_opacity: 0.85,

@@ -173,7 +173,8 @@ impl ToolSettings {
     }
 }
 
-/// The pen comes down. Hand and zoom do not concern documents: they start no gesture.
+/// The pen comes down. Hand and zoom do not concern documents, and texts take fonts, which the
+/// session has: they start no gesture.
 pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {
     match kind {
         ToolKind::Brush => stroke(context, pen, StrokePurpose::Paint),
@@ -197,7 +198,7 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         | ToolKind::Wand
         | ToolKind::SurfaceWand => select::press(kind, context, pen),
         ToolKind::Eyedropper => eyedropper::press(context, pen),
-        ToolKind::Hand | ToolKind::Zoom => (None, Outcome::Idle),
+        ToolKind::Text | ToolKind::Hand | ToolKind::Zoom => (None, Outcome::Idle),
     }
 }
 

@@ -16,6 +16,7 @@ mod parts;
 mod pointer;
 mod rulers;
 mod sheet;
+mod text_carets;
 mod unwrapped;
 mod wobble;
 

@@ -80,7 +80,8 @@ mod tests {
             }
         }
         for (tool, _) in crate::tools::ToolKind::ALL {
-            let letter = key(Key::from_name(&tool.key().to_string()).unwrap());
+            let mut letter = key(Key::from_name(&tool.key().to_string()).unwrap());
+            letter.modifiers.shift |= tool.is_key_shifted();
             assert_eq!(keys.insert(format!("{letter:?}"), tool.label()), None, "{}", tool.label());
         }
     }

@@ -47,8 +47,9 @@ impl KeyTarget {
         match self {
             KeyTarget::Command(command) => command.keys.to_vec(),
             KeyTarget::Tool(tool) => {
+                let held = if tool.is_key_shifted() { Modifiers::SHIFT } else { Modifiers::NONE };
                 let key = Key::from_name(&tool.key().to_string());
-                key.into_iter().map(|key| KeyboardShortcut::new(Modifiers::NONE, key)).collect()
+                key.into_iter().map(|key| KeyboardShortcut::new(held, key)).collect()
             }
         }
     }

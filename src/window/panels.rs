@@ -31,5 +31,6 @@ mod shaping;
 pub mod status;
 pub mod strokes;
 pub mod surface;
+pub mod text;
 pub mod tools;
 mod transform;

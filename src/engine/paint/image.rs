@@ -8,6 +8,7 @@ use super::{
     patches::Patches,
     scene::{ImageFilter, Scene},
     stamp::{StampCache, TipStamp},
+    text::Text,
 };
 use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::sampler::{Antialias, Bilinear, TapRule};
@@ -34,6 +35,15 @@ impl Placement {
     /// Covers the canvas, centered.
     pub fn covering(canvas: Size) -> Self {
         Self { center: canvas.center(), scale: 1.0, rotation: 0.0 }
+    }
+
+    /// A picture at 100 %, its middle at a point.
+    pub fn at_own_size(canvas: Size, picture: &Picture, center: Vec2) -> Self {
+        let pixels = vec2(picture.size.width as f32, picture.size.height as f32);
+        let cover = (canvas.width as f32 / pixels.x).max(canvas.height as f32 / pixels.y);
+        let scale = picture.own_size().x / pixels.x / cover;
+        let scale = scale.max(*Self::SCALE.start()).min(*Self::SCALE.end());
+        Self { center, scale, rotation: 0.0 }
     }
 
     /// Covers everything that the reflection operator looks up from anywhere on a shape that fits
@@ -92,7 +102,11 @@ pub struct PictureSource {
     pub picture: Picture,
     /// What is done to it before it is read.
     pub adjust: Adjust,
+    /// The words that it shows, if it is a text.
+    pub text: Option<Arc<Text>>,
     texture: Arc<OnceLock<Texture>>,
+    /// The texture of a drawing that is drawn 2, 4 and 8 times as large; `None` where it cannot be.
+    enlarged: Arc<[OnceLock<Option<Texture>>; 3]>,
     /// The same in floats, as long as it is in use.
     deep: Arc<Mutex<Weak<DeepTexture>>>,
     /// How closely it is read if it is antialiased.
@@ -104,7 +118,7 @@ pub struct PictureSource {
 impl PartialEq for PictureSource {
     /// The same picture with the same adjustments, whatever its name.
     fn eq(&self, other: &Self) -> bool {
-        self.adjust == other.adjust && self.picture == other.picture
+        self.adjust == other.adjust && self.picture == other.picture && self.text == other.text
     }
 }
 
@@ -119,7 +133,28 @@ impl PictureSource {
     /// A picture under its name in the document, and what is done to it.
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
         let (texture, deep, stamps) = (Arc::default(), Arc::default(), Arc::default());
-        Self { file, picture, adjust, texture, deep, rule: TapRule::AT_REST, stamps }
+        let (text, enlarged, rule) = (None, Arc::default(), TapRule::AT_REST);
+        Self { file, picture, adjust, text, texture, enlarged, deep, rule, stamps }
+    }
+
+    /// The same picture with other adjustments.
+    pub fn adjusted(&self, adjust: Adjust) -> Self {
+        let text = self.text.clone();
+        Self { text, ..Self::new(self.file.clone(), self.picture.clone(), adjust) }
+    }
+
+    /// Where it lies unless something else is said: a text at the size of its type in the middle of
+    /// the canvas, a picture over all of it.
+    pub fn default_placement(&self, canvas: Size) -> Placement {
+        match self.text {
+            Some(_) => Placement::at_own_size(canvas, &self.picture, canvas.center()),
+            None => Placement::covering(canvas),
+        }
+    }
+
+    /// What is beyond its edges unless something else is said.
+    pub fn default_outside(&self) -> Outside {
+        if self.text.is_some() { Outside::None } else { Outside::Mirror }
     }
 
     /// The same picture, read as closely as a rule demands if it is antialiased.
@@ -134,9 +169,10 @@ impl PictureSource {
         Self { texture: Arc::new(texture), ..self.clone() }
     }
 
-    /// Bytes of the texture, if it was made.
+    /// Bytes of the textures that were made.
     pub fn texture_bytes(&self) -> u64 {
-        self.texture.get().map_or(0, Texture::bytes)
+        let enlarged = self.enlarged.iter().filter_map(|texture| texture.get()?.as_ref());
+        self.texture.get().into_iter().chain(enlarged).map(Texture::bytes).sum()
     }
 
     /// The picture as a tip, with a softness in `[0, 1]`.
@@ -146,6 +182,31 @@ impl PictureSource {
 
     pub(super) fn stamps(&self) -> &StampCache {
         &self.stamps
+    }
+
+    /// The adjusted texture, of a drawing at the size at which a pixel reads no less than a texel.
+    ///
+    /// * `texels_per_px`: how many texels of the picture as it is a pixel is wide.
+    ///
+    /// An enlarged texture that cannot be had is the next smaller one.
+    pub fn texture_of(&self, texels_per_px: f32) -> &Texture {
+        if self.picture.drawing.is_none() || !(texels_per_px > 0.0) {
+            return self.texture();
+        }
+        let steps = (-texels_per_px.log2() - 1e-3).ceil().max(0.0).min(self.enlarged.len() as f32);
+        let made = (1..=steps as u32).rev().find_map(|step| self.enlarged(step));
+        made.unwrap_or_else(|| self.texture())
+    }
+
+    /// The texture of the drawing with sides 2^step times as long.
+    fn enlarged(&self, step: u32) -> Option<&Texture> {
+        let make = || {
+            let picture = self.picture.enlarged(1 << step)?;
+            let blur = self.adjust.blur * (1 << step) as f32;
+            let adjust = Adjust { blur: blur.min(*Adjust::BLUR.end()), ..self.adjust };
+            Some(Texture::new(&adjust.apply(&picture)))
+        };
+        self.enlarged[step as usize - 1].get_or_init(make).as_ref()
     }
 
     /// The adjusted texture.
@@ -201,6 +262,14 @@ impl PlacedImage {
         }
     }
 
+    /// The frame's px from those of the picture at 100 %, from its corner.
+    pub fn frame_from_own(&self, canvas: Size) -> Affine2 {
+        let picture = &self.source.picture;
+        let texels = picture.size.width as f32 / picture.own_size().x;
+        self.placement.texels_from_canvas(canvas, picture.size).inverse()
+            * Affine2::from_scale(Vec2::splat(texels))
+    }
+
     /// The same picture, bent.
     pub fn with_bend(self, bend: Bend) -> Self {
         Self { bend, ..self }
@@ -212,8 +281,19 @@ impl PlacedImage {
         if area.is_empty() {
             return None;
         }
-        let texture = self.source.texture();
+        let texture = self.texture_at(scene, area);
         SCRATCH.with_borrow_mut(|scratch| self.render_with(scratch, texture, scene, area))
+    }
+
+    /// The texture that an area reads.
+    fn texture_at(&self, scene: &Scene, area: Rect) -> &Texture {
+        if self.source.picture.drawing.is_none() {
+            return self.source.texture();
+        }
+        let from_frame = self.placement.texels_from_canvas(scene.size, self.source.picture.size);
+        let frame = BentFrame::of(&self.frame, area, (0, 0));
+        let [x, y] = (from_frame * frame.linear).matrix2.to_cols_array_2d();
+        self.source.texture_of(Vec2::from(x).length().min(Vec2::from(y).length()))
     }
 
     fn render_with(

@@ -122,6 +122,7 @@ fn transparent() -> Picture {
         texels: crate::raster::picture::Texels::Srgb8(texels),
         deep: None,
         encoded: None,
+        drawing: None,
     }
 }
 

@@ -3,7 +3,8 @@
 
 use super::Asset;
 use super::tile::deep::byte_of;
-use crate::math::{Size, srgb};
+use crate::math::{Size, Vec2, srgb, vec2};
+use std::fmt;
 use std::sync::Arc;
 
 /// Straight (not premultiplied) RGBA, row by row, the top row first. Cheap to clone.
@@ -19,6 +20,17 @@ pub struct Picture {
     /// The file it was decoded from, so that a project can keep the original bytes; `None` for a
     /// picture made here.
     pub encoded: Option<Asset>,
+    /// What it was drawn from, if that can be drawn larger.
+    pub drawing: Option<Arc<dyn VectorDrawing>>,
+}
+
+/// Something without pixels of its own, such as an SVG: its picture is one of its sizes.
+pub trait VectorDrawing: fmt::Debug + Send + Sync {
+    /// Its own sides, px.
+    fn size(&self) -> Vec2;
+    /// Draws it with sides of so many pixels: straight, encoded bytes, one for each pixel; `None`
+    /// where they cannot be had.
+    fn draw(&self, size: Size) -> Option<Vec<[u8; 4]>>;
 }
 
 /// The two kinds of light a file can hold.
@@ -55,6 +67,8 @@ impl PartialEq for Picture {
 impl Picture {
     /// The longest side that is read by default, px.
     pub const LONGEST_SIDE_PX: u32 = 32_768;
+    /// The longest side to which a drawing is drawn again, px.
+    pub const LONGEST_DRAWN_PX: u32 = 16_384;
     /// The most pixels that are read by default.
     pub const MOST_PX: usize = 268_435_456;
 
@@ -85,7 +99,23 @@ impl Picture {
     }
 
     fn of_texels(size: Size, texels: Texels) -> Self {
-        Self { size, texels, deep: None, encoded: None }
+        Self { size, texels, deep: None, encoded: None, drawing: None }
+    }
+
+    /// The sides at which it is seen at 100 %, px: of a drawing its own, however large it was drawn.
+    pub fn own_size(&self) -> Vec2 {
+        let pixels = vec2(self.size.width as f32, self.size.height as f32);
+        self.drawing.as_ref().map_or(pixels, |drawing| drawing.size())
+    }
+
+    /// The same drawing with sides `times` as long; `None` for pictures that have only the pixels
+    /// they have, and where these would be too many.
+    pub fn enlarged(&self, times: u32) -> Option<Self> {
+        let drawing = self.drawing.as_ref()?;
+        let side = |side: u32| side.checked_mul(times).filter(|s| *s <= Self::LONGEST_DRAWN_PX);
+        let size = Size::new(side(self.size.width)?, side(self.size.height)?);
+        let texels = drawing.draw(size)?;
+        Some(Self { encoded: self.encoded.clone(), ..Self::srgb8(size, texels)? })
     }
 
     /// It holds more than 8 bits a channel.

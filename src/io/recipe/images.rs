@@ -3,26 +3,30 @@
 
 use super::LayerReader;
 use super::value::RecipeValue;
-use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::range::STOPS;
 use crate::math::{Size, TURNS, UNIT, Vec2, srgb::Color, vec2};
 use crate::paint::{
-    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement,
+    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, Text,
 };
 use crate::raster::Outside;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, Bend, Operator, Weights};
+use crate::{Error, Result};
 use serde_json::Value;
+use std::sync::Arc;
 
 impl LayerReader<'_> {
     pub fn image(&mut self, fields: &mut Fields) -> Result<PlacedImage> {
         let source = self.picture_source(&fields.required("source")?)?;
-        let placement = self.placement(fields)?;
+        let by_itself = source.default_placement(self.size);
+        let placement =
+            fields.get("placement").map_or(Ok(by_itself), |node| placement(&node, by_itself))?;
+        let outside = fields.one_of("outside", &Outside::ALL, source.default_outside())?;
         Ok(PlacedImage {
             source,
             placement,
-            outside: fields.one_of("outside", &Outside::ALL, Outside::Mirror)?,
+            outside,
             bend: self.bend(fields, placement.center)?,
             filter: fields.one_of("filter", &ImageFilter::ALL, ImageFilter::Antialias)?,
             frame: Default::default(),
@@ -71,12 +75,26 @@ impl LayerReader<'_> {
         fields.get("placement").map_or(Ok(covering), |node| placement(&node, covering))
     }
 
+    /// A picture of a file, or a text, whose outlines are in a file if it was laid out before.
     pub fn picture_source(&mut self, node: &JsonNode) -> Result<PictureSource> {
         let mut fields = node.fields()?;
-        let file = fields.required("file")?;
+        let text = fields.get("text");
+        let text = text.map(|node| Ok::<_, Error>((Text::from_json(&node)?, node))).transpose()?;
+        let file = match &text {
+            Some(_) => fields.get("file"),
+            None => Some(fields.required("file")?),
+        };
         let adjust = adjust(&mut fields)?;
         fields.finish()?;
-        self.pictures.source(self.source, &file, adjust)
+        match (file, text) {
+            (Some(file), text) => {
+                let mut source = self.pictures.source(self.source, &file, adjust)?;
+                source.text = text.map(|(text, _)| Arc::new(text));
+                Ok(source)
+            }
+            (None, Some((text, node))) => self.pictures.text(self.source, &node, &text, adjust),
+            (None, None) => Err(node.refused("needs a “file” or a “text”")),
+        }
     }
 }
 
@@ -266,8 +284,9 @@ pub fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
 
 pub fn write_image(out: &mut JsonObject, image: &PlacedImage, canvas: Size) {
     out.set("source", write_source(&image.source));
-    out.object("placement", write_placement(&image.placement, canvas));
-    out.word("outside", &Outside::ALL, image.outside, Outside::Mirror);
+    let by_itself = image.source.default_placement(canvas);
+    out.object("placement", write_placement_beside(&image.placement, &by_itself));
+    out.word("outside", &Outside::ALL, image.outside, image.source.default_outside());
     write_bend(out, &image.bend, image.placement.center);
     out.word("filter", &ImageFilter::ALL, image.filter, ImageFilter::Antialias);
 }
@@ -332,6 +351,7 @@ fn write_placement_beside(placement: &Placement, base: &Placement) -> JsonObject
 pub fn write_source(source: &PictureSource) -> Value {
     let mut out = JsonObject::default();
     out.set("file", source.file.as_str().into());
+    out.set_some("text", source.text.as_deref(), Text::to_json);
     write_adjust(&mut out, &source.adjust);
     out.done()
 }

@@ -7,13 +7,16 @@ use crate::document::source::NormalConvention;
 use crate::json::JsonNode;
 use crate::maps::detail;
 use crate::math::{Size, Vec3};
-use crate::paint::{Adjust, PictureSource};
+use crate::paint::{Adjust, PictureSource, Text};
 use crate::picture::Painted;
 use crate::raster::{CoverageGrid, Picture, Plane, TileGrid, blur};
 use crate::surface::DetailMap;
 use crate::{Error, Result};
-use crate::{files, picture};
+use crate::{files, picture, text};
 use std::{collections::HashMap, sync::Arc};
+
+/// What the names of files of outlines begin with for texts that have none yet.
+const TEXTS: &str = "text-";
 
 /// The pixels of paint layers by file and corner.
 pub type TileGrids = HashMap<(String, i32, i32), TileGrid>;
@@ -28,6 +31,7 @@ pub struct PictureCache {
     maps: Vec<PartMaps>,
     tiles: TileGrids,
     details: Vec<CachedDetail>,
+    texts: usize,
     used_px: u64,
     searched_px: u64,
     used_bytes: u64,
@@ -61,6 +65,24 @@ impl PictureCache {
         }
         known.push(PictureSource::new(name.to_owned(), picture, adjust));
         Ok(known[known.len() - 1].clone())
+    }
+
+    /// A text that no file holds the outlines of, laid out in the fonts of this machine.
+    pub fn text(
+        &mut self,
+        source: RecipeSource,
+        node: &JsonNode,
+        text: &Text,
+        adjust: Adjust,
+    ) -> Result<PictureSource> {
+        let laid = text::lay_out(text, source.budget).map_err(|e| node.led_to(e))?;
+        let size = laid.picture.size;
+        self.spend(source, size, laid.picture.bytes() + size.area() * 6)?;
+        self.texts += 1;
+        let file = format!("{TEXTS}{}.svg", self.texts);
+        let mut made = PictureSource::new(file, laid.picture, adjust);
+        made.text = Some(Arc::new(laid.text));
+        Ok(made)
     }
 
     /// The picture that a field names, as it is.

@@ -98,6 +98,8 @@ pub struct CloneSource {
 struct Preview {
     label: String,
     document: Document,
+    /// It is kept when something else is done.
+    is_typed: bool,
 }
 
 impl OpenDocument {
@@ -217,7 +219,13 @@ impl OpenDocument {
 
     /// Shows a document as preview.
     pub fn show(&mut self, label: impl Into<String>, document: Document) {
-        self.preview = Some(Preview { label: label.into(), document });
+        self.forget_preview();
+        self.preview = Some(Preview { label: label.into(), document, is_typed: false });
+    }
+
+    /// Shows what is being typed. It becomes a step as soon as something else is done.
+    pub fn show_typed(&mut self, label: impl Into<String>, document: Document) {
+        self.preview = Some(Preview { label: label.into(), document, is_typed: true });
     }
 
     /// Keeps a document as a step; returns whether it did. What files cannot hold is refused:
@@ -259,14 +267,17 @@ impl OpenDocument {
 
     /// Adds the preview as a step.
     pub fn keep_preview(&mut self) {
-        if let Some(Preview { label, document }) = self.preview.take() {
+        if let Some(Preview { label, document, .. }) = self.preview.take() {
             self.commit(label, document);
         }
     }
 
-    /// Drops the preview.
+    /// Drops the preview; what was typed is kept.
     pub fn forget_preview(&mut self) {
-        self.preview = None;
+        match &self.preview {
+            Some(preview) if preview.is_typed => self.keep_preview(),
+            _ => self.preview = None,
+        }
     }
 
     /// The chosen part as shown.

@@ -14,7 +14,7 @@ use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
     Adjust, Brush, ColorAdjustment, DrawingHand, FormDrawing, FormPattern, Gradient, GradientStop,
-    ImageFilter, LiveAdjustment, PictureSource, PlacedImage, Placement,
+    ImageFilter, LiveAdjustment, PlacedImage, Placement, Text,
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
@@ -65,6 +65,8 @@ actions! {
         "line size" LineSize { to: f32 }
         /// A brush that comes with the program, by its key, in the size that lines have.
         "drawn with" DrawnWith { preset: String }
+        /// What a text says, in which type.
+        "text" Worded { text: Text }
         "stops" Stops { stops: Vec<GradientStop> }
         "ends" Ends { from: Vec2, to: Vec2 }
         /// A mask derived from the surface, or none.
@@ -136,6 +138,7 @@ impl Property {
             Property::Lines { .. } => "Form lines",
             Property::Hand { .. } => "Hand",
             Property::LineSize { .. } | Property::DrawnWith { .. } => "Brush of the lines",
+            Property::Worded { .. } => "Text",
             Property::Stops { .. } => "Gradient stops",
             Property::Ends { .. } => "Gradient ends",
             Property::Mask { .. }
@@ -168,7 +171,8 @@ impl Property {
         }
     }
 
-    /// Sets the value of a layer. A layer without the property is left as it is.
+    /// Sets the value of a layer. A layer without the property is left as it is; so is what a text
+    /// says, which takes fonts (`texts`).
     pub fn apply(&self, layer: &mut Layer) {
         match self {
             Property::Name { name } => layer.name.clone_from(name),
@@ -261,11 +265,7 @@ impl Property {
             Property::Place { placement } => next.placement = *placement,
             Property::Beyond { outside } => next.outside = *outside,
             Property::Filtered { filter } => next.filter = *filter,
-            Property::Adjusted { adjust } => {
-                let source = &image.source;
-                next.source =
-                    PictureSource::new(source.file.clone(), source.picture.clone(), *adjust);
-            }
+            Property::Adjusted { adjust } => next.source = image.source.adjusted(*adjust),
             _ => return None,
         }
         Some(next)

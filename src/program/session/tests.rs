@@ -15,6 +15,7 @@ mod steps;
 pub(in crate::session) mod stories;
 mod svg;
 mod targets;
+mod texts;
 mod transforming;
 mod unwrapped;
 mod warping;

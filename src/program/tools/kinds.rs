@@ -32,6 +32,10 @@ rilievo_engine::named! {
             "Anchors",
             "Drag an anchor along the surface. Ctrl drags its content, Shift re-pins it; click adds, Alt removes",
         ),
+        Text = "text" => (
+            "Text",
+            "Click to write, or on a text to change it; its type is in Properties",
+        ),
         Move = "move" => (
             "Move",
             "Drag the selected layer; on a stroke layer, the stroke under the pen (Shift: all of them)",
@@ -110,7 +114,8 @@ impl ToolKind {
             ToolKind::Image => 'J',
             ToolKind::Anchors => 'A',
             ToolKind::Move => 'V',
-            ToolKind::Transform => 'T',
+            // With Shift.
+            ToolKind::Text | ToolKind::Transform => 'T',
             ToolKind::Liquify => 'K',
             ToolKind::Assistants => 'Y',
             ToolKind::Crop => 'C',
@@ -127,6 +132,11 @@ impl ToolKind {
             ToolKind::Hand => 'H',
             ToolKind::Zoom => 'Z',
         }
+    }
+
+    /// Whether that letter is pressed with Shift.
+    pub fn is_key_shifted(self) -> bool {
+        self == ToolKind::Text
     }
 
     /// Whether the pen snaps to guides, the grid and edges in all uses.

@@ -40,6 +40,9 @@ pub fn draw(
     if tool == ToolKind::Crop {
         super::crop::draw(painter, session, &to_screen);
     }
+    if tool == ToolKind::Text {
+        super::text_carets::draw(painter, session, &to_screen);
+    }
     if tool == ToolKind::Strokes {
         chosen(painter, session, &to_screen);
     }

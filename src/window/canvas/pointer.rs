@@ -108,6 +108,7 @@ impl PointerState {
             (_, ToolKind::Zoom) if self.keys.alt => CursorIcon::ZoomOut,
             (_, ToolKind::Zoom) => CursorIcon::ZoomIn,
             (_, ToolKind::Move | ToolKind::Image) => CursorIcon::Move,
+            (_, ToolKind::Text) if on_canvas => CursorIcon::Text,
             // The footprint's outline is the cursor.
             (_, ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt | ToolKind::Liquify)
                 if on_canvas =>

@@ -2,7 +2,7 @@
 //! materials and lights (`material`).
 
 use super::setter::LayerSetter;
-use super::{adjustment, colors, form_drawing, home, mask, material, options, ramp, strokes};
+use super::{adjustment, colors, form_drawing, home, mask, material, options, ramp, strokes, text};
 use crate::document::{Content, DetailSource, Document, Histogram, Layer, NormalLayer, Progress};
 use crate::file_purpose::FilePurpose;
 use crate::math::{Vec2, vec2};
@@ -47,7 +47,12 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         Content::FormDrawing(live) => {
             form_drawing::show(ui, session, live.params(), has_surface, &mut setter);
         }
-        Content::Image(live) => image(ui, live.params(), &mut setter),
+        Content::Image(live) => {
+            if let Some(words) = &live.params().source.text {
+                text::show(ui, session, layer.id, words, &mut setter);
+            }
+            image(ui, live.params(), &mut setter);
+        }
         Content::Gradient(live) => gradient(ui, live.params(), &mut setter),
         Content::Shading(live) => {
             let canvas = session.shown().map_or(Vec2::ONE, |document| 2.0 * document.size.center());
@@ -126,10 +131,12 @@ fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: 
 }
 
 fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
-    ui.horizontal_wrapped(|ui| {
-        ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
-        setter.choose(ui, PicturePart::Image, "Replace…");
-    });
+    if image.source.text.is_none() {
+        ui.horizontal_wrapped(|ui| {
+            ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
+            setter.choose(ui, PicturePart::Image, "Replace…");
+        });
+    }
     operator(ui, image.bend.operator, setter);
     placement(ui, image.placement, setter);
     if let Some(outside) = choice_row(ui, "Outside", image.outside, &Outside::ALL) {

@@ -7,7 +7,7 @@ use crate::paint::patches::Patches;
 use crate::paint::scene::Scene;
 use crate::raster::sampler::{Antialias, deep_bilinear_row};
 use crate::raster::tile::transparent_f32;
-use crate::raster::{DeepTexture, PlanarTile, TILE, TileAt};
+use crate::raster::{DeepTexture, PlanarTile, TILE, Tile, TileAt};
 use crate::surface::deformation::DeformedRect;
 use std::sync::{Arc, PoisonError};
 
@@ -26,12 +26,25 @@ impl PictureSource {
     }
 }
 
+/// The pixels of a tile of bytes.
+fn in_floats(tile: &Tile) -> PlanarTile {
+    let mut pixels = transparent_f32();
+    for (pixel, bytes) in pixels.iter_mut().zip(tile.bytes().as_chunks().0) {
+        *pixel = bytes.map(|v: u8| f32::from(v) / 255.0);
+    }
+    PlanarTile::from_pixels(&pixels)
+}
+
 impl PlacedImage {
     /// One tile of the layer; `None` beyond the canvas. Colors may be brighter than white.
     pub fn render_pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         let area = scene.area(at);
         if area.is_empty() {
             return None;
+        }
+        if self.source.picture.drawing.is_some() {
+            // It has bytes only, and may be drawn larger.
+            return self.render_tile(scene, at).map(|tile| in_floats(&tile));
         }
         let (texture, width) = (self.source.deep_texture(), area.width());
         let mut positions = DeformedRect::default();

@@ -119,6 +119,7 @@ pub fn gray(plane: &Plane<f32>) -> Picture {
         texels: crate::raster::picture::Texels::Srgb8([[0; 4]].into()),
         deep: None,
         encoded: None,
+        drawing: None,
     };
     Picture::srgb8(plane.size(), texels.collect()).unwrap_or_else(none)
 }

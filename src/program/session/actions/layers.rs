@@ -6,17 +6,19 @@ mod looks;
 mod new;
 mod refusal;
 mod steps;
+pub(super) mod texts;
 
 pub use new::NewLayer;
 pub(super) use steps::copied;
 
+use crate::Result;
 use crate::document::{
     Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress,
 };
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{
-    ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment,
+    ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment, Text,
 };
 use crate::raster::Plane;
 use crate::session::open_document::Edit;
@@ -60,6 +62,8 @@ actions! {
         "draw with" DrawWith { layer: LayerPath }
         /// A shading layer of a model, with the material it begins with.
         "add shading" AddShading { model: Model }
+        /// A text as a layer of its own; its first baseline begins at a point.
+        "write" Write { text: Text, at: Vec2 }
         /// A look that comes with the program, by its key, on top of all layers.
         "look" Look { name: String }
         /// A ball that comes with the program, by its key, for a layer of lit spheres.
@@ -146,7 +150,13 @@ impl LayerAction {
                 open.forget_preview();
                 return session.say(why);
             }
-            return set(open, layer, to, *done);
+            let is_set = set(open, layer, to, *done);
+            return session.said.extend(is_set.err().map(|why| why.to_string()));
+        }
+        if let LayerAction::Write { text, at } = self {
+            open.forget_preview();
+            let written = texts::write(open, text, *at);
+            return session.said.extend(written.err().map(|why| why.to_string()));
         }
         if let LayerAction::Adjust { layer, adjustment, done } = self {
             return adjust(session, layer, adjustment, *done);
@@ -180,7 +190,8 @@ impl LayerAction {
             LayerAction::Pivot { at } => open.set_pivot(target, *at),
             LayerAction::Unadjust {}
             | LayerAction::PaintBall { .. }
-            | LayerAction::DrawWith { .. } => {}
+            | LayerAction::DrawWith { .. }
+            | LayerAction::Write { .. } => {}
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 open.solo = if open.solo == id { None } else { id };
@@ -365,6 +376,7 @@ impl LayerAction {
             | LayerAction::Pivot { .. }
             | LayerAction::PaintBall { .. }
             | LayerAction::DrawWith { .. }
+            | LayerAction::Write { .. }
             | LayerAction::Set { .. } => return None,
         };
         Some(Edit { label, document, select })
@@ -379,14 +391,24 @@ fn added(open: &OpenDocument, new: Layer) -> Option<EditStep> {
     Some(("Add layer", document.with_inserted(new, above(open))?, vec![id]))
 }
 
-fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
-    let Some(ids) = layers.find(open.document()) else { return open.forget_preview() };
-    let Some(document) = open.document().with_layers(&ids, |layer| to.apply(layer)) else { return };
-    if done {
-        open.commit(to.label(), document);
-    } else {
-        open.show(to.label(), document);
+fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) -> Result<()> {
+    let Some(ids) = layers.find(open.document()) else {
+        open.forget_preview();
+        return Ok(());
+    };
+    let next = match to {
+        Property::Worded { text } => texts::retyped(open.document(), &ids, text)?,
+        _ => open.document().with_layers(&ids, |layer| to.apply(layer)),
+    };
+    match next {
+        Some(document) if done => drop(open.commit(to.label(), document)),
+        Some(document) if matches!(to, Property::Worded { .. }) => {
+            open.show_typed(to.label(), document);
+        }
+        Some(document) => open.show(to.label(), document),
+        None => {}
     }
+    Ok(())
 }
 
 /// The paint of layers adjusted: a step, or a preview of one. Layers that are no paint, or locked,

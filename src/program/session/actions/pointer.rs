@@ -4,6 +4,7 @@
 use crate::document::{Content, Document, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::paint::{BrushMode, Sample};
+use crate::session::actions::layers::texts;
 use crate::session::replay::{ReplayValue, actions, record};
 use crate::session::{CloneSource, OpenDocument, Session};
 use crate::tools::assistants::StrokeStart;
@@ -90,6 +91,12 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         let how =
             "This tool works in the picture: leave the unwrapped view (View, Unwrapped) to use it.";
         return session.notes.push(how.into());
+    }
+    if let Some(open) = session.active_mut() {
+        open.forget_preview();
+    }
+    if tool == ToolKind::Text {
+        return texts::press(session, pen.place());
     }
     let place = on_canvas(session, pen.place());
     let clones = matches!(tool, ToolKind::Brush) && !pen.keys.alt;

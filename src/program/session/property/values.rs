@@ -4,7 +4,9 @@
 use crate::document::{DerivedMask, Layer, LayerLabel, LayerLock, LayerMask, LayerTransform};
 use crate::io::json::JsonNode;
 use crate::io::recipe::transforms;
-use crate::paint::{Adjust, ColorAdjustment, DrawingHand, GradientStop, ImageFilter, Placement};
+use crate::paint::{
+    Adjust, ColorAdjustment, DrawingHand, GradientStop, ImageFilter, Placement, Text,
+};
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
@@ -24,7 +26,7 @@ names!(Model);
 names!(Projection);
 names!(Mood);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
-as_in_recipes!(ColorAdjustment);
+as_in_recipes!(ColorAdjustment, Text);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
 as_in_recipes!(Shadows, Painter, BallStrokes);
 as_in_recipes!(LineSettings, DrawingHand);

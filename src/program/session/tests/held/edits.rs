@@ -32,6 +32,7 @@ pub const PROPERTIES: &[&str] = &[
     r#"{"do":"placement","placement":{"center":[4,5],"scale":#,"rotation":30}}"#,
     r#"{"do":"outside","outside":"clamp"}"#,
     r#"{"do":"filter","filter":"bilinear"}"#,
+    r#"{"do":"text","text":{"string":"Aa","font":"Hack","size":#,"weight":%,"tracking":#,"arc":#}}"#,
     r#"{"do":"adjust","adjust":{"blur":0,"exposure":#,"hue":#,"saturation":1,"brightness":#,"contrast":1}}"#,
     r#"{"do":"adjust","adjust":{"blur":#,"exposure":0,"hue":0,"saturation":#,"brightness":1,"contrast":#}}"#,
     r##"{"do":"stops","stops":[[#,"#102030"],[#,"#ffffff80"]]}"##,

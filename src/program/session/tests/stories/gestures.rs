@@ -34,9 +34,11 @@ pub fn gesture(dice: &mut Dice, tool: ToolKind) -> Vec<Action> {
         ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt | ToolKind::Liquify => {
             stroke(dice, tool, somewhere)
         }
-        ToolKind::Fill | ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom => {
-            click(dice, tool, somewhere)
-        }
+        ToolKind::Fill
+        | ToolKind::Eyedropper
+        | ToolKind::Hand
+        | ToolKind::Zoom
+        | ToolKind::Text => click(dice, tool, somewhere),
         ToolKind::Wand | ToolKind::SurfaceWand | ToolKind::Touch => {
             if dice.is(60) {
                 click(dice, tool, somewhere)

@@ -11,7 +11,10 @@ use crate::math::{DVec2, Range, Size};
 use crate::paint::adjustment::{
     ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
 };
-use crate::paint::{Adjust, BrushMode, ColorAdjustment, DrawingHand, GradientStop, Placement};
+use crate::paint::{
+    Adjust, BrushMode, ColorAdjustment, DrawingHand, GradientStop, Placement, Text, TextAlign,
+    TextStyle,
+};
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
@@ -78,6 +81,36 @@ impl Drawn for Adjust {
             saturation,
             brightness,
             contrast,
+        }
+    }
+}
+
+/// Mostly in a font that comes with the program, at times in one that no machine has.
+impl Drawn for Text {
+    fn drawn(dice: &mut Dice) -> Self {
+        let words = ["", "Rel", "a b\nc", "Ink & <gold>", "日本語。", "\n\n", "ﬁ שלום"];
+        let family = if dice.is(80) { "Hack" } else { "No Such Font" };
+        let style = TextStyle {
+            family: family.into(),
+            size: dice.in_range(6.0..=40.0, 1.0..=200.0),
+            weight: if dice.is(50) { 400 } else { 700 },
+            italic: dice.is(20),
+            color: dice.value(dice.word, "color"),
+            tracking: dice.in_range(-50.0..=200.0, -200.0..=1000.0),
+            kerning: dice.is(80),
+            outline: if dice.is(30) { dice.within(0.0, 4.0) } else { 0.0 },
+            outline_color: dice.value(dice.word, "color"),
+        };
+        let text = Text::new(dice.one_of(&words), style);
+        let end = text.string().chars().next().map_or(0, char::len_utf8);
+        let text = if dice.is(40) { text.styled(0, end, |style| style.size *= 1.5) } else { text };
+        Text {
+            align: dice.one_of(&TextAlign::ALL).0,
+            leading: dice.in_range(0.8..=2.0, 0.1..=5.0),
+            width: if dice.is(30) { dice.within(10.0, 90.0) } else { 0.0 },
+            vertical: dice.is(20),
+            arc: if dice.is(20) { dice.in_range(-180.0..=180.0, Text::ARC) } else { 0.0 },
+            ..text
         }
     }
 }

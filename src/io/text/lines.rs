@@ -1,0 +1,236 @@
+//! The lines of a text: where they are broken, and where they lie. Floor 5.
+
+use super::Caret;
+use crate::math::{Vec2, vec2};
+use crate::paint::{Text, TextAlign, TextRun};
+use crate::{Error, Result};
+use resvg::usvg;
+use std::fmt::Write;
+use std::path::Path;
+
+/// One line.
+#[derive(Clone, Debug)]
+pub(super) struct Line {
+    /// What it says.
+    pub pieces: Vec<TextRun>,
+    /// The bytes of the text before it.
+    pub start: usize,
+    /// Where its baseline begins, ends or has its middle, px, by the alignment.
+    pub at: Vec2,
+    /// The path that it runs along instead, as SVG writes it.
+    pub curve: Option<String>,
+}
+
+impl Line {
+    fn new(pieces: Vec<TextRun>, start: usize) -> Self {
+        Self { pieces, start, at: Vec2::ZERO, curve: None }
+    }
+
+    fn string(&self) -> String {
+        self.pieces.iter().map(|run| run.string.as_str()).collect()
+    }
+
+    /// The size of its largest type.
+    fn size(&self) -> f32 {
+        self.pieces.iter().map(|run| run.style.size).fold(0.0, f32::max)
+    }
+
+    /// The bytes from one place of it to another, as a line.
+    fn cut(&self, from: usize, to: usize) -> Line {
+        let (mut pieces, mut start) = (Vec::new(), 0);
+        for run in &self.pieces {
+            let end = start + run.string.len();
+            let (a, b) = (from.max(start).min(end) - start, to.max(start).min(end) - start);
+            if let Some(piece) = run.string.get(a..b).filter(|piece| !piece.is_empty()) {
+                pieces.push(TextRun { string: piece.to_owned(), style: run.style.clone() });
+            }
+            start = end;
+        }
+        if let Some(first) = self.pieces.first().filter(|_| pieces.is_empty()) {
+            pieces.push(TextRun { string: String::new(), style: first.style.clone() });
+        }
+        Line::new(pieces, self.start + from)
+    }
+}
+
+/// The lines of a text in their places; refuses one that is too long.
+pub(super) fn lines(text: &Text) -> Result<Vec<Line>> {
+    let letters = text.runs.iter().map(|run| run.string.chars().count()).sum::<usize>();
+    if letters > Text::MOST_LETTERS {
+        let reason = format!("{letters} letters; a text has {} at most", Text::MOST_LETTERS);
+        return Err(Error::too_large(Path::new(super::FILE), reason));
+    }
+    let mut lines = Vec::new();
+    for paragraph in paragraphs(text) {
+        if text.width > 0.0 && text.arc == 0.0 {
+            lines.extend(broken(text, paragraph));
+        } else {
+            lines.push(paragraph);
+        }
+    }
+    place(text, &mut lines);
+    Ok(lines)
+}
+
+/// What lies between the ends of lines that the text has.
+fn paragraphs(text: &Text) -> Vec<Line> {
+    let mut whole = Line::new(text.runs.clone(), 0);
+    whole.pieces.iter_mut().for_each(|run| {
+        // What XML has no other word for is a space, of as many bytes.
+        run.string = run.string.replace(['\r', '\t', '\u{b}', '\u{c}'], " ");
+    });
+    let string = whole.string();
+    let mut found = Vec::new();
+    let mut start = 0;
+    for line in string.split('\n') {
+        let mut cut = whole.cut(start, start + line.len());
+        if line.is_empty() {
+            // An empty line is as high as what was typed before it.
+            cut.pieces = vec![TextRun { string: String::new(), style: text.style_at(start) }];
+        }
+        found.push(cut);
+        start += line.len() + 1;
+    }
+    found
+}
+
+/// A paragraph in lines of the text's width.
+fn broken(text: &Text, paragraph: Line) -> Vec<Line> {
+    let string = paragraph.string();
+    let letters = super::advances(text, &paragraph);
+    let begins = |byte: usize| {
+        letters.iter().find(|(at, _)| *at >= byte).or(letters.last()).map_or(0.0, |(_, x)| *x)
+    };
+    let (mut lines, mut start, mut last_break) = (Vec::new(), 0, None);
+    for (byte, letter) in string.char_indices() {
+        let end = byte + letter.len_utf8();
+        let is_over = !letter.is_whitespace() && begins(end) - begins(start) > text.width;
+        if is_over && byte > start {
+            let at = last_break.unwrap_or(byte);
+            lines.push(paragraph.cut(start, at));
+            (start, last_break) = (at, None);
+        }
+        if is_break_after(&string, byte, letter) && end < string.len() {
+            last_break = Some(end);
+        }
+    }
+    lines.push(paragraph.cut(start, string.len()));
+    lines
+}
+
+/// A line may end after spaces and hyphens, and between the letters of scripts that are written
+/// without spaces, but not before what closes.
+fn is_break_after(string: &str, byte: usize, letter: char) -> bool {
+    let next = string[byte + letter.len_utf8()..].chars().next();
+    let Some(next) = next else { return false };
+    let closes =
+        "、。，．・：；？！）］｝〕〉》」』】ー…ぁぃぅぇぉっゃゅょァィゥェォッャュョ)]}.,:;!?"
+            .contains(next);
+    let opens = "（［｛〔〈《「『【([{".contains(letter);
+    let is_spaced = letter.is_whitespace() || letter == '-' || letter == '\u{2013}';
+    let is_dense = is_without_spaces(letter) || is_without_spaces(next);
+    (is_spaced && !next.is_whitespace()) || (is_dense && !closes && !opens)
+}
+
+/// Chinese and Japanese.
+fn is_without_spaces(letter: char) -> bool {
+    matches!(u32::from(letter), 0x2e80..=0x9fff | 0xf900..=0xfaff | 0xff00..=0xff60 | 0x20000..=0x3ffff)
+}
+
+/// Lays lines beneath each other, or in columns from right to left.
+fn place(text: &Text, lines: &mut [Line]) {
+    let mut along = 0.0;
+    for i in 0..lines.len() {
+        if i > 0 {
+            along += text.leading * lines[i].size();
+        }
+        let side = match text.align {
+            TextAlign::Start => 0.0,
+            TextAlign::Middle => text.width / 2.0,
+            TextAlign::End => text.width,
+        };
+        lines[i].at = if text.vertical { vec2(-along, side) } else { vec2(side, along) };
+        if text.arc != 0.0 && !text.vertical {
+            lines[i].curve = Some(arc(text, &lines[0], along));
+        }
+    }
+}
+
+/// The circle along which a line runs whose distance from the first one is given. The middle of
+/// the first line stays where it is.
+fn arc(text: &Text, first: &Line, along: f32) -> String {
+    let measured = super::advances(text, first);
+    let (start, end) = (measured.first(), measured.last());
+    let length = start.zip(end).map_or(0.0, |((_, from), (_, to))| to - from).max(1.0);
+    let radius = length / text.arc.abs().to_radians().max(1e-3);
+    let up = text.arc.signum();
+    let radius = (radius - up * along).max(1.0);
+    let middle = match text.align {
+        TextAlign::Start => length / 2.0,
+        TextAlign::Middle => 0.0,
+        TextAlign::End => -length / 2.0,
+    };
+    // From the far side of the circle all around, so that the middle of the path is the top (or,
+    // where letters hang, the bottom).
+    let (y0, y1) = (along + up * 2.0 * radius, along);
+    let sweep = if up > 0.0 { 1 } else { 0 };
+    let mut path = String::new();
+    let _ = write!(
+        path,
+        "M{middle} {y0} A{radius} {radius} 0 0 {sweep} {middle} {y1} A{radius} {radius} 0 0 {sweep} {middle} {y0}"
+    );
+    path
+}
+
+/// Where the letters of a line that was laid out begin: bytes within the line, and px along it;
+/// the last one is its end.
+pub(super) fn letters(text: &Text, line: &Line, laid: &[&usvg::Text]) -> Vec<(usize, f32)> {
+    let string = line.string();
+    let along = |x: f32, y: f32| if text.vertical { y - line.at.y } else { x - line.at.x };
+    let (mut found, mut byte, mut end) = (Vec::new(), 0, 0.0f32);
+    for glyph in laid.iter().flat_map(|text| text.layouted()).flat_map(|s| &s.positioned_glyphs) {
+        let at = glyph.transform();
+        let Some(rest) = string.get(byte..) else { break };
+        if let Some(skipped) = rest.find(glyph.text.as_str()).filter(|_| !glyph.text.is_empty()) {
+            byte += skipped;
+            found.push((byte, along(at.tx, at.ty)));
+            byte += glyph.text.len();
+        }
+    }
+    if let Some(laid) = laid.first() {
+        let bounds = laid.abs_bounding_box();
+        let side = if text.vertical { bounds.bottom() } else { bounds.right() };
+        end = along(side, side);
+    }
+    found.push((string.len(), end));
+    found
+}
+
+/// The places between the letters of a text.
+pub(super) fn carets(text: &Text, lines: &[Line]) -> Vec<Caret> {
+    let mut found = Vec::new();
+    for line in lines {
+        let straight = Line { curve: None, ..line.clone() };
+        let measured = super::advances(text, &straight);
+        let string = line.string();
+        let ends = string.char_indices().map(|(byte, _)| byte).chain([string.len()]);
+        for byte in ends {
+            let along = interpolated(&measured, byte);
+            let at =
+                if text.vertical { line.at + vec2(0.0, along) } else { line.at + vec2(along, 0.0) };
+            let height = text.style_at(line.start + byte).size;
+            found.push(Caret { byte: line.start + byte, at, height });
+        }
+    }
+    found
+}
+
+/// Where a byte lies between the letters that were measured: within a ligature at its share.
+fn interpolated(measured: &[(usize, f32)], byte: usize) -> f32 {
+    let after = measured.iter().rposition(|(at, _)| *at <= byte).unwrap_or(0);
+    let (from, x) = measured[after];
+    match measured[after..].iter().find(|(at, _)| *at > byte) {
+        Some((to, next)) => x + (next - x) * (byte - from) as f32 / (to - from) as f32,
+        None => x,
+    }
+}

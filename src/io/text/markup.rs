@@ -1,0 +1,115 @@
+//! The SVG of a text. Floor 5.
+
+use super::lines::Line;
+use crate::math::Rect;
+use crate::math::srgb::Color;
+use crate::paint::{Text, TextAlign, TextRun, TextStyle};
+use std::fmt::Write;
+
+/// What every SVG begins with.
+const NAMESPACES: &str =
+    r#"xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink""#;
+
+/// An SVG of lines, the first baseline at the origin, one `text` element each.
+pub(super) fn of_lines(text: &Text, lines: &[Line]) -> String {
+    let mut out = format!(r#"<svg {NAMESPACES} width="1" height="1">"#);
+    for (i, line) in lines.iter().enumerate() {
+        if line.curve.is_none() {
+            let (x, y) = (line.at.x, line.at.y);
+            let mode = if text.vertical { r#" writing-mode="tb""# } else { "" };
+            let anchor = anchor(text.align);
+            let _ = write!(
+                out,
+                r#"<text xml:space="preserve" x="{x}" y="{y}" text-anchor="{anchor}"{mode}>"#
+            );
+            line.pieces.iter().for_each(|run| push_run(&mut out, run));
+            out.push_str("</text>");
+        } else if let Some(curve) = &line.curve {
+            let _ = write!(
+                out,
+                r##"<path id="c{i}" fill="none" d="{curve}"/>
+<text xml:space="preserve" text-anchor="middle"><textPath xlink:href="#c{i}" startOffset="50%">"##
+            );
+            line.pieces.iter().for_each(|run| push_run(&mut out, run));
+            out.push_str("</textPath></text>");
+        }
+    }
+    out.push_str("</svg>");
+    out
+}
+
+/// A drawing whose picture is a rectangle of its plane; `None` for something else than an SVG.
+pub(super) fn within(drawing: &str, bounds: Rect) -> Option<String> {
+    let start = drawing.find("<svg")?;
+    let end = start + drawing[start..].find('>')?;
+    let (width, height) = (bounds.width(), bounds.height());
+    let is_empty = drawing[..end].ends_with('/');
+    let close = if is_empty { "/>" } else { ">" };
+    Some(format!(
+        r#"<svg {NAMESPACES} width="{width}" height="{height}" viewBox="{} {} {width} {height}"{close}{}"#,
+        bounds.x0,
+        bounds.y0,
+        &drawing[end + 1..]
+    ))
+}
+
+fn anchor(align: TextAlign) -> &'static str {
+    match align {
+        TextAlign::Start => "start",
+        TextAlign::Middle => "middle",
+        TextAlign::End => "end",
+    }
+}
+
+fn push_run(out: &mut String, run: &TextRun) {
+    let TextStyle { family, size, weight, italic, color, tracking, kerning, .. } = &run.style;
+    let family = if family.is_empty() {
+        "sans-serif".to_owned()
+    } else {
+        format!("'{}', sans-serif", escaped(&family.replace('\'', "")))
+    };
+    let slant = if *italic { r#" font-style="italic""# } else { "" };
+    let kern = if *kerning { "" } else { r#" font-kerning="none""# };
+    let spacing = tracking * size / 1000.0;
+    let _ = write!(
+        out,
+        r#"<tspan font-family="{family}" font-size="{size}" font-weight="{weight}"
+letter-spacing="{spacing}"{slant}{kern} fill="{}" fill-opacity="{}""#,
+        hex(*color),
+        f32::from(color.a) / 255.0
+    );
+    if run.style.outline > 0.0 {
+        let color = run.style.outline_color;
+        // The half of the line that lies within the letters is beneath them.
+        let _ = write!(
+            out,
+            r#" stroke="{}" stroke-opacity="{}" stroke-width="{}"
+stroke-linejoin="round" paint-order="stroke""#,
+            hex(color),
+            f32::from(color.a) / 255.0,
+            2.0 * run.style.outline
+        );
+    }
+    let _ = write!(out, ">{}</tspan>", escaped(&run.string));
+}
+
+fn hex(Color { r, g, b, .. }: Color) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Text within XML; what XML cannot hold is left out.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            '"' => out.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => {}
+            c if c.is_control() && c != '\t' => {}
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,122 @@
+use super::*;
+use crate::paint::{TextAlign, TextStyle};
+use crate::raster::picture::Texels;
+
+/// In a font that comes with the program.
+fn text(string: &str) -> Text {
+    let style = TextStyle { family: "Hack".into(), size: 20.0, ..TextStyle::default() };
+    Text::new(string, style)
+}
+
+fn layout(text: &Text) -> TextPicture {
+    lay_out(text, &Budget::default()).unwrap()
+}
+
+/// The inked share of each of so many columns and rows.
+fn ink(picture: &Picture, columns: usize, rows: usize) -> Vec<Vec<f32>> {
+    let (w, h) = (picture.size.width as usize, picture.size.height as usize);
+    let mut sums = vec![vec![0.0; columns]; rows];
+    for y in 0..h {
+        for x in 0..w {
+            sums[y * rows / h][x * columns / w] += picture.linear_at(x, y)[3];
+        }
+    }
+    sums
+}
+
+#[test]
+fn a_text_is_outlines_in_its_color_and_its_file_shows_the_same() {
+    let mut words = text("Ink");
+    words.runs[0].style.color = crate::math::srgb::Color { r: 200, g: 40, b: 30, a: 255 };
+    let TextPicture { text: words, picture, size } = layout(&words);
+    assert!((20.0..60.0).contains(&size.x) && (12.0..30.0).contains(&size.y), "{size}");
+    assert!(words.origin.x >= 0.0 && (10.0..20.0).contains(&words.origin.y), "{}", words.origin);
+    let Texels::Srgb8(texels) = &picture.texels else { panic!("it is no picture of bytes") };
+    let inked: Vec<_> = texels.iter().filter(|texel| texel[3] == 255).collect();
+    assert!(inked.len() > 1000 && inked.iter().all(|texel| texel[..3] == [200, 40, 30]));
+    let file = picture.encoded.clone().unwrap();
+    assert!(
+        !String::from_utf8_lossy(file.bytes()).contains("<text"),
+        "letters are left in the file"
+    );
+    let again = svg::decode(Path::new("text.svg"), file.bytes(), &Budget::default()).unwrap();
+    assert_eq!(again, picture);
+}
+
+#[test]
+fn lines_end_where_the_text_or_its_width_says_so() {
+    let height = |string: &str| layout(&text(string)).size.y;
+    assert!(height("xx\nxx\nxx") > height("xx") + 2.0 * 20.0);
+    // Twelve letters of 12.04 px each fit in 150 px.
+    let narrow = Text { width: 150.0, ..text("one two three four") };
+    let lines = lines(&narrow).unwrap();
+    let said: Vec<String> = lines
+        .iter()
+        .map(|line| line.pieces.iter().map(|run| run.string.as_str()).collect())
+        .collect();
+    assert_eq!(said, ["one two ", "three four"]);
+    let solid = Text { width: 50.0, ..text("abcdefgh") };
+    assert_eq!(super::lines(&solid).unwrap().len(), 2, "a long word is broken");
+    let dense = Text { width: 50.0, ..text("日本語。文字") };
+    let starts: Vec<usize> = super::lines(&dense).unwrap().iter().map(|line| line.start).collect();
+    assert!(starts.iter().all(|start| !"日本語。文字"[*start..].starts_with('。')), "{starts:?}");
+}
+
+#[test]
+fn lines_are_aligned_to_the_left_the_middle_and_the_right() {
+    let of = |align| {
+        let picture = layout(&Text { align, ..text("wide line\nx") }).picture;
+        let [left, middle, right] = ink(&picture, 3, 2)[1][..] else { panic!() };
+        [left > 0.0, middle > 0.0, right > 0.0]
+    };
+    assert_eq!(of(TextAlign::Start), [true, false, false]);
+    assert_eq!(of(TextAlign::Middle), [false, true, false]);
+    assert_eq!(of(TextAlign::End), [false, false, true]);
+}
+
+#[test]
+fn columns_run_down_from_the_right_and_an_arc_lowers_its_ends() {
+    let column = layout(&Text { vertical: true, ..text("日本") }).size;
+    assert!(column.y > 1.5 * column.x, "{column}");
+    let arched = layout(&Text { arc: 120.0, ..text("arched letters") }).picture;
+    let above = ink(&arched, 3, 2);
+    assert!(above[0][1] > above[0][0] && above[1][0] > above[1][1], "{above:?}");
+    let hung = layout(&Text { arc: -120.0, ..text("arched letters") }).picture;
+    let above = ink(&hung, 3, 2);
+    assert!(above[1][1] > above[1][0] && above[0][0] > above[0][1], "{above:?}");
+}
+
+#[test]
+fn carets_stand_between_letters_and_end_each_line() {
+    let carets = carets(&text("ab\n\ncd")).unwrap();
+    let bytes: Vec<usize> = carets.iter().map(|caret| caret.byte).collect();
+    assert_eq!(bytes, [0, 1, 2, 3, 4, 5, 6]);
+    let [a, b, end, empty, c, ..] = carets[..] else { panic!() };
+    assert!(a.at.x.abs() < 0.5 && (b.at.x - 12.0).abs() < 0.5 && (end.at.x - 24.1).abs() < 0.5);
+    assert_eq!((a.at.y, empty.at.y, c.at.y), (0.0, 24.0, 48.0));
+}
+
+#[test]
+fn an_empty_text_a_long_one_and_one_without_its_font_are_no_failures() {
+    let empty = layout(&text(""));
+    assert_eq!(empty.size, vec2(1.0, 1.0));
+    assert!(ink(&empty.picture, 1, 1)[0][0] == 0.0);
+    let odd = text("<&>\"'\u{1}\u{0}\tend");
+    assert!(layout(&odd).size.x > 50.0);
+    let mut lost = text("lost");
+    lost.runs[0].style.family = "No Such Font".into();
+    assert_eq!(missing_families(&lost), ["No Such Font"]);
+    assert!(layout(&lost).size.x > 10.0, "nothing stands in for it");
+    let long = text(&"x".repeat(Text::MOST_LETTERS + 1));
+    assert!(lay_out(&long, &Budget::default()).unwrap_err().to_string().contains("letters"));
+    assert!(families().contains(&"Hack".to_owned()));
+}
+
+#[test]
+fn a_text_is_drawn_larger_where_it_is_seen_larger() {
+    let picture = layout(&text("O")).picture;
+    let twice = picture.enlarged(2).unwrap();
+    assert_eq!(twice.size.width, 2 * picture.size.width);
+    let shares = ink(&picture, 1, 1)[0][0] * 4.0 / ink(&twice, 1, 1)[0][0];
+    assert!((shares - 1.0).abs() < 0.01, "{shares}");
+}

@@ -1,0 +1,169 @@
+//! Layers that are texts: written, and retyped in their places. Floor 6. Not here: how a text is
+//! laid out (`io::text`).
+
+use super::above;
+use crate::Result;
+use crate::document::{Content, Document, Layer, LayerId, Live};
+use crate::io::{Budget, text};
+use crate::math::{Size, Vec2};
+use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement, Text, TextStyle};
+use crate::raster::Outside;
+use crate::session::actions::placing::free_file;
+use crate::session::{OpenDocument, Session, Writing};
+use crate::surface::{Anchor, Bend};
+use std::sync::Arc;
+use text::{Caret, TextPicture};
+
+/// The most letters of a layer's name that come from its text.
+const NAME_LETTERS: usize = 24;
+
+/// What a text says before anybody typed.
+const PLACEHOLDER: &str = "Text";
+
+/// The heights of the canvas that make the size of a first text.
+const FIRST_SIZE: f32 = 0.1;
+
+/// The pen comes down with the text tool: on a text, to go on in it, or beside, to begin one in the
+/// style of the selected text.
+pub(in crate::session::actions) fn press(session: &mut Session, at: Vec2) {
+    let turn = session.writing.map_or(0, |writing| writing.turn.wrapping_add(1));
+    let color = session.tools.color;
+    let Some(open) = session.active_mut() else { return };
+    open.forget_preview();
+    if let Some((layer, byte)) = text_under(open.document(), at) {
+        open.choose_layers(vec![layer]);
+        session.writing = Some(Writing { layer, byte, turn });
+        return;
+    }
+    let selected = open.selected.and_then(|id| open.document().layer(id)).and_then(text_of);
+    let style = selected.map_or_else(
+        || {
+            let size = FIRST_SIZE * open.document().size.height as f32;
+            let size = size.round().max(12.0).min(*TextStyle::SIZE.end());
+            TextStyle { size, color, ..TextStyle::default() }
+        },
+        |text| text.style_at(0),
+    );
+    match write(open, &Text::new(PLACEHOLDER, style), at) {
+        Ok(()) => {
+            let layer = open.selected;
+            session.writing = layer.map(|layer| Writing { layer, byte: None, turn });
+        }
+        Err(error) => session.say(&error.to_string()),
+    }
+}
+
+/// The topmost visible text whose box a canvas point lies in, and the place between its letters
+/// that is nearest to it.
+fn text_under(document: &Document, at: Vec2) -> Option<(LayerId, Option<usize>)> {
+    document.walk().into_iter().rev().filter(|(_, layer)| layer.visible).find_map(|(_, layer)| {
+        let Content::Image(live) = &layer.content else { return None };
+        let (image, text) = (live.params(), live.params().source.text.as_deref()?);
+        let (in_frame, _) = image.frame.from_canvas(at)?;
+        let own = image.frame_from_own(document.size).inverse().transform_point2(in_frame);
+        let size = image.source.picture.own_size();
+        let is_within = own.cmpge(Vec2::ZERO).all() && own.cmple(size).all();
+        is_within.then(|| {
+            let carets = text::carets(text).unwrap_or_default();
+            let distance = |caret: &Caret| {
+                let middle = caret.at - Vec2::Y * (0.35 * caret.height);
+                (middle + text.origin).distance_squared(own)
+            };
+            let nearest = carets.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            (layer.id, nearest.map(|caret| caret.byte))
+        })
+    })
+}
+
+fn text_of(layer: &Arc<Layer>) -> Option<Arc<Text>> {
+    match &layer.content {
+        Content::Image(live) => live.params().source.text.clone(),
+        _ => None,
+    }
+}
+
+/// Adds a text above the selected layer, and selects it. Its first baseline begins at a point.
+pub(super) fn write(open: &mut OpenDocument, text: &Text, at: Vec2) -> Result<()> {
+    let laid = text::lay_out(text, &Budget::of_this_machine())?;
+    let document = open.document();
+    let canvas = document.size;
+    let center = at - laid.text.origin + laid.size / 2.0;
+    let placement = Placement::at_own_size(canvas, &laid.picture, center);
+    let image = PlacedImage {
+        source: source(free_file(document, "text.svg"), laid, Adjust::default()),
+        placement,
+        outside: Outside::None,
+        bend: Bend { anchors: vec![Anchor::fixed(center)], ..Bend::default() },
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+    };
+    let layer = Layer::new(document.free_layer_name(&name(text)), Content::Image(Live::new(image)));
+    let id = layer.id;
+    if let Some(next) = document.with_inserted(layer, above(open))
+        && open.commit("Write", next)
+    {
+        open.selected = Some(id);
+    }
+    Ok(())
+}
+
+/// The document with another text in the layers that are texts; `None` where none is. Each keeps
+/// its size and the place where its first baseline begins, and its name if that is not its text.
+pub(super) fn retyped(
+    document: &Document,
+    ids: &[LayerId],
+    text: &Text,
+) -> Result<Option<Document>> {
+    let is_text = |id: &LayerId| document.layer(*id).and_then(text_of).is_some();
+    let ids: Vec<LayerId> = ids.iter().copied().filter(is_text).collect();
+    if ids.is_empty() {
+        return Ok(None);
+    }
+    let laid = text::lay_out(text, &Budget::of_this_machine())?;
+    let (file, canvas) = (free_file(document, "text.svg"), document.size);
+    Ok(document.with_layers(&ids, |layer| {
+        let Content::Image(live) = &layer.content else { return };
+        let (image, old) = (live.params(), live.params().source.text.clone());
+        let image = with_text(image, canvas, file.clone(), laid.clone());
+        layer.content = Content::Image(Live::new(image));
+        if old.is_some_and(|old| layer.name == name(&old)) {
+            layer.name = name(text);
+        }
+    }))
+}
+
+/// An image that shows another text at the same size, its first baseline where it was.
+fn with_text(image: &PlacedImage, canvas: Size, file: String, laid: TextPicture) -> PlacedImage {
+    let (old, new) = (&image.source.picture, &laid.picture);
+    let own = Placement::at_own_size(canvas, old, Vec2::ZERO).scale;
+    let enlarged = image.placement.scale / own;
+    let placement = Placement::at_own_size(canvas, new, image.placement.center);
+    let scale = placement.scale * enlarged;
+    let scale = scale.max(*Placement::SCALE.start()).min(*Placement::SCALE.end());
+    // From the middle of a picture to where its first baseline begins, canvas px.
+    let turn = Vec2::from_angle(-image.placement.rotation.to_radians());
+    let begin = |origin: Vec2, size: Vec2| turn.rotate((origin - size / 2.0) * enlarged);
+    let was = image.source.text.as_ref().map_or(Vec2::ZERO, |text| text.origin);
+    let moved = begin(was, old.own_size()) - begin(laid.text.origin, laid.size);
+    let center = image.placement.center + moved;
+    let placement = Placement { center, scale, rotation: image.placement.rotation };
+    PlacedImage { source: source(file, laid, image.source.adjust), placement, ..image.clone() }
+}
+
+fn source(file: String, laid: TextPicture, adjust: Adjust) -> PictureSource {
+    let mut source = PictureSource::new(file, laid.picture, adjust);
+    source.text = Some(Arc::new(laid.text));
+    source
+}
+
+/// What a layer of a text is called: how the text begins.
+fn name(text: &Text) -> String {
+    let string = text.string();
+    let words = string.split_whitespace().collect::<Vec<_>>().join(" ");
+    let short: String = words.chars().take(NAME_LETTERS).collect();
+    match short.trim_end() {
+        "" => "Text".to_owned(),
+        short if short.len() < words.len() => format!("{short}…"),
+        short => short.to_owned(),
+    }
+}

@@ -1,0 +1,206 @@
+//! What a text says and in which type. What is typed here is seen on the canvas at once, where
+//! `canvas::text_carets` draws the caret. Floor 7.
+
+use super::colors;
+use super::setter::LayerSetter;
+use crate::document::LayerId;
+use crate::io::text;
+use crate::paint::{Text, TextAlign, TextStyle};
+use crate::session::{Property, Session, Writing};
+use crate::widgets::{NumberField, check, name, named};
+use eframe::egui::text::{CCursor, CCursorRange};
+use eframe::egui::{self, ComboBox, Id, TextEdit, Ui};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The letters between the ends of the selection in the field, while it is typed in.
+#[derive(Clone, PartialEq)]
+pub struct TypedRange {
+    pub layer: LayerId,
+    /// Bytes of the text.
+    pub bytes: Range<usize>,
+    /// The end that moves.
+    pub caret: usize,
+}
+
+/// Where the field says what is selected in it.
+pub fn typed_range() -> Id {
+    Id::unique("typed range of a text")
+}
+
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    layer: LayerId,
+    words: &Text,
+    setter: &mut LayerSetter,
+) {
+    let range = field(ui, session, layer, words, setter);
+    let style = words.style_at(range.end);
+    let lost = text::missing_families(words);
+    if !lost.is_empty() {
+        let lost = lost.join("”, “");
+        let hint = "The text keeps its outlines until you change it; then another font is used";
+        ui.colored_label(ui.visuals().warn_fg_color, format!("“{lost}” is not installed here"))
+            .on_hover_text(hint);
+    }
+    // What is changed: the selected letters, or all of them.
+    let all = range.is_empty();
+    let of = if all { 0..words.string().len() } else { range };
+    let restyled = |change: &dyn Fn(&mut TextStyle)| Property::Worded {
+        text: words.styled(of.start, of.end, change),
+    };
+    if let Some(family) = family(ui, layer, &style.family) {
+        setter.set(restyled(&|style| style.family.clone_from(&family)), true);
+    }
+    let size = NumberField::new("Size", 4.0..=400.0, "The height of the type").px().logarithmic();
+    setter.take(size.row(ui, style.size).map(|c| c.map(|to| restyled(&|style| style.size = to))));
+    ui.horizontal(|ui| {
+        if let Some(bold) = check(ui, "Bold", "Heavier letters", style.weight >= 600) {
+            let weight = if bold { 700 } else { 400 };
+            setter.set(restyled(&|style| style.weight = weight), true);
+        }
+        if let Some(italic) = check(ui, "Italic", "Slanted letters", style.italic) {
+            setter.set(restyled(&|style| style.italic = italic), true);
+        }
+    });
+    let color = colors::picker(ui, "Text color", style.color);
+    setter.take(color.map(|c| c.map(|to| restyled(&|style| style.color = to))));
+    let tracking =
+        NumberField::new("Tracking", -200.0..=1000.0, "Added between letters, 1/1000 of the size");
+    setter.take(
+        tracking
+            .decimals(0)
+            .row(ui, style.tracking)
+            .map(|c| c.map(|to| restyled(&|style| style.tracking = to))),
+    );
+    let outline = NumberField::new("Outline", 0.0..=64.0, "A line around the letters").px();
+    setter.take(
+        outline.row(ui, style.outline).map(|c| c.map(|to| restyled(&|style| style.outline = to))),
+    );
+    if style.outline > 0.0 {
+        let color = colors::picker(ui, "Outline color", style.outline_color);
+        setter.take(color.map(|c| c.map(|to| restyled(&|style| style.outline_color = to))));
+    }
+    lines(ui, words, setter);
+    ui.separator();
+}
+
+/// How lines lie.
+fn lines(ui: &mut Ui, words: &Text, setter: &mut LayerSetter) {
+    let changed = |change: &dyn Fn(&mut Text)| {
+        let mut text = words.clone();
+        change(&mut text);
+        Property::Worded { text }
+    };
+    ui.horizontal(|ui| {
+        name(ui, "Lines");
+        for (align, label) in TextAlign::LABELS {
+            let is_on = words.align == align;
+            if ui.selectable_label(is_on, label).clicked() && !is_on {
+                setter.set(changed(&|text| text.align = align), true);
+            }
+        }
+    });
+    let leading = NumberField::new("Leading", 0.5..=3.0, "The distance of lines, in sizes");
+    let leading = leading.row(ui, words.leading);
+    setter.take(leading.map(|c| c.map(|to| changed(&|text| text.leading = to))));
+    let width = NumberField::new("Width", 0.0..=4000.0, "Where lines are broken; 0: nowhere");
+    let width = width.px().decimals(0).row(ui, words.width);
+    setter.take(width.map(|c| c.map(|to| changed(&|text| text.width = to))));
+    let arc = NumberField::new("Arc", -360.0..=360.0, "Bends lines along a circle").degrees();
+    let arc = arc.row(ui, words.arc);
+    setter.take(arc.map(|c| c.map(|to| changed(&|text| text.arc = to))));
+    let hint = "Columns from right to left, as in Japanese";
+    if let Some(vertical) = check(ui, "Vertical", hint, words.vertical) {
+        setter.set(changed(&|text| text.vertical = vertical), true);
+    }
+}
+
+/// The field that is typed in; the bytes that are selected in it.
+fn field(
+    ui: &mut Ui,
+    session: &Session,
+    layer: LayerId,
+    words: &Text,
+    setter: &mut LayerSetter,
+) -> Range<usize> {
+    let id = Id::unique(("words of a layer", layer));
+    let mut string = words.string();
+    if let Some(writing) = session.writing.filter(|writing| writing.layer == layer) {
+        begin(ui, id, writing, &string);
+    }
+    let edit = TextEdit::multiline(&mut string).id(id).desired_rows(2).desired_width(f32::INFINITY);
+    let output = edit.show(ui);
+    named(&output.response, "Words");
+    let byte =
+        |letters: usize| string.char_indices().nth(letters).map_or(string.len(), |(byte, _)| byte);
+    let range = output.cursor_range.map(|range| {
+        let ends = [byte(range.primary.index.0), byte(range.secondary.index.0)];
+        (ends[0].min(ends[1])..ends[0].max(ends[1]), ends[0])
+    });
+    let typed = range.clone().filter(|_| output.response.has_focus());
+    let typed = typed.map(|(bytes, caret)| TypedRange { layer, bytes, caret });
+    ui.data_mut(|data| data.insert_temp(typed_range(), typed));
+    if output.response.changed() {
+        // A word is a step of the history.
+        let is_word = string.ends_with(char::is_whitespace);
+        setter.set(Property::Worded { text: words.saying(&string) }, is_word);
+    } else if output.response.lost_focus() {
+        setter.set(Property::Worded { text: words.clone() }, true);
+    }
+    range.map_or(0..0, |(bytes, _)| bytes)
+}
+
+/// Goes into the field where the text tool was pressed, once for each press.
+fn begin(ui: &Ui, id: Id, writing: Writing, string: &str) {
+    let last = Id::unique("last press of the text tool");
+    if ui.data(|data| data.get_temp::<Writing>(last)) == Some(writing) {
+        return;
+    }
+    ui.data_mut(|data| data.insert_temp(last, writing));
+    let letters = |byte: usize| string.get(..byte).map_or(0, |before| before.chars().count());
+    let range = match writing.byte {
+        Some(byte) => CCursorRange::one(CCursor::new(letters(byte))),
+        None => CCursorRange::two(CCursor::new(0), CCursor::new(letters(string.len()))),
+    };
+    let mut state = egui::text_edit::TextEditState::load(ui.ctx(), id).unwrap_or_default();
+    state.cursor.set_char_range(Some(range));
+    state.store(ui.ctx(), id);
+    ui.memory_mut(|memory| memory.request_focus(id));
+}
+
+/// A menu of all fonts; another one that was chosen.
+fn family(ui: &mut Ui, layer: LayerId, current: &str) -> Option<String> {
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        name(ui, "Font");
+        let shown = if current.is_empty() { "Sans-serif" } else { current };
+        let response = ComboBox::from_id_salt(("font", layer))
+            .selected_text(shown)
+            .width(170.0)
+            .show_ui(ui, |ui| {
+                if ui.selectable_label(current.is_empty(), "Sans-serif").clicked() {
+                    chosen = Some(String::new());
+                }
+                for family in families(ui).iter() {
+                    if ui.selectable_label(current == family, family).clicked() {
+                        chosen = Some(family.clone());
+                    }
+                }
+            });
+        named(&response.response, "Font");
+    });
+    chosen
+}
+
+/// The families of this machine, read once.
+fn families(ui: &Ui) -> Arc<Vec<String>> {
+    let id = Id::unique("families of fonts");
+    if let Some(known) = ui.data(|data| data.get_temp::<Arc<Vec<String>>>(id)) {
+        return known;
+    }
+    let families = Arc::new(text::families());
+    ui.data_mut(|data| data.insert_temp(id, families.clone()));
+    families
+}
