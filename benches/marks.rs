@@ -162,7 +162,7 @@ fn added_layer(before: usize) -> f64 {
     let mut add = || {
         let start = Instant::now();
         add.apply(&mut session).expect("no file is touched");
-        let document = session.shown().expect("one is open");
+        let document = session.shown_document().expect("one is open");
         divan::black_box(PreparedDocument::new(document, &Progress::default()));
         start.elapsed().as_secs_f64() * 1e6
     };

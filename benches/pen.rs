@@ -52,7 +52,7 @@ fn stroke(number: usize) -> Arc<Stroke> {
             .round()
             / 8191.0;
         let tilt = vec2((32.0 + 9.0 * along).round(), (-20.0 + 6.0 * (4.0 * along).sin()).round());
-        Sample { at, pressure, tilt, time_secs: t + 0.0005 * (noise(n, 8) + 0.5) }.settled()
+        Sample { at, pressure, tilt, time_secs: t + 0.0005 * (noise(n, 8) + 0.5) }.normalized()
     };
     let brush = Brush { size: 6.0 + (number / 40 % 5) as f32, ..Brush::default() };
     let color = Color { r: (number * 37) as u8, g: (number * 11) as u8, b: 90, a: 255 };

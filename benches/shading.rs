@@ -246,7 +246,9 @@ fn one_look_up_of_the_environment(bencher: Bencher) {
         .collect();
     let pool = pool(1);
     bencher.counter(ItemsCount::new(rays.len())).bench_local(|| {
-        pool.install(|| rays.iter().map(|[ray, dx, dy]| light.over(*ray, *dx, *dy)).sum::<Vec3>())
+        pool.install(|| {
+            rays.iter().map(|[ray, dx, dy]| light.mean_over_pixel(*ray, *dx, *dy)).sum::<Vec3>()
+        })
     });
 }
 

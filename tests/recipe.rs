@@ -360,7 +360,8 @@ fn the_surface_is_written_as_it_was_read() {
         "mask": { "file": "m.png", "channel": "R", "invert": true }
     });
     let node = rilievo_io::json::JsonNode::root(Path::new("r.json"), &surface);
-    let written = recipe::surface::write(&recipe::surface::read(&node).unwrap().unwrap()).done();
+    let written =
+        recipe::surface::write(&recipe::surface::read(&node).unwrap().unwrap()).into_value();
     assert_eq!(without_float_spelling(&written), without_float_spelling(&surface));
 }
 

@@ -26,7 +26,7 @@ pub fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
     Ok(vec![value; len])
 }
 
-/// As [`filled`] for those who cannot fail: unwinds with an [`OutOfMemory`], which [`caught`] makes
+/// As [`filled`] for those who cannot fail: unwinds with an [`OutOfMemory`], which [`catch_out_of_memory`] makes
 /// a refusal of.
 pub fn filled_or_unwind<T: Clone>(len: usize, value: T) -> Vec<T> {
     filled(len, value).unwrap_or_else(|refused| std::panic::panic_any(refused))
@@ -43,7 +43,7 @@ pub fn copied_or_unwind<T: Clone>(values: &[T]) -> Vec<T> {
 }
 
 /// Does work of which some buffer may find no room.
-pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, OutOfMemory> {
+pub fn catch_out_of_memory<T>(work: impl FnOnce() -> T) -> Result<T, OutOfMemory> {
     // What the work made is dropped with it; nothing half done is seen again.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).map_err(|payload| {
         match payload.downcast() {
@@ -150,7 +150,7 @@ pub fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
 /// The value of a key that was made before, or a new one.
 ///
 /// * `made`: the last values and their keys; `most`: how many are kept.
-pub fn made_once<K: PartialEq, V>(
+pub fn compute_once<K: PartialEq, V>(
     made: &Mutex<Vec<(K, Arc<V>)>>,
     most: usize,
     key: K,
@@ -184,13 +184,16 @@ mod tests {
     fn a_buffer_without_room_is_a_refusal_and_no_abort() {
         let refused = filled(usize::MAX / 16, [0u64; 2]).unwrap_err();
         assert!(refused.to_string().starts_with("there is no memory for "), "{refused}");
-        assert_eq!(caught(|| filled_or_unwind(usize::MAX / 16, [0u64; 2]).len()), Err(refused));
+        assert_eq!(
+            catch_out_of_memory(|| filled_or_unwind(usize::MAX / 16, [0u64; 2]).len()),
+            Err(refused)
+        );
         assert_eq!(filled(3, 7u8), Ok(vec![7; 3]));
     }
 
     #[test]
     fn other_panics_are_passed_on() {
-        let passed = std::panic::catch_unwind(|| caught(|| panic!("another")));
+        let passed = std::panic::catch_unwind(|| catch_out_of_memory(|| panic!("another")));
         assert_eq!(passed.unwrap_err().downcast_ref(), Some(&"another"));
     }
 

@@ -17,14 +17,14 @@ pub type Fitted<T> = (T, Option<String>);
 /// * `read`: is called a second time only in that case, after what it returned first is freed.
 ///
 /// Fails as the first reading did if the second one fails too.
-pub fn fitted<T>(
+pub fn read_within_budget<T>(
     file: &Path,
     budget: &Budget,
     read: impl Fn(&Budget) -> Result<T>,
     document: impl Fn(&T) -> &Document,
 ) -> Result<Fitted<T>> {
     let read = |budget: &Budget| {
-        memory::caught(|| read(budget))
+        memory::catch_out_of_memory(|| read(budget))
             .unwrap_or_else(|refused| Err(Error::out_of_memory(file, refused)))
     };
     let first = read(budget);

@@ -79,7 +79,7 @@ fn describe_exr(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescri
 
 /// An SVG drawing, at its own size.
 fn describe_svg(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
-    let painted = svg::painted(file, bytes, 0, 0, budget)?;
+    let painted = svg::decode_paint(file, bytes, 0, 0, budget)?;
     Ok(FileDescription {
         format: "SVG",
         size: painted.size,

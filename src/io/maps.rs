@@ -77,7 +77,7 @@ pub fn import_watched(
     progress: &Progress,
 ) -> Result<Option<ImportedSurface>> {
     progress.add_total(STEPS);
-    let read = memory::caught(|| read(source, files, budget, progress));
+    let read = memory::catch_out_of_memory(|| read(source, files, budget, progress));
     read.map_err(|refused| Error::out_of_memory(files.path(""), refused))?
 }
 
@@ -144,18 +144,18 @@ fn read(
         overrides: &overrides,
         findings: &mut findings,
     };
-    let understood = loaded.understood(coverage)?;
+    let understood = loaded.interpret(coverage)?;
     // The remaining work takes the most memory, and the stored maps are no longer needed.
     drop((normal, depth));
     if is_over() {
         return Ok(None);
     }
     let eye = Eye::of_fov(understood.fov_degrees, understood.inside.size());
-    let maps = understood.completed(&overrides, &mut findings, progress);
+    let maps = understood.complete(&overrides, &mut findings, progress);
     if is_over() {
         return Ok(None);
     }
-    let surface = Surface::new(maps).map_err(|e| Error::decode(file, e))?.seen_by(eye);
+    let surface = Surface::new(maps).map_err(|e| Error::decode(file, e))?.with_eye(eye);
     progress.step();
     Ok(Some(ImportedSurface { surface, findings, files: files.assets() }))
 }

@@ -94,7 +94,8 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let shaped =
         |read: ProjectContents| ProjectContents { document: read.document.reshaped(), ..read };
     let read = |budget: &Budget| read(budget).map(shaped);
-    let (read, rounded) = deep_paint::fitted(file, budget, read, |read| &read.document)?;
+    let (read, rounded) =
+        deep_paint::read_within_budget(file, budget, read, |read| &read.document)?;
     let ProjectContents { document, mut notes, is_whole, picture } = read;
     let is_whole = is_whole && rounded.is_none();
     notes.extend(rounded);
@@ -128,7 +129,7 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
     let mut stored = picture::layers(file, bytes, budget)?;
     let (several, has_whole) = (!stored.is_empty(), stored.iter().any(|layer| layer.is_whole));
     if !several {
-        let painted = picture::painted(file, bytes, 0, 0, budget)?;
+        let painted = picture::decode_paint(file, bytes, 0, 0, budget)?;
         stored.push(picture::LightLayer { name: String::new(), painted, is_whole: true });
     }
     let warning = stored[0].painted.warning;

@@ -8,7 +8,7 @@ mod passes;
 
 pub use crate::pixels::Painted;
 pub use light::finished;
-pub use painted::painted;
+pub use painted::decode_paint;
 pub use passes::{LightLayer, layers};
 
 use super::bitmap::Bitmap;
@@ -131,7 +131,7 @@ pub fn decode_coverage(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Pla
     let plane = if ExrFile::is_exr(bytes) {
         let exr = ExrFile::open(file, bytes, budget)?;
         let mut covered = Vec::with_capacity(exr.size().area());
-        light::in_bands(file, &exr, light::chosen(file, &exr)?, |texels| {
+        light::in_bands(file, &exr, light::choose_pass(file, &exr)?, |texels| {
             covered.extend(texels.iter().map(|&t| coverage(t)));
             Ok(())
         })?;

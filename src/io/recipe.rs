@@ -232,7 +232,7 @@ fn check_version(root: &mut Fields) -> Result<()> {
     if number > VERSION {
         let reason =
             format!("is {number}; this program reads up to {VERSION}, so a newer one is needed");
-        return Err(version.refused(reason));
+        return Err(version.refusal(reason));
     }
     Ok(())
 }
@@ -283,8 +283,8 @@ fn shape(
     // the size.
     let own = match own {
         Some((own, node)) if canvas.is_none() || source.onto.is_none() => {
-            let import =
-                maps::import(own, source.files, source.budget).map_err(|e| node.led_to(e))?;
+            let import = maps::import(own, source.files, source.budget)
+                .map_err(|e| node.name_in_error(e))?;
             Some((import, node))
         }
         _ => None,
@@ -309,7 +309,7 @@ fn shape(
     };
     let maps::ImportedSurface { surface, findings, files } = import;
     let refused = |e: SurfaceError| match node {
-        Some(node) => node.refused(e),
+        Some(node) => node.refusal(e),
         None => Error::unsupported(source.file, e),
     };
     let map = node.and(own_map);
@@ -349,7 +349,7 @@ pub fn write(document: &Document) -> Value {
 pub fn write_naming(document: &Document, list: &SelectionList) -> Value {
     let mut out = head(document, list);
     out.set("layers", layers::write(&document.layers, document.size, list));
-    out.done()
+    out.into_value()
 }
 
 /// The same as text. However many strokes there are, only one at a time is in memory as values.
@@ -360,7 +360,7 @@ pub fn print(document: &Document) -> String {
     head(document, &list).fields().iter().for_each(|(key, value)| out.value(Some(key), value));
     layers::print(&document.layers, document.size, &list, &mut out);
     out.close_object();
-    out.done()
+    out.into_text()
 }
 
 /// All but the layers.

@@ -116,7 +116,7 @@ impl RecoveryLog {
 
     /// The version recorded last equals the file; without a file, the drawing as created. Nothing
     /// would be lost.
-    pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
+    pub fn mark_saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
         self.send(RecoveryTask::Saved(title.into(), file.map(Path::to_owned), stamp));
     }
 
@@ -237,7 +237,7 @@ fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Op
                 waiting_since.get_or_insert_with(Instant::now);
             }
             Ok(RecoveryTask::Saved(title, file, stamp)) => {
-                tell(journal.saved(&title, file.as_deref(), stamp))
+                tell(journal.mark_saved(&title, file.as_deref(), stamp))
             }
             Ok(RecoveryTask::Tell(done, flushed)) => {
                 if flushed {

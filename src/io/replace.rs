@@ -118,7 +118,7 @@ impl ReplaceJob<'_> {
     /// Whether it was done, and not canceled.
     fn run(&self) -> Result<bool> {
         let target = self.target()?;
-        self.allowed(&target)?;
+        self.check_allowed(&target)?;
         sweep(self.fs, folder_of(&target));
         let failed = |e| self.failed("it could not be written there; choose another folder", e);
         let mut part = PartFile::create(self.fs, folder_of(&target)).map_err(failed)?;
@@ -186,7 +186,7 @@ impl ReplaceJob<'_> {
 
     /// Keeps the old file, where that is wanted, and puts the new one in its place.
     fn place(&self, part: &PartFile, target: &Path) -> Result<()> {
-        self.allowed(target)?;
+        self.check_allowed(target)?;
         if self.terms.over == Overwrite::Nothing && self.link_new(part, target)? {
             return Ok(());
         }
@@ -233,7 +233,7 @@ impl ReplaceJob<'_> {
                 let _ = self.fs.remove(&part.path);
                 Ok(true)
             }
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => Err(self.taken()),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => Err(self.taken_error()),
             Err(_) => Ok(false),
         }
     }

@@ -61,7 +61,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
 }
 
 /// Decodes an SVG as paint at its own size, its corner at a canvas pixel.
-pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Result<Painted> {
+pub fn decode_paint(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Result<Painted> {
     let drawing = Drawing::parse(file, bytes, budget)?;
     let (size, texels) = drawing.render(file, 1.0, budget)?;
     let (w, h) = (size.width as usize, size.height as usize);

@@ -89,7 +89,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
     } else {
         0
     });
-    let done = crash::caught(|| force::naming_the_flag(dispatched(parsed.command, window)));
+    let done = crash::catch_panic(|| force::naming_the_flag(dispatched(parsed.command, window)));
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(sentence) => {

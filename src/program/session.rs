@@ -155,14 +155,14 @@ impl Session {
     }
 
     /// The document in front as shown, with the preview.
-    pub fn shown(&self) -> Option<&Document> {
-        self.active().map(OpenDocument::shown)
+    pub fn shown_document(&self) -> Option<&Document> {
+        self.active().map(OpenDocument::shown_document)
     }
 
     /// The selected layer as shown.
     pub fn layer(&self) -> Option<&Arc<Layer>> {
         let open = self.active()?;
-        open.shown().layer(open.selected?)
+        open.shown_document().layer(open.selected?)
     }
 
     /// The path of the selected layer.

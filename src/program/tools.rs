@@ -103,7 +103,7 @@ impl<'a> ToolContext<'a> {
     }
 
     /// The chosen layers: if none are given, the selected one.
-    pub fn chosen(&self) -> &[LayerId] {
+    pub fn selected_layers(&self) -> &[LayerId] {
         if self.layers.is_empty() { self.layer.as_slice() } else { self.layers }
     }
 }

@@ -143,8 +143,8 @@ impl Canvas {
             ui.ctx().request_repaint();
             return;
         };
-        let layout = open.known_layout();
-        if open.unwrapped().is_some() && layout.is_none() {
+        let layout = open.cached_layout();
+        if open.unwrap_settings().is_some() && layout.is_none() {
             return show_sentence(ui, rect, "Unwrapping the surface…");
         }
         let size = open.shown_size();
@@ -183,7 +183,7 @@ impl Canvas {
         };
         in_front.draw(&painter, screen_from_canvas, size);
         if let Some(wobble) = self.wobble.as_mut().filter(|_| layout.is_none()) {
-            if wobble.is_going_on(ui, open.shown()) {
+            if wobble.is_going_on(ui, open.shown_document()) {
                 return wobble.draw(&painter, screen_from_canvas);
             }
             // The event that ended it does nothing else.
@@ -236,15 +236,15 @@ impl Canvas {
     pub fn wobble(&mut self, ctx: &egui::Context, session: &Session) {
         self.wobble = match self.wobble {
             Some(_) => None,
-            None => {
-                session.shown().and_then(|document| Wobble::new(ctx, document, &self.whole.grid))
-            }
+            None => session
+                .shown_document()
+                .and_then(|document| Wobble::new(ctx, document, &self.whole.grid)),
         };
     }
 
     /// What is selected, as last drawn.
     pub fn selected(&self) -> Option<Rect> {
-        self.ants.covered()
+        self.ants.bounds()
     }
 
     fn draw_checker(&mut self, ui: &Ui, painter: &egui::Painter, canvas: [egui::Pos2; 4]) {

@@ -31,7 +31,7 @@ fn open() -> Result<Clipboard> {
 
 /// The picture or the files in the clipboard; fails if there are none. It takes as long as the
 /// program that owns them needs.
-pub fn pasted() -> Result<PastedContent> {
+pub fn read_clipboard() -> Result<PastedContent> {
     if let Some((name, bytes)) = offered(Budget::of_this_machine().file_bytes)? {
         let picture = picture::decode(Path::new(&name), &bytes, &Budget::of_this_machine())?;
         return Ok(PastedContent::Picture(PastedPicture { name, picture }));

@@ -58,7 +58,7 @@ pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
 }
 
 /// A command by its name.
-pub fn named(name: &str) -> Option<&'static MenuCommand> {
+pub fn find_command(name: &str) -> Option<&'static MenuCommand> {
     all().find(|command| command.name == name)
 }
 

@@ -3,7 +3,9 @@
 
 use crate::session::PicturePart;
 use crate::session::brushes::EXTENSIONS;
-use crate::session::storage::{DOCUMENTS, PICTURES, SAVED, exported, with_document_extension};
+use crate::session::storage::{
+    DOCUMENTS, PICTURES, SAVED, export_extensions, with_document_extension,
+};
 use std::path::PathBuf;
 
 /// What the file is for.
@@ -82,19 +84,19 @@ impl FilePurpose {
                 vec![("Pictures", pictures())]
             }
             FilePurpose::Save => vec![("Documents", SAVED.to_vec())],
-            FilePurpose::Export => vec![("Pictures", exported().collect())],
+            FilePurpose::Export => vec![("Pictures", export_extensions().collect())],
             FilePurpose::ExportMaps => vec![("Maps", MAPS.to_vec())],
             FilePurpose::ExportUnwrapped => vec![("Pictures", Self::FLAT.to_vec())],
         }
     }
 
     /// The final name of a chosen file. `extension`: for exports without one.
-    pub fn named(self, file: PathBuf, extension: &str) -> PathBuf {
+    pub fn final_name(self, file: PathBuf, extension: &str) -> PathBuf {
         match self {
             FilePurpose::Save => with_document_extension(file, SAVED[0], &SAVED),
             FilePurpose::ExportMaps => with_document_extension(file, MAPS[0], &MAPS),
             FilePurpose::Export => {
-                with_document_extension(file, extension, &exported().collect::<Vec<_>>())
+                with_document_extension(file, extension, &export_extensions().collect::<Vec<_>>())
             }
             FilePurpose::ExportUnwrapped => {
                 with_document_extension(file, Self::FLAT[0], &Self::FLAT)

@@ -176,7 +176,7 @@ impl<W: JobWindow> Jobs<W> {
         let (sender, ctx, watched) = (self.sender.clone(), self.ctx.clone(), progress.clone());
         let named = name.clone();
         let run = move || {
-            let done = memory::caught(|| work(&watched));
+            let done = memory::catch_out_of_memory(|| work(&watched));
             let done = done
                 .unwrap_or_else(|refused| JobResult::failed(Error::out_of_memory(&named, refused)));
             // The window may be closed by then.
@@ -202,7 +202,7 @@ impl<W: JobWindow> Jobs<W> {
     }
 
     /// The results since the last call. Canceled jobs have none, unless they were already done.
-    pub fn finished(&mut self) -> Vec<JobResult<W>> {
+    pub fn take_results(&mut self) -> Vec<JobResult<W>> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
             let is_canceled =

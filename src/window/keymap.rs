@@ -127,7 +127,7 @@ impl Keymap {
 }
 
 /// A key for display: “Ctrl+[”, with the system's names of modifiers.
-pub fn shown(ctx: &Context, keys: KeyboardShortcut) -> String {
+pub fn key_text(ctx: &Context, keys: KeyboardShortcut) -> String {
     let (text, key) = (ctx.format_shortcut(&keys), keys.logical_key);
     // The toolkit writes “OpenBracket”; its arrows are not in every font.
     match text.strip_suffix(key.name()) {

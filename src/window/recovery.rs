@@ -17,7 +17,7 @@ impl MainWindow {
     /// Keeps recovery logs in a folder, and offers lost drawings from it.
     pub fn keep_recovery_in(&mut self, folder: PathBuf) {
         let autosave = Autosave::new(folder);
-        let lost = autosave.lost();
+        let lost = autosave.lost_sessions();
         self.session.autosave = Some(autosave);
         // The window opens whatever is in that folder.
         let look = move || catch_unwind(AssertUnwindSafe(|| lost.list())).unwrap_or_default();
@@ -41,7 +41,7 @@ impl MainWindow {
         self.close_empty_offer();
         for one in lost {
             let Some(autosave) = &self.session.autosave else { return };
-            let (bring, title) = (autosave.lost(), one.title.clone());
+            let (bring, title) = (autosave.lost_sessions(), one.title.clone());
             self.jobs.start(
                 format!("Recovering {title}"),
                 JobKind::Working,

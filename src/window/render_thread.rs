@@ -106,7 +106,7 @@ impl RenderThread {
     }
 
     /// What was painted since the last call, and what else is painted within some time.
-    pub fn painted(&self, wait: Duration) -> impl Iterator<Item = RenderedTileBatch> + '_ {
+    pub fn take_rendered(&self, wait: Duration) -> impl Iterator<Item = RenderedTileBatch> + '_ {
         let (until, mut is_settled) = (Instant::now() + wait, false);
         std::iter::from_fn(move || {
             let left = if is_settled {
@@ -210,7 +210,7 @@ impl RenderWork {
         &mut self,
         step: impl FnOnce(&mut Self) -> T,
     ) -> Result<T, OutOfMemory> {
-        let done = memory::caught(|| step(self));
+        let done = memory::catch_out_of_memory(|| step(self));
         if done.is_err() {
             (self.whole, self.draft) = (RenderPass::default(), None);
             (self.phase, self.readiness) = (RenderPhase::Whole, Readiness::Ready);
@@ -367,7 +367,7 @@ impl RenderWork {
         if let Some(draft) = self.draft.as_mut().filter(|_| is_drafting) {
             let done = draft.pass.paint(draft.in_sight(visible), BATCH)?;
             let size = draft.pass.size()?;
-            return Some(RenderedTileBatch { is_draft: true, ..done.painted(picture, size) });
+            return Some(RenderedTileBatch { is_draft: true, ..done.into_batch(picture, size) });
         }
         self.catch_up();
         let done = self.whole.paint(visible, if is_dragged { FEW } else { BATCH })?;
@@ -383,7 +383,7 @@ impl RenderWork {
             self.show_draft();
         }
         let size = wanted_size(self.wanted.as_ref());
-        Some(done.painted(picture, size))
+        Some(done.into_batch(picture, size))
     }
 }
 

@@ -66,6 +66,6 @@ impl SwatchThread {
 }
 
 fn painted(preset: &BrushPreset) -> Option<ColorImage> {
-    let pixels = swatch::painted(preset, SIDE)?;
+    let pixels = swatch::render_swatch(preset, SIDE)?;
     Some(ColorImage::from_rgba_unmultiplied([SIDE as usize; 2], &pixels))
 }

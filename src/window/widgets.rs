@@ -149,13 +149,13 @@ impl<'a> NumberField<'a> {
             .fixed_decimals(self.decimals);
         let response = ui.add(drag);
         response.widget_info(|| egui::WidgetInfo::drag_value(true, f64::from(value)));
-        named(&response, self.label);
+        set_accessible_name(&response, self.label);
         change(&response.on_hover_text(self.hint), to)
     }
 }
 
 /// Gives a widget a name for screen readers and tests.
-pub fn named(response: &Response, label: &str) {
+pub fn set_accessible_name(response: &Response, label: &str) {
     let label = label.to_owned();
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }
@@ -186,7 +186,7 @@ pub fn choice<T: Copy + PartialEq>(
                 ui.selectable_value(&mut to, *choice, sentence(word));
             }
         });
-    named(&combo.response, label);
+    set_accessible_name(&combo.response, label);
     (to != current).then_some(to)
 }
 

@@ -126,7 +126,7 @@ impl MainWindow {
             leaving: false,
             after_saving: None,
             memory: MemoryMeter::default(),
-            clipboard_source: clipboard::pasted,
+            clipboard_source: clipboard::read_clipboard,
             clipboard: None,
             handed_out: None,
             busy: typing::BusyInput::default(),
@@ -144,7 +144,7 @@ impl MainWindow {
         Self { clipboard_source, ..self }
     }
 
-    /// A window that records its actions, see [`MainWindow::recorded`].
+    /// A window that records its actions, see [`MainWindow::replay_text`].
     pub fn recording(self) -> Self {
         // Snapping settings were stored, and are no action of this window.
         let aids = Action::Guide(GuideAction::Aids { aids: self.session.tools.aids });
@@ -154,7 +154,7 @@ impl MainWindow {
 
     /// The recorded actions as a replay file, one line each. Documents with corrected maps and
     /// recovered drawings do not come from files, and are not in it.
-    pub fn recorded(&self) -> String {
+    pub fn replay_text(&self) -> String {
         self.recorded.iter().flatten().map(|action| format!("{}\n", action.written())).collect()
     }
 
@@ -183,8 +183,10 @@ impl MainWindow {
 
     fn open_sample(&mut self) {
         self.jobs.start("Opening the sample".into(), JobKind::Working, |_| {
-            JobResult::of(sample::open(), |window: &mut Self, opened| window.opened(None, opened))
-                .in_front()
+            JobResult::of(sample::open(), |window: &mut Self, opened| {
+                window.add_opened(None, opened)
+            })
+            .in_front()
         });
     }
 
@@ -235,8 +237,8 @@ impl MainWindow {
 
     fn show_dialog(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
-        let size = self.session.shown().map(|document| document.size);
-        let is_flat = self.session.active().is_some_and(|open| open.unwrapped().is_some());
+        let size = self.session.shown_document().map(|document| document.size);
+        let is_flat = self.session.active().is_some_and(|open| open.unwrap_settings().is_some());
         let is_seen = matches!(dialog, Dialog::Export(_)) && !is_flat;
         let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
         let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, requests);
@@ -280,7 +282,7 @@ impl MainWindow {
             }
         }
         match answer {
-            DialogAnswer::Chosen(purpose, file) => self.chosen(purpose, file),
+            DialogAnswer::Chosen(purpose, file) => self.use_chosen_file(purpose, file),
             DialogAnswer::Imported(opened) => self.session.adopt(*opened),
             DialogAnswer::Replaced(maps) => self.take_maps(*maps, actions::files::replace_maps),
             DialogAnswer::Added(maps) => self.take_maps(*maps, actions::files::add_maps),

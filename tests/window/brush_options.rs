@@ -155,7 +155,7 @@ fn a_dialog_begins_in_its_first_number_and_enter_accepts() {
     };
     key(&mut harness, Modifiers::COMMAND, Key::N);
     typed(&mut harness, "300");
-    assert_eq!(session(&harness).shown().unwrap().size.width, 300);
+    assert_eq!(session(&harness).shown_document().unwrap().size.width, 300);
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn the_canvas_grows_from_its_anchor_the_picture_shrinks_and_turns() {
     harness.get_by_label_contains("Nothing is selected.");
     command(&mut harness, "Turn canvas left");
     command(&mut harness, "Mirror canvas left and right");
-    assert_eq!(session(&harness).active().unwrap().history.done(), Some("Mirror canvas"));
+    assert_eq!(session(&harness).active().unwrap().history.undo_label(), Some("Mirror canvas"));
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn the_canvas_is_trimmed_to_what_is_painted_beside_the_window() {
     command(&mut harness, "Trim canvas");
     until(&mut harness, |harness| size(harness).width < 1024);
     assert!(size(&harness).height < 1024 && size(&harness).width > 100);
-    assert_eq!(session(&harness).active().unwrap().history.done(), Some("Trim"));
+    assert_eq!(session(&harness).active().unwrap().history.undo_label(), Some("Trim"));
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(size(&harness), Size::new(1024, 1024));
 }

@@ -269,7 +269,7 @@ fn a_smaller_document_comes_to_the_front_under_a_pointer_over_a_larger_one() {
     let small = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_normals/bronze_muse.json");
     drop_files(&mut harness, &[&small]);
     until(&mut harness, |harness| session(harness).open_documents.len() == 2);
-    assert!(session(&harness).shown().is_some_and(|document| document.surface.is_some()));
+    assert!(session(&harness).shown_document().is_some_and(|document| document.surface.is_some()));
 }
 
 #[test]

@@ -107,7 +107,7 @@ fn rows_are_dragged_to_another_place_and_into_a_group_one_or_several() {
         group.layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>()
     };
     assert_eq!(inner(&harness), ["Gradient", "Background"]);
-    assert_eq!(session(&harness).active().unwrap().history.done(), Some("Move layers"));
+    assert_eq!(session(&harness).active().unwrap().history.undo_label(), Some("Move layers"));
     command(&mut harness, "Undo");
     assert_eq!(layers(&harness), ["Gradient", "Fill", "Background", "Group"]);
 }

@@ -38,7 +38,7 @@ fn every_look_is_offered_within_the_window_and_dresses_the_drawing() {
     let mut harness = window();
     let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/sample_normals/moonlight.json");
     drop_files(&mut harness, &[sample.as_ref()]);
-    until(&mut harness, |harness| session(harness).shown().unwrap().surface.is_some());
+    until(&mut harness, |harness| session(harness).shown_document().unwrap().surface.is_some());
     let (before, names) = (layers(&harness).len(), ["Oil sketch", "Gold", "Moonlight"]);
     command(&mut harness, "Looks…");
     let whole = harness.ctx.content_rect();

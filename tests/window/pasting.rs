@@ -28,7 +28,7 @@ fn document(harness: &Story) -> &Document {
 
 fn covered(harness: &Story) -> Rect {
     match &session(harness).layer().unwrap().content {
-        Content::Pixels(pixels) => CoverageGrid::of_alpha(&pixels.tiles).covered(),
+        Content::Pixels(pixels) => CoverageGrid::of_alpha(&pixels.tiles).covered_rect(),
         _ => panic!("it can be painted on"),
     }
 }
@@ -50,11 +50,11 @@ fn ctrl_v_pastes_paint_under_the_pointer_and_the_line_replays() {
             && (found.y0 as f32 + 20.0 - at.y).abs() <= 2.0,
         "{found:?}"
     );
-    let lines = harness.state().as_ref().unwrap().recorded();
+    let lines = harness.state().as_ref().unwrap().replay_text();
     let mut again = rilievo_program::session::Session::default();
     again.replay(std::path::Path::new("story"), &lines).unwrap();
     let Content::Pixels(pixels) = &again.layer().unwrap().content else { panic!("paint") };
-    assert_eq!(CoverageGrid::of_alpha(&pixels.tiles).covered(), found);
+    assert_eq!(CoverageGrid::of_alpha(&pixels.tiles).covered_rect(), found);
 }
 
 #[test]

@@ -98,7 +98,7 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
     assert_eq!(seen.layers.len(), 5, "{:?}", layers(&harness));
     assert!(harness.query_by_label("Dismiss").is_none(), "nothing went wrong");
 
-    let text = harness.state().as_ref().unwrap().recorded();
+    let text = harness.state().as_ref().unwrap().replay_text();
     let mut again = Session::default();
     again.replay(Path::new("story.jsonl"), &text).unwrap();
     let replayed = again.active().unwrap().document();

@@ -176,7 +176,7 @@ fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     press(&mut harness, "Cut drawing");
     steps(&mut harness);
     assert_eq!(layers(&harness)[..2], ["pair", "pair by parts"]);
-    let document = session(&harness).shown().unwrap().clone();
+    let document = session(&harness).shown_document().unwrap().clone();
     let group = document.layers[1].content.group().unwrap();
     assert!(group.layers.iter().all(|piece| piece.on.is_some()) && group.layers.len() == 3);
     assert!(harness.query_by_label("Cut drawing").is_none(), "it is cut already");
@@ -188,7 +188,7 @@ fn who_only_wants_to_paint_is_not_asked_again_but_told_where_marks_lie_flat() {
     let mut harness = opening(&drawing(&folder));
     asked(&mut harness);
     press(&mut harness, "Only paint");
-    assert!(session(&harness).shown().unwrap().surface.is_none());
+    assert!(session(&harness).shown_document().unwrap().surface.is_none());
     key(&mut harness, Modifiers::NONE, Key::B);
     key(&mut harness, Modifiers::NONE, Key::F3);
     harness.get_by_label_contains("No surface here");

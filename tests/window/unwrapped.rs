@@ -21,7 +21,7 @@ fn opened(folder: &Path) -> Story {
 }
 
 fn is_unwrapped(harness: &Story) -> bool {
-    session(harness).active().unwrap().unwrapped().is_some()
+    session(harness).active().unwrap().unwrap_settings().is_some()
 }
 
 #[test]
@@ -42,13 +42,13 @@ fn the_surface_is_laid_flat_painted_on_and_the_story_replays_to_the_same_bytes()
         assert!(stroke.operator().unwrapping().is_some() && stroke.samples().len() > 20);
         let canvas = open.document().size.rect();
         assert!(stroke.samples().iter().all(|s| canvas.contains(s.at.x as i32, s.at.y as i32)));
-        assert_eq!(open.history.done(), Some("Brush stroke"));
+        assert_eq!(open.history.undo_label(), Some("Brush stroke"));
     }
     key(&mut harness, Modifiers::ALT, Key::Num9);
     assert!(!is_unwrapped(&harness));
     assert!(harness.query_by_label("Dismiss").is_none(), "nothing went wrong");
     let seen = session(&harness).active().unwrap().document().clone();
-    let text = harness.state().as_ref().unwrap().recorded();
+    let text = harness.state().as_ref().unwrap().replay_text();
     let mut again = Session::default();
     again.replay(Path::new("story.jsonl"), &text).unwrap();
     let replayed = again.active().unwrap().document();
@@ -73,11 +73,11 @@ fn a_gradient_is_moved_on_one_piece_of_the_sheet_and_the_story_replays() {
             panic!("one piece: {:?}", live.params().pieces)
         };
         assert!(piece.moved.length() > 5.0 && piece.scale == 1.0, "{piece:?}");
-        assert_eq!(session(&harness).active().unwrap().history.done(), Some("Move piece"));
+        assert_eq!(session(&harness).active().unwrap().history.undo_label(), Some("Move piece"));
     }
     assert!(harness.query_by_label("Dismiss").is_none(), "nothing went wrong");
     let seen = session(&harness).active().unwrap().document().clone();
-    let text = harness.state().as_ref().unwrap().recorded();
+    let text = harness.state().as_ref().unwrap().replay_text();
     let mut again = Session::default();
     again.replay(Path::new("story.jsonl"), &text).unwrap();
     let replayed = again.active().unwrap().document();

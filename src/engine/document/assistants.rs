@@ -2,7 +2,7 @@
 //! document, not part of the picture. Floor 4. Not here: which of their lines a stroke takes
 //! (`tools::assistants`).
 
-use crate::math::range::{at_most, within};
+use crate::math::range::{at_most, check_range};
 use crate::math::{COORDINATE, PlaneMap, Vec2};
 
 /// An assistant with its handles.
@@ -79,7 +79,7 @@ impl Assistant {
             return Err(format!("an assistant has {is} handles; it must have {must}"));
         }
         let mut numbers = self.points.iter().flat_map(|point| point.to_array());
-        numbers.try_for_each(|v| within("a handle of an assistant", v, &COORDINATE))
+        numbers.try_for_each(|v| check_range("a handle of an assistant", v, &COORDINATE))
     }
 
     /// Refuses more of them than a file can hold, and those that files cannot hold.

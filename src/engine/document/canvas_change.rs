@@ -192,7 +192,7 @@ impl Document {
         }
         let carried = CarriedSelections::new(change);
         // What lies on parts is carried as it shows, and put on them again at their new places.
-        let lifted = self.lifted_off(|_| true);
+        let lifted = self.detach(|_| true);
         let layers = layers::Carrier { change, selections: &carried }.layers(&lifted.layers)?;
         let maps = self.maps_surface().map(|maps| maps.transformed(change.to, &change.map));
         let maps = maps.transpose().map_err(|error| match error {
@@ -205,10 +205,10 @@ impl Document {
             ..kept.clone()
         };
         let shows = |selection: &Arc<Selection>| {
-            !selection.coverage.covered().intersect(change.to.rect()).is_empty()
+            !selection.coverage.covered_rect().intersect(change.to.rect()).is_empty()
         };
         let both = self.maps_surface().zip(maps.as_ref()).map(|(old, new)| [old, new]);
-        let parts = parts::carried(&self.parts.list, change, both);
+        let parts = parts::transform_parts(&self.parts.list, change, both);
         let bare = Document {
             size: change.to,
             surface_source: source.map(|(source, maps)| Arc::new(source.placed_as(maps))),

@@ -147,7 +147,7 @@ impl Composer<'_> {
     /// What a displaced layer shows; `None` where it shows itself, and for one that is not
     /// displaced. Both sides of a contour pixel see the same, as with paint.
     fn displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
-        let shown = node.warp.as_ref()?.shown(self.at, &|at| self.in_place(node, at))?;
+        let shown = node.warp.as_ref()?.displaced_tile(self.at, &|at| self.in_place(node, at))?;
         let Some(tile) = shown else { return Some(TileContent::Nothing) };
         Some(match self.far {
             Some(far) => TileContent::Packed(Arc::new(far.same(&tile))),
@@ -194,8 +194,8 @@ impl Composer<'_> {
             return deep.content(node, marks, self.at, self.far);
         }
         match self.far {
-            Some(far) => node.layer.content.painted_far_side(&node.far_scene(far)),
-            None => node.layer.content.painted(&node.scene, self.at),
+            Some(far) => node.layer.content.render_far_side_tile(&node.far_scene(far)),
+            None => node.layer.content.render_tile(&node.scene, self.at),
         }
     }
 
@@ -301,7 +301,7 @@ impl PreparedLayer {
     pub(super) fn has_deep_picture(&self, at: TileAt) -> bool {
         let own = match &self.layer.content {
             Content::Image(live) if live.params().source.picture.is_deep() => {
-                !matches!(self.layer.content.painted(&self.scene, at), TileContent::Nothing)
+                !matches!(self.layer.content.render_tile(&self.scene, at), TileContent::Nothing)
             }
             _ => false,
         };

@@ -60,7 +60,7 @@ impl Document {
     /// The covered part of a layer, as a layer of its own under a fresh id: paint with those
     /// pixels, the strokes that meet the coverage, bounded to it, or the same live layer under a
     /// mask. `None` where nothing of the layer is there.
-    pub fn copied_from(&self, layer: LayerId, covered: &CoverageGrid) -> Option<Layer> {
+    pub fn copy_covered(&self, layer: LayerId, covered: &CoverageGrid) -> Option<Layer> {
         let shown = self.with_transform_applied(layer)?;
         let old = shown.layer(layer)?;
         if old.is_warped() {
@@ -240,7 +240,7 @@ mod tests {
         let (document, covered) = (layers(), covered());
         for layer in &document.layers {
             let whole = shown(layer);
-            let copied = shown(&document.copied_from(layer.id, &covered).unwrap());
+            let copied = shown(&document.copy_covered(layer.id, &covered).unwrap());
             let left = document.with_cleared(layer.id, &covered).unwrap();
             let left = shown(left.layer(layer.id).unwrap());
             for (x, y) in (0..200).step_by(3).flat_map(|x| (0..150).step_by(3).map(move |y| (x, y)))
@@ -267,14 +267,14 @@ mod tests {
         let document = layers();
         let strokes = &document.layers[1];
         let top = CoverageGrid::filled(Rect::new(0, 0, 200, 60));
-        let copied = document.copied_from(strokes.id, &top).unwrap();
+        let copied = document.copy_covered(strokes.id, &top).unwrap();
         let Content::Strokes(live) = &copied.content else { panic!("strokes") };
         assert_eq!(live.params().strokes.len(), 1);
         let left = document.with_cleared(strokes.id, &top).unwrap();
         let (old, new) = (document.strokes(strokes.id), left.strokes(strokes.id));
         assert!(Arc::ptr_eq(&old[1], new.last().unwrap()));
         let nothing = CoverageGrid::filled(Rect::new(0, 70, 200, 80));
-        assert!(document.copied_from(strokes.id, &nothing).is_none());
+        assert!(document.copy_covered(strokes.id, &nothing).is_none());
         let all = CoverageGrid::filled(SIZE.rect());
         assert!(document.with_cleared(strokes.id, &all).unwrap().strokes(strokes.id).is_empty());
     }

@@ -84,7 +84,7 @@ impl DeepTiles {
 
     /// How many textures are kept.
     #[cfg(test)]
-    pub fn held(&self) -> usize {
+    pub fn texture_count(&self) -> usize {
         self._textures.len()
     }
 

@@ -74,7 +74,7 @@ impl Document {
     /// With one more layer. `None` also if the document already has a layer of that id. What it has
     /// on parts that are not in this document stays where it shows.
     pub fn with_inserted(&self, layer: Layer, place: LayerSlot) -> Option<Document> {
-        let layer = self.adopted(layer);
+        let layer = self.adopt(layer);
         let new = Document { layers: vec![Arc::new(layer)], ..Document::empty(self.size) };
         if new.walk().iter().any(|(_, layer)| self.layer(layer.id).is_some()) {
             return None;

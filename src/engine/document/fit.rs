@@ -12,7 +12,7 @@ use super::{
     Assistant, Content, DerivedMask, DetailSource, Document, HomeFrame, Layer, LayerMask,
     LayerTransform, MaskKind, Part, PixelLayer, SelectionList,
 };
-use crate::math::range::{at_most, within};
+use crate::math::range::{at_most, check_range};
 use crate::math::{COORDINATE, Size};
 use crate::memory::free_bytes;
 use crate::raster::{Picture, Resampling, TILE};
@@ -166,7 +166,7 @@ impl Total {
                 self.values += marks::A_STOP * stops.len() + marks::AN_ANCHOR * pieces.len();
             }
             Content::Strokes(live) => {
-                let (samples, values) = marks::measured(&live.params().strokes);
+                let (samples, values) = marks::count_values(&live.params().strokes);
                 (self.samples, self.values) = (self.samples + samples, self.values + values);
             }
             Content::Shading(live) => {
@@ -190,7 +190,7 @@ impl Total {
     }
 
     fn add_part(&mut self, part: &Part) {
-        let (samples, values) = part.measured();
+        let (samples, values) = part.count_values();
         (self.samples, self.values) = (self.samples + samples, self.values + values);
     }
 
@@ -212,7 +212,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
     if was.is_none_or(|was| was.name != layer.name) {
         at_most("letters of the name", layer.name.chars().count(), Layer::LONGEST_NAME)?;
     }
-    within("opacity", layer.opacity, &Layer::OPACITY)?;
+    check_range("opacity", layer.opacity, &Layer::OPACITY)?;
     layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
     layer.transform.as_ref().map_or(Ok(()), |transform| transform.fits())?;
     if layer.is_warped() && !layer.content.can_be_warped() {
@@ -234,7 +234,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
         Content::Shading(live) => light::shading(live.params()),
         Content::RadianceScaling(scaling) => light::radiance_scaling(scaling),
         Content::Normals(normals) => {
-            within("the strength", normals.strength, &super::NormalLayer::STRENGTH)?;
+            check_range("the strength", normals.strength, &super::NormalLayer::STRENGTH)?;
             marks::placement(&normals.placement)?;
             match &normals.source {
                 DetailSource::Map { picture, .. } => marks::adjust(&picture.adjust),
@@ -246,7 +246,11 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
 
 fn mask_fits(mask: &LayerMask, canvas: Size) -> Fit {
     let ramp = |from, to, range| {
-        within("where the mask is 0", from, range).and(within("where the mask is 1", to, range))
+        check_range("where the mask is 0", from, range).and(check_range(
+            "where the mask is 1",
+            to,
+            range,
+        ))
     };
     match &mask.kind {
         MaskKind::File { coverage, .. } if coverage.size() != canvas => {
@@ -254,12 +258,12 @@ fn mask_fits(mask: &LayerMask, canvas: Size) -> Fit {
         }
         MaskKind::File { .. } => Ok(()),
         MaskKind::Derived(DerivedMask::Fresnel { f0, power }) => {
-            within("the mask's least", *f0, &DerivedMask::F0)?;
-            within("the mask's power", *power, &DerivedMask::POWER)
+            check_range("the mask's least", *f0, &DerivedMask::F0)?;
+            check_range("the mask's power", *power, &DerivedMask::POWER)
         }
         MaskKind::Derived(DerivedMask::Curvature { scale, blur, from, to }) => {
-            within("the mask's width", *scale, &FeatureScale::CURVATURE_PX)?;
-            within("the mask's blur", *blur, &FeatureScale::BLUR_PX)?;
+            check_range("the mask's width", *scale, &FeatureScale::CURVATURE_PX)?;
+            check_range("the mask's blur", *blur, &FeatureScale::BLUR_PX)?;
             ramp(*from, *to, &DerivedMask::KAPPA)
         }
         MaskKind::Derived(DerivedMask::Depth { from, to }) => ramp(*from, *to, &DerivedMask::DEPTH),
@@ -275,7 +279,7 @@ fn pixels_fit(pixels: &PixelLayer, canvas: Size) -> Fit {
     }
     [rect.x0, rect.y0, rect.x1, rect.y1]
         .iter()
-        .try_for_each(|v| within("a pixel's place", *v as f32, &COORDINATE))?;
+        .try_for_each(|v| check_range("a pixel's place", *v as f32, &COORDINATE))?;
     // The rectangle is that of whole tiles: the pixels' own is smaller by less than one on each
     // side.
     let inner = |long: usize| long.saturating_sub(2 * (TILE - 1)).max(1);

@@ -1,7 +1,7 @@
 //! Guides: straight lines across the canvas that what is dragged snaps to. A value of the document,
 //! not part of the picture. Floor 4. Not here: what snaps to them (`tools`).
 
-use crate::math::range::{at_most, within};
+use crate::math::range::{at_most, check_range};
 use crate::math::{COORDINATE, PlaneMap, Vec2, vec2};
 
 /// Lines across the canvas, px from its left or upper edge; in the order in which they were drawn.
@@ -26,7 +26,9 @@ impl Guides {
     pub fn fits(&self) -> Result<(), String> {
         for lines in [&self.vertical, &self.horizontal] {
             at_most("Guides", lines.len(), Self::MOST)?;
-            lines.iter().try_for_each(|at| within("the place of a guide", *at, &COORDINATE))?;
+            lines
+                .iter()
+                .try_for_each(|at| check_range("the place of a guide", *at, &COORDINATE))?;
         }
         Ok(())
     }

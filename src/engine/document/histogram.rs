@@ -29,7 +29,7 @@ impl Histogram {
 
     /// Of what lies beneath an adjustment in its scope; `None` if it is no visible adjustment, or
     /// canceled.
-    pub fn beneath(document: &Document, layer: LayerId, progress: &Progress) -> Option<Self> {
+    pub fn of_backdrop(document: &Document, layer: LayerId, progress: &Progress) -> Option<Self> {
         let prepared = PreparedDocument::new(document, progress)?;
         let sought = prepared.adjustment_of(layer);
         sought?;
@@ -102,10 +102,10 @@ mod tests {
         let id = curves.id;
         let layers = vec![Arc::new(fill(200)), Arc::new(curves), Arc::new(fill(9))];
         let document = Document { layers, ..Document::empty(Size::new(64, 64)) };
-        let found = Histogram::beneath(&document, id, &Progress::default()).unwrap();
+        let found = Histogram::of_backdrop(&document, id, &Progress::default()).unwrap();
         assert_eq!(found.channels[0][200], 64 * 64);
         assert_eq!((found.channels[1][20], found.all[30]), (64 * 64, 64 * 64));
         let other = document.layers[0].id;
-        assert_eq!(Histogram::beneath(&document, other, &Progress::default()), None);
+        assert_eq!(Histogram::of_backdrop(&document, other, &Progress::default()), None);
     }
 }

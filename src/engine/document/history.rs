@@ -128,7 +128,7 @@ impl<T> History<T> {
     }
 
     /// The edit that undo would revert.
-    pub fn done(&self) -> Option<&str> {
+    pub fn undo_label(&self) -> Option<&str> {
         self.past.last().map(|step| step.label.name.as_str())
     }
 
@@ -192,7 +192,7 @@ mod tests {
         assert!(history.has_target_after());
         let two = [history.undo().cloned(), history.undo().cloned()];
         assert_eq!(two, [Some("before Three".into()), Some("before Two".into())]);
-        assert_eq!((history.done(), history.undone()), (Some("One"), Some("Two")));
+        assert_eq!((history.undo_label(), history.undone()), (Some("One"), Some("Two")));
         assert_eq!(history.redo(), Some(&"before Two".into()), "nothing was said about after it");
         assert_eq!(history.redo(), Some(&"after Three".into()));
         history.set_target_after("much later".into());

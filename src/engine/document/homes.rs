@@ -124,7 +124,7 @@ impl Document {
 
     /// With nothing on some parts: what was on them stays where it shows, carried by what is around
     /// it.
-    pub(in crate::document) fn lifted_off(&self, is_gone: impl Fn(&str) -> bool) -> Document {
+    pub(in crate::document) fn detach(&self, is_gone: impl Fn(&str) -> bool) -> Document {
         let none = LayerMap::none(self.size);
         let rehome =
             |home: &HomeFrame| (home.is_canvas() || !is_gone(&home.part)).then(|| home.clone());
@@ -135,7 +135,7 @@ impl Document {
     }
 
     /// A layer of another document: homes that do not exist here are removed.
-    pub(in crate::document) fn adopted(&self, layer: Layer) -> Layer {
+    pub(in crate::document) fn adopt(&self, layer: Layer) -> Layer {
         let alone =
             Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(self.size) };
         let known = |id: &str| self.parts.part(id).is_some();
@@ -143,7 +143,7 @@ impl Document {
         if all_known {
             return layer;
         }
-        let lifted = alone.lifted_off(|id| !known(id));
+        let lifted = alone.detach(|id| !known(id));
         lifted.layers.first().map_or(layer, |layer| Layer::clone(layer))
     }
 
@@ -248,7 +248,7 @@ fn preserve_look_on(
     if stood != outside {
         // From the list that it was in to the one that it is in.
         let outer = stood.then(&outside.inverse());
-        next.liquify = layer.carried_liquify(&outer, old.canvas);
+        next.liquify = layer.transformed_liquify(&outer, old.canvas);
         next.transform = match layer.transform.as_ref().and_then(|own| own.mesh()) {
             Some(mesh) => {
                 let shape = TransformShape::Mesh(Arc::new(mesh.then(&outer)?));

@@ -126,9 +126,9 @@ impl Layer {
     }
 
     /// Its liquify on a plane moved by a map; what lies far beyond the canvas is dropped.
-    pub(super) fn carried_liquify(&self, map: &PlaneMap, canvas: Size) -> Option<Arc<Lattice>> {
+    pub(super) fn transformed_liquify(&self, map: &PlaneMap, canvas: Size) -> Option<Arc<Lattice>> {
         let within = canvas.rect().grown(canvas.longer_side() as i32);
-        let carried = self.liquify.as_ref()?.carried(map, within);
+        let carried = self.liquify.as_ref()?.transformed(map, within);
         (!carried.is_empty()).then(|| Arc::new(carried))
     }
 }

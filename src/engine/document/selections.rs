@@ -219,7 +219,7 @@ impl SelectionList {
     }
 
     /// With the names of those that have one.
-    pub fn named(&self) -> impl Iterator<Item = (Option<&str>, &Arc<Selection>)> {
+    pub fn iter_with_names(&self) -> impl Iterator<Item = (Option<&str>, &Arc<Selection>)> {
         self.all.iter().map(|(name, selection)| (name.as_deref(), selection))
     }
 

@@ -10,7 +10,7 @@ mod weights;
 pub mod wobble;
 
 pub use contact_sheet::sheet;
-pub use unwrapped::{UnwrapOptions, UnwrappedPicture, placed_over, unwrapped};
+pub use unwrapped::{UnwrapOptions, UnwrappedPicture, placed_over, render_unwrapped};
 pub use weights::color_of as anchor_color;
 
 use super::{Document, Layer, Progress};
@@ -128,7 +128,8 @@ pub fn draw(
         SurfaceView::Contours => maps::contours(surface()?),
         SurfaceView::Scaling => scaling::plots().ok_or(ViewUnavailable::NoMemory)?,
         SurfaceView::Unwrapped => {
-            let seen = unwrapped(document, layer, UnwrapOptions::default(), &Progress::default())?;
+            let seen =
+                render_unwrapped(document, layer, UnwrapOptions::default(), &Progress::default())?;
             seen.picture().ok_or(ViewUnavailable::NoMemory)?
         }
         SurfaceView::Directions => flows::directions(surface()?, options),

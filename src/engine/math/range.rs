@@ -17,12 +17,12 @@ pub const UNIT: Range = 0.0..=1.0;
 pub const STOPS: Range = -32.0..=32.0;
 
 /// The nearest number of a range; its least if `v` is NaN.
-pub fn held(v: f32, range: &Range) -> f32 {
+pub fn clamp_to_range(v: f32, range: &Range) -> f32 {
     v.max(*range.start()).min(*range.end())
 }
 
 /// Refuses a number outside its range with a sentence that begins with `what`.
-pub fn within(what: &str, v: f32, range: &Range) -> Result<(), String> {
+pub fn check_range(what: &str, v: f32, range: &Range) -> Result<(), String> {
     let (least, most) = (range.start(), range.end());
     // NaN is in no range.
     if range.contains(&v) {

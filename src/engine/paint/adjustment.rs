@@ -122,7 +122,7 @@ impl ColorAdjustment {
     }
 
     /// With the nearest numbers that a document may hold.
-    pub fn held(mut self) -> Self {
+    pub fn clamp_to_ranges(mut self) -> Self {
         self.visit(&mut Holder);
         self
     }

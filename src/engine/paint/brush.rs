@@ -8,7 +8,7 @@ use super::dynamics::{Dynamics, Input, Property};
 use super::grain::{BrushGrain, GrainSource};
 use super::image::PictureSource;
 use super::tip::{Bristles, Hose, Noise};
-use crate::math::{Mat2, Range, UNIT, Vec2, range::held};
+use crate::math::{Mat2, Range, UNIT, Vec2, range::clamp_to_range};
 use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
 
@@ -161,13 +161,15 @@ impl BrushMode {
     pub const SHARE: Range = UNIT;
 
     /// With its numbers clamped to their ranges.
-    pub fn held(self) -> Self {
+    pub fn clamp_to_ranges(self) -> Self {
         match self {
             BrushMode::Paint | BrushMode::Clone { .. } => self,
             BrushMode::Smudge { length } => {
-                BrushMode::Smudge { length: held(length, &Self::SHARE) }
+                BrushMode::Smudge { length: clamp_to_range(length, &Self::SHARE) }
             }
-            BrushMode::Blur { width } => BrushMode::Blur { width: held(width, &Self::SHARE) },
+            BrushMode::Blur { width } => {
+                BrushMode::Blur { width: clamp_to_range(width, &Self::SHARE) }
+            }
         }
     }
 

@@ -212,7 +212,7 @@ impl<'s> PlacedDab<'s> {
     ) -> (RoundTip, Option<DeformationField<'f>>) {
         let Some(surface) = self.bent_over else { return (tip, None) };
         if let Some(own) = self.deformation.own_plane(part.area) {
-            return (tip.about(own.at), Some(DeformationField::of_plane(surface, &own)));
+            return (tip.with_center(own.at), Some(DeformationField::of_plane(surface, &own)));
         }
         self.fill_touched(part, deformed);
         (tip, Some(DeformationField::new(surface, part.area.grown(1), deformed)))

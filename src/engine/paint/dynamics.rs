@@ -181,7 +181,7 @@ impl Dynamics {
     }
 
     /// What an input adds to a property.
-    pub fn added(&self, property: Property, input: Input) -> Option<&Curve> {
+    pub fn added_curve(&self, property: Property, input: Input) -> Option<&Curve> {
         self.of_kind(property, input, true)
     }
 
@@ -194,7 +194,8 @@ impl Dynamics {
     /// The share of a property that follows the pressure, `[0, 1]`: a slider shows a curve by its
     /// total fall.
     pub fn pressure_share(&self, property: Property) -> f32 {
-        let curve = self.curve(property, Input::Pressure).or(self.added(property, Input::Pressure));
+        let curve =
+            self.curve(property, Input::Pressure).or(self.added_curve(property, Input::Pressure));
         let fall = |curve: &Curve| match property {
             Property::Size if curve.is_additive() => 1.0 - (curve.at(0.0) - curve.at(1.0)).exp2(),
             _ => curve.at(1.0) - curve.at(0.0),
@@ -312,7 +313,7 @@ mod tests {
         assert_eq!(dynamics.pressure_share(Property::Size), 1.0 - 1.0 / 16.0);
         let none = dynamics.with(Property::Hardness, Input::Pressure, added(&[(0.0, 0.0)]));
         assert!(
-            none.added(Property::Hardness, Input::Pressure).is_none(),
+            none.added_curve(Property::Hardness, Input::Pressure).is_none(),
             "adding nothing is no row"
         );
         assert_eq!(dynamics.with_pressure(Property::Size, 0.5).pressure_share(Property::Size), 0.5);

@@ -88,7 +88,7 @@ impl Fill {
         }
         // Comparisons that turn NaN into the minimum.
         let tolerance = (self.tolerance.max(0.0).min(1.0) * 255.0).round() as u8;
-        let flooded = flood::joined((x, y), canvas, part, tolerance, tile)?;
+        let flooded = flood::connected_area((x, y), canvas, part, tolerance, tile)?;
         let gap_px = self.gap_px.max(0.0).min(WIDEST_GAP_PX);
         let inside = flood::pixels(&flooded);
         let inside =
@@ -120,7 +120,7 @@ impl Fill {
         }
         let found = match everywhere {
             true => flood::alike((x, y), canvas, part, tolerance, tile)?,
-            false => flood::joined((x, y), canvas, part, tolerance, tile)?.coverage(),
+            false => flood::connected_area((x, y), canvas, part, tolerance, tile)?.coverage(),
         };
         let found = if moves == 0.0 { found } else { edges::grown(&found, moves, canvas.rect()) };
         Some(if part.is_whole() { found } else { limited(&found, part) })

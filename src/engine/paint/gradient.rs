@@ -115,7 +115,7 @@ impl RampPositions {
         let bend = gradient.bend();
         let mut d = DeformedRect::default();
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &bend);
-        let deformation = deformation.about(BentFrame::origin(&gradient.frame));
+        let deformation = deformation.with_origin(BentFrame::origin(&gradient.frame));
         deformation.fill(rect, &mut d);
         let frame = BentFrame::of(&gradient.frame, rect, deformation.origin());
         if !frame.apply(&mut d.x, &mut d.y) && frame.linear != Affine2::IDENTITY {

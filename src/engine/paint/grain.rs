@@ -19,7 +19,7 @@ use super::image::PictureSource;
 use super::pattern::Pattern;
 use super::tip::texture::gray;
 use crate::math::Range;
-use crate::memory::made_once;
+use crate::memory::compute_once;
 use crate::raster::{Plane, Texture};
 use std::sync::{Arc, Mutex};
 
@@ -124,11 +124,11 @@ impl BrushGrain {
             GrainSource::Pattern { pattern, seed } => {
                 let side = Pattern::side_of(self.size_px);
                 let make = || of_grays(&pattern.plane(*seed, side), self.levels);
-                made_once(&MADE, KEPT, (*pattern, *seed, levels, side), make)
+                compute_once(&MADE, KEPT, (*pattern, *seed, levels, side), make)
             }
             GrainSource::Picture(source) => {
                 let make = || of_grays(&luminance(source.texture()), self.levels);
-                made_once(source.stamps().grains(), KEPT, levels, make)
+                compute_once(source.stamps().grains(), KEPT, levels, make)
             }
         }
     }

@@ -348,7 +348,7 @@ impl PlacedImage {
     ) -> ImageLookup {
         let texels_from_frame = self.placement.texels_from_canvas(scene.size, texture);
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
-        let deformation = deformation.about(BentFrame::origin(&self.frame));
+        let deformation = deformation.with_origin(BentFrame::origin(&self.frame));
         let bent_frame = BentFrame::of(&self.frame, area, deformation.origin());
         let texels_from_canvas = texels_from_frame * bent_frame.linear;
         let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;

@@ -73,8 +73,8 @@ impl LiquifySettings {
     pub const STRENGTH: Range = UNIT;
 
     /// The same with numbers in range.
-    pub fn held(&self) -> Self {
-        let held = crate::math::range::held;
+    pub fn clamp_to_ranges(&self) -> Self {
+        let held = crate::math::range::clamp_to_range;
         Self {
             size: held(self.size, &Self::SIZE),
             strength: held(self.strength, &Self::STRENGTH),
@@ -125,7 +125,15 @@ impl LiquifyStroke {
             let objects = surface.objects();
             objects.at(at.x.floor() as i32, at.y.floor() as i32).map(|object| (objects, object))
         });
-        Self { settings: settings.held(), scene, selection, to_canvas, object, last: at, gone: 0.0 }
+        Self {
+            settings: settings.clamp_to_ranges(),
+            scene,
+            selection,
+            to_canvas,
+            object,
+            last: at,
+            gone: 0.0,
+        }
     }
 
     fn radius(&self) -> f32 {

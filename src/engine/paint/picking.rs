@@ -38,7 +38,7 @@ impl Stroke {
     }
 
     /// The stroke as plain paint on transparency, also if it erases or has another blend mode.
-    pub fn covered(self: &Arc<Self>, scene: &Scene) -> TileGrid {
+    pub fn render_opaque(self: &Arc<Self>, scene: &Scene) -> TileGrid {
         let paint = [self.as_paint()];
         let mut grid = TileGrid::for_rect(self.bounds(scene));
         for at in TileAt::covering(self.bounds(scene)).filter(|&at| self.can_touch(scene, at)) {

@@ -15,7 +15,7 @@ use super::brush::{Brush, Tip};
 use super::brush_options::Falloff;
 use super::dynamics::Property;
 use super::profile::RoundProfile;
-use crate::memory::made_once;
+use crate::memory::compute_once;
 use std::sync::{Arc, Mutex};
 
 /// Where a stroke of such dabs ends, in radii of the dab.
@@ -110,7 +110,7 @@ impl RimTable {
         let step = (2.0 * brush.spacing).max(0.02).min(4.0);
         let (hardness, softness) = (unit(brush.hardness), unit(brush.softness));
         let key = [u32::from(is_square), hardness.to_bits(), softness.to_bits(), step.to_bits()];
-        Some(made_once(&MADE, KEPT, key, || {
+        Some(compute_once(&MADE, KEPT, key, || {
             Self::integrate(is_square, RoundProfile::new(hardness, softness), step)
         }))
     }

@@ -34,10 +34,10 @@ impl Sample {
     /// The reading as a stroke keeps it: within what a document may hold, and on a grid finer than
     /// any pen reports (1/256 px, 1/16384 of the pressure, 1/64°, 1/8192 s), so that a file stores
     /// each step in a byte or two.
-    pub fn settled(&self) -> Self {
+    pub fn normalized(&self) -> Self {
         let on = |v: f32, per_unit: f32, range: &Range| {
             // As f64: every value in the range stays a whole number of steps.
-            let steps = f64::from(range::held(v, range)) * f64::from(per_unit);
+            let steps = f64::from(range::clamp_to_range(v, range)) * f64::from(per_unit);
             (steps.round() / f64::from(per_unit)) as f32
         };
         let place = |v: f32| on(v, 256.0, &COORDINATE);

@@ -50,7 +50,7 @@ impl Selection {
     }
 
     /// Coverage that a region of the surface has for now, until it is found where it belongs.
-    pub fn carried(coverage: CoverageGrid, made: Option<SurfaceRegion>) -> Self {
+    pub fn provisional(coverage: CoverageGrid, made: Option<SurfaceRegion>) -> Self {
         Self { coverage, made, found: None }
     }
 
@@ -216,7 +216,10 @@ mod tests {
         assert!(selection.coverage.is_same(&CoverageGrid::filled(Rect::new(0, 0, 100, 70))));
         assert!(selection.found_on(&scene).is_none(), "it was found there");
         let wide = Scene { size: Size::new(120, 70), surface: None };
-        assert_eq!(selection.found_on(&wide).unwrap().coverage.covered(), Rect::new(0, 0, 120, 70));
+        assert_eq!(
+            selection.found_on(&wide).unwrap().coverage.covered_rect(),
+            Rect::new(0, 0, 120, 70)
+        );
         assert!(blot().found_on(&scene).is_none());
     }
 }

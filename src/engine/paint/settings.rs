@@ -3,7 +3,7 @@
 //! (`brush_options`).
 
 use super::brush::Brush;
-use crate::math::{Range, TURNS, UNIT, range::held};
+use crate::math::{Range, TURNS, UNIT, range::clamp_to_range};
 
 /// A number of a brush that a user sets, for new strokes or for existing ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,7 @@ impl BrushNumber {
             BrushNumber::Rotation => &mut brush.rotation,
             BrushNumber::Reach => &mut brush.reach,
         };
-        *field = held(to, &self.range());
+        *field = clamp_to_range(to, &self.range());
     }
 }
 
@@ -81,7 +81,7 @@ impl Setting {
 
     /// Within its range.
     pub fn set(&self, brush: &mut Brush, to: f32) {
-        (self.set)(brush, held(to, &self.range));
+        (self.set)(brush, clamp_to_range(to, &self.range));
     }
 
     /// What it is for a new brush.

@@ -15,7 +15,7 @@ pub fn outermost(size: Size) -> Vec<usize> {
 
 /// The pixels that are joined to the border over four neighbors, through pixels that `is` accepts by
 /// their index.
-pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
+pub fn connected_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     let (w, h) = (size.width as usize, size.height as usize);
     let mut found = Plane::filled(size, false);
     // No file has more pixels than 32 bits count.
@@ -60,7 +60,7 @@ mod tests {
         let rows = ["..#..", ".###.", ".#.#.", ".###.", "....."];
         let size = Size::new(5, 5);
         let is_open = |i: usize| rows[i / 5].as_bytes()[i % 5] == b'.';
-        let found = joined_to_border(size, is_open);
+        let found = connected_to_border(size, is_open);
         let expected = Plane::from_fn(size, |x, y| is_open(y * 5 + x) && (x, y) != (2, 2));
         assert!(found == expected);
     }

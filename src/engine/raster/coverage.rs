@@ -193,14 +193,14 @@ impl Grid<CoverageTile> {
     }
 
     /// The smallest rectangle that holds every pixel that is covered at all.
-    pub fn covered(&self) -> Rect {
+    pub fn covered_rect(&self) -> Rect {
         self.iter().fold(Rect::EMPTY, |all, (at, tile)| {
             let rect = at.rect();
             // Tiles inside it need no scan.
             if tile.is_whole() || all.intersect(rect) == rect {
                 all.union(rect)
             } else {
-                all.union(covered(at, tile))
+                all.union(covered_rect(at, tile))
             }
         })
     }
@@ -322,7 +322,7 @@ fn clip(bytes: &mut [u8; TILE_AREA], at: TileAt, rect: Rect) {
     }
 }
 
-fn covered(at: TileAt, tile: &CoverageTile) -> Rect {
+fn covered_rect(at: TileAt, tile: &CoverageTile) -> Rect {
     let (mut x0, mut x1, mut y0, mut y1) = (TILE, 0, TILE, 0);
     for (y, row) in tile.bytes().as_chunks::<TILE>().0.iter().enumerate() {
         let Some(first) = row.iter().position(|&b| b != 0) else { continue };

@@ -202,7 +202,7 @@ impl Lattice {
     /// The same displacement after a map of the plane: what was displaced is displaced in the same
     /// way in its new place.
     /// * `within`: nodes beyond it are dropped.
-    pub fn carried(&self, map: &PlaneMap, within: Rect) -> Lattice {
+    pub fn transformed(&self, map: &PlaneMap, within: Rect) -> Lattice {
         let held = self.blocks.bounds().grown(2 * CELL as i32);
         let corner = |x: i32, y: i32| map.to_canvas(vec2(x as f32, y as f32));
         let Rect { x0, y0, x1, y1 } = held;

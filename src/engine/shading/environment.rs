@@ -122,24 +122,24 @@ fn is_same(a: &Picture, b: &Picture) -> bool {
 
 impl EnvironmentLight {
     /// L_env(d): light from a unit direction, read as finely as the picture is.
-    pub fn along(&self, d: Vec3) -> Vec3 {
+    pub fn radiance(&self, d: Vec3) -> Vec3 {
         self.prepared.map.at(self.turn.apply(d)) * self.gain
     }
 
     /// The mean light over a cone of about `width_rad` across.
-    pub fn around(&self, d: Vec3, width_rad: f32) -> Vec3 {
-        self.prepared.map.around(self.turn.apply(d), width_rad) * self.gain
+    pub fn mean_over_cone(&self, d: Vec3, width_rad: f32) -> Vec3 {
+        self.prepared.map.mean_over_cone(self.turn.apply(d), width_rad) * self.gain
     }
 
     /// The mean light over the footprint of a pixel from which the direction changes by `dx` to the
     /// next in its row and by `dy` to the next in its column.
-    pub fn over(&self, d: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
+    pub fn mean_over_pixel(&self, d: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
         let turn = self.turn;
-        self.prepared.map.over(turn.apply(d), turn.apply(dx), turn.apply(dy)) * self.gain
+        self.prepared.map.mean_over_pixel(turn.apply(d), turn.apply(dx), turn.apply(dy)) * self.gain
     }
 
-    /// [`EnvironmentLight::over`] at the covered pixels of a row; elsewhere it is black.
-    pub fn over_row(
+    /// [`EnvironmentLight::mean_over_pixel`] at the covered pixels of a row; elsewhere it is black.
+    pub fn mean_over_pixel_row(
         &self,
         d: &Directions,
         dx: &Directions,
@@ -148,20 +148,20 @@ impl EnvironmentLight {
         light: &mut Light3,
     ) {
         let [d, dx, dy] = [d, dx, dy].map(|directions| self.turned(directions));
-        self.prepared.map.over_row(&d, &dx, &dy, covered, light);
+        self.prepared.map.mean_over_pixel_row(&d, &dx, &dy, covered, light);
         self.expose(light);
     }
 
-    /// [`EnvironmentLight::around`] at the pixels of a row that `wanted` is not 0 at; elsewhere it
+    /// [`EnvironmentLight::mean_over_cone`] at the pixels of a row that `wanted` is not 0 at; elsewhere it
     /// is black.
-    pub fn around_row(
+    pub fn mean_over_cone_row(
         &self,
         d: &Directions,
         width_rad: &RowValues,
         wanted: &RowValues,
         light: &mut Light3,
     ) {
-        self.prepared.map.around_row(&self.turned(d), width_rad, wanted, light);
+        self.prepared.map.mean_over_cone_row(&self.turned(d), width_rad, wanted, light);
         self.expose(light);
     }
 
@@ -206,7 +206,7 @@ impl EnvironmentLight {
             EnvironmentSample {
                 direction,
                 solid_angle,
-                radiance: self.around(direction, solid_angle.sqrt()),
+                radiance: self.mean_over_cone(direction, solid_angle.sqrt()),
             }
         };
         (0..count).map(sample).collect()

@@ -309,7 +309,7 @@ impl Shading {
     /// Its lights with their shadows, as seen from the rows of a tile of a surface.
     fn row_lights(&self, surface: &Surface) -> Vec<RowLight> {
         let maps = self.shadows.maps(surface, &self.lights);
-        let (mut maps, left) = (maps.into_iter(), self.shadows.left());
+        let (mut maps, left) = (maps.into_iter(), self.shadows.remaining_light());
         let row_light = |light: &Light| match maps.next() {
             Some(map) => light.row_light().with_shadow(map, left),
             None => light.row_light(),

@@ -53,7 +53,7 @@ impl Shadows {
     }
 
     /// The light that is left where a lamp is hidden, linear, as a share of its own.
-    pub fn left(&self) -> [f32; 3] {
+    pub fn remaining_light(&self) -> [f32; 3] {
         self.color.linear().map(|c| 1.0 - self.strength * (1.0 - c))
     }
 

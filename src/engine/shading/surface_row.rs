@@ -124,7 +124,7 @@ impl<'a> SurfaceRow<'a> {
     }
 
     /// Directions in each pixel's own frame.
-    pub fn seen<'d>(&self, direction: &'d [RowValues; 3]) -> Cow<'d, [RowValues; 3]> {
+    pub fn in_pixel_frames<'d>(&self, direction: &'d [RowValues; 3]) -> Cow<'d, [RowValues; 3]> {
         let Some(near) = &self.near else { return Cow::Borrowed(direction) };
         let mut seen = *direction;
         for x in 0..self.width {
@@ -134,7 +134,7 @@ impl<'a> SurfaceRow<'a> {
         Cow::Owned(seen)
     }
 
-    /// The reverse of [`SurfaceRow::seen`].
+    /// The reverse of [`SurfaceRow::in_pixel_frames`].
     pub fn from_seen<'d>(&self, seen: &'d [RowValues; 3]) -> Cow<'d, [RowValues; 3]> {
         let Some(near) = &self.near else { return Cow::Borrowed(seen) };
         let mut direction = *seen;

@@ -92,7 +92,7 @@ impl Default for Bevel {
 }
 
 /// z = f(d/w) · height over an outline, d the distance to the rim.
-pub fn beveled(outline: &Outline, bevel: &Bevel) -> Form {
+pub fn bevel_outline(outline: &Outline, bevel: &Bevel) -> Form {
     let RimDistance { distance, inward } = RimDistance::of(outline);
     let inside = outline.inside();
     let steep = bevel.height / bevel.width;
@@ -146,7 +146,7 @@ mod tests {
         )
         .unwrap();
         let bevel = Bevel { width: 20.0, height: 10.0, curve: BevelCurve::Chisel };
-        let form = beveled(&outline, &bevel);
+        let form = bevel_outline(&outline, &bevel);
         let at = |x: i32, y: i32| ((x - form.corner.0) as usize, (y - form.corner.1) as usize);
         let (left, middle) = (at(12, 55), at(55, 55));
         assert!(

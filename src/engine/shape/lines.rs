@@ -3,7 +3,7 @@
 //! pinned to a height would be a dent. Normals are held next to the line and spread over the form;
 //! nothing spreads across the ink, so that the front does not pull the back along.
 
-use super::touches::{lifted, spread_within, with_normals};
+use super::touches::{spread_within, unproject_normal, with_normals};
 use super::{Form, Outline, OutlineRim};
 use crate::math::{Range, Vec2, vec2};
 use crate::raster::Plane;
@@ -107,7 +107,7 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> F
     );
     let normals = Plane::from_fn(size, |x, y| {
         let n = form.normals.at(x, y);
-        if inside.at(x, y) { lifted(bar.at(x, y) + delta.at(x, y)) } else { n }
+        if inside.at(x, y) { unproject_normal(bar.at(x, y) + delta.at(x, y)) } else { n }
     });
     with_normals(form, outline, normals)
 }

@@ -182,7 +182,7 @@ impl Outline {
             for k in 0..taps * taps {
                 let (i, j) = ((k % taps) as f32 + 0.5, (k / taps) as f32 + 0.5);
                 let p = low + vec2(x as f32 + i / taps as f32, y as f32 + j / taps as f32);
-                sum += self.between(back.transform_point2(p) - origin);
+                sum += self.sample(back.transform_point2(p) - origin);
             }
             let share = sum / (taps * taps) as f32;
             ((((share - 0.5) * steep + 0.5) * 255.0).round()).max(0.0).min(255.0) as u8
@@ -191,7 +191,7 @@ impl Outline {
     }
 
     /// Coverage between the centers of pixels, `[0, 1]`; `p` in px of the plane.
-    pub(super) fn between(&self, p: Vec2) -> f32 {
+    pub(super) fn sample(&self, p: Vec2) -> f32 {
         let q = p - 0.5;
         let (x, y) = (q.x.floor(), q.y.floor());
         let at = |dx: i32, dy: i32| {

@@ -66,7 +66,7 @@ impl Primitive {
 
     /// Visible height (px, toward the viewer, 0 at the body's middle) and unit normal (camera
     /// space) at a canvas point; `None` off the body.
-    pub fn seen_at(&self, p: Vec2) -> Option<(f32, Vec3)> {
+    pub fn surface_at(&self, p: Vec2) -> Option<(f32, Vec3)> {
         self.seen(self.turn(), p)
     }
 

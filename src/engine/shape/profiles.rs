@@ -2,7 +2,7 @@
 //! elsewhere. Floor 3. Photometric stereo (Woodham 1980): I_k = ρ n·ℓ_k.
 
 use super::lines::filled;
-use super::touches::{lifted, with_normals};
+use super::touches::{unproject_normal, with_normals};
 use super::{Form, Outline};
 use crate::math::{Mat3, Size, Vec3, vec2, vec3};
 use crate::raster::Plane;
@@ -103,11 +103,9 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
         vec2(n.x, -n.y)
     });
     let bar = filled(bar, &untold, inside);
-    let normals =
-        Plane::from_fn(
-            inside.size(),
-            |x, y| if inside.at(x, y) { lifted(bar.at(x, y)) } else { Vec3::Z },
-        );
+    let normals = Plane::from_fn(inside.size(), |x, y| {
+        if inside.at(x, y) { unproject_normal(bar.at(x, y)) } else { Vec3::Z }
+    });
     let flat = Form {
         corner: outline.corner(),
         height: Plane::filled(inside.size(), 0.0).into(),

@@ -83,7 +83,7 @@ impl SculptStroke {
 
 /// The height layer that strokes make over a form, px, as large as its planes; 0 where no dab
 /// lands.
-pub fn sculpted(form: &Form, strokes: &[SculptStroke]) -> Plane<f32> {
+pub fn sculpt_heights(form: &Form, strokes: &[SculptStroke]) -> Plane<f32> {
     Sculpting::of(form).go_on(form, strokes).layer
 }
 
@@ -311,11 +311,11 @@ mod tests {
     #[test]
     fn a_dab_raises_by_its_strength_and_nothing_beyond_its_size() {
         let layer =
-            sculpted(&plate(|_, _| 0.0), &[stroke(SculptTool::Raise, 3.0, &[(70.0, 60.0)])]);
+            sculpt_heights(&plate(|_, _| 0.0), &[stroke(SculptTool::Raise, 3.0, &[(70.0, 60.0)])]);
         assert!((layer.at(60, 40) - 3.0).abs() < 1e-4);
         assert_eq!(layer.at(60 + 21, 40), 0.0);
         let lowered =
-            sculpted(&plate(|_, _| 0.0), &[stroke(SculptTool::Lower, 3.0, &[(70.0, 60.0)])]);
+            sculpt_heights(&plate(|_, _| 0.0), &[stroke(SculptTool::Lower, 3.0, &[(70.0, 60.0)])]);
         assert!((lowered.at(60, 40) + 3.0).abs() < 1e-4);
     }
 
@@ -331,7 +331,7 @@ mod tests {
         let before = spread(&Plane::filled(rough.height.size(), 0.0));
         let line = [(55.0, 60.0), (85.0, 60.0)];
         for tool in [SculptTool::Smooth, SculptTool::Flatten, SculptTool::Scrape] {
-            let layer = sculpted(&rough, &[stroke(tool, 0.6, &line)]);
+            let layer = sculpt_heights(&rough, &[stroke(tool, 0.6, &line)]);
             assert!(spread(&layer) < 0.5 * before, "{tool:?}: {} of {before}", spread(&layer));
             assert!(tool != SculptTool::Scrape || layer.values().iter().all(|h| *h <= 0.0));
         }
@@ -349,7 +349,7 @@ mod tests {
             for n in [1, 2, 9, 30] {
                 assert!(going.is_continued_by(&strokes(n)), "{name} {n}");
                 going = going.go_on(&rough, &strokes(n));
-                assert!(going.layer() == &sculpted(&rough, &strokes(n)), "{name} {n}");
+                assert!(going.layer() == &sculpt_heights(&rough, &strokes(n)), "{name} {n}");
             }
             assert!(!going.is_continued_by(&strokes(29)) && !going.is_continued_by(&[]));
             let other = vec![first.clone(), SculptStroke { size: 41.0, ..strokes(30).remove(1) }];

@@ -81,7 +81,7 @@ impl Solver {
         self.settle(b, &mut v, near, 30);
         if let Some(below) = self.levels.get(1) {
             grid.fill(&mut other, |y, out| {
-                left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
+                compute_residual(grid.couplings(y), grid.rows_around(&v, y), grid.row(b, y), out)
             });
             let mut rest = filled_or_unwind(below.w * below.h, 0.0);
             restrict(grid, below, &other, &mut rest);
@@ -133,7 +133,7 @@ impl Solver {
         let buffer = || filled_or_unwind(b.len(), 0.0);
         let mut residual = buffer();
         grid.fill(&mut residual, |y, out| {
-            left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
+            compute_residual(grid.couplings(y), grid.rows_around(&v, y), grid.row(b, y), out)
         });
         let goal = dots(w, b, b) * goal;
         let left = dots(w, &residual, &residual);
@@ -165,7 +165,7 @@ impl Solver {
         grid.fill(&mut v, |y, out| between_blocks(grid, below, &coarse, y, out));
         let mut left = filled_or_unwind(b.len(), 0.0);
         grid.fill(&mut left, |y, out| {
-            left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
+            compute_residual(grid.couplings(y), grid.rows_around(&v, y), grid.row(b, y), out)
         });
         let z = self.cycle(at, &left, &mut scratch);
         add(&mut v, 1.0, &z);
@@ -195,7 +195,12 @@ impl Solver {
             }
             Some(below) => {
                 grid.fill(&mut twin, |y, out| {
-                    left_over(grid.couplings(y), grid.around(&v, y), grid.row(b, y), out)
+                    compute_residual(
+                        grid.couplings(y),
+                        grid.rows_around(&v, y),
+                        grid.row(b, y),
+                        out,
+                    )
                 });
                 let mut rest = scratch.take(below.w * below.h);
                 restrict(grid, below, &twin, &mut rest);
@@ -284,7 +289,7 @@ impl ConjugateSystem for SolverSystem<'_> {
         self.scratch.keep(std::mem::take(&mut self.z));
         let direction = &self.direction;
         grid.fill(&mut self.pulled, |y, out| {
-            applied(grid.couplings(y), grid.around(direction, y), out)
+            multiply(grid.couplings(y), grid.rows_around(direction, y), out)
         });
         dots(w, direction, &self.pulled)
     }

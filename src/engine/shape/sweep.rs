@@ -176,7 +176,7 @@ fn span_across(
     high: f32,
 ) -> Option<(f32, f32)> {
     const STEP: f32 = 0.5;
-    let at = |d: f32| outline.between(from + d * way) - 0.5;
+    let at = |d: f32| outline.sample(from + d * way) - 0.5;
     let steps = ((high - low) / STEP) as usize;
     let place = |i: usize| low + i as f32 * STEP;
     let first = (0..steps).find(|i| at(place(*i)) >= 0.0)?;

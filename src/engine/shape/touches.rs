@@ -101,7 +101,7 @@ pub fn touched(
     }
     let normals = Plane::from_fn(inside.size(), |x, y| {
         let n = form.normals.at(x, y);
-        if inside.at(x, y) { lifted(bar.at(x, y) + delta.at(x, y)) } else { n }
+        if inside.at(x, y) { unproject_normal(bar.at(x, y) + delta.at(x, y)) } else { n }
     });
     match last {
         None => with_normals(form, outline, normals),
@@ -195,7 +195,7 @@ impl TouchingStep {
 }
 
 /// The unit normal (camera space, y up) over a projected one, which is kept shorter than 1.
-pub fn lifted(bar: Vec2) -> Vec3 {
+pub fn unproject_normal(bar: Vec2) -> Vec3 {
     const LONGEST: f32 = 0.999;
     let bar = if bar.is_finite() { bar.clamp_length_max(LONGEST) } else { Vec2::ZERO };
     vec3(bar.x, -bar.y, (1.0 - bar.length_squared()).max(0.0).sqrt())

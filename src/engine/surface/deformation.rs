@@ -148,7 +148,7 @@ impl<'a> Deformation<'a> {
     /// The same, counted from another corner of the pixels: q, anchors and D. What moved with its
     /// surface by whole px then gives the same bits as before. Where the surface is unwrapped the
     /// origin stays.
-    pub fn about(mut self, origin: (i32, i32)) -> Self {
+    pub fn with_origin(mut self, origin: (i32, i32)) -> Self {
         if self.planes.is_some() {
             return self;
         }

@@ -163,7 +163,7 @@ mod tests {
         grew("lines", &mut last);
         surface.ray_map();
         grew("rays", &mut last);
-        surface.unwrapped(settings);
+        surface.unwrapping(settings);
         grew("unwrapping", &mut last);
         surface.plane_layout(settings).unwrap();
         grew("layout", &mut last);

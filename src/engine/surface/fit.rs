@@ -44,7 +44,7 @@ impl Surface {
         if scale.min_element() >= 1.0 {
             made.repeat_beside(self, map_from_canvas);
         }
-        Ok(made.seen_by(self.eye().scaled(scale.x)))
+        Ok(made.with_eye(self.eye().scaled(scale.x)))
     }
 
     /// Where there is no surface, the same values as beside the one that this one was made of: what

@@ -176,7 +176,7 @@ impl FormLines {
             lines.extend(FormCurves { surface, normals: &normals, settings }.trace());
         }
         if is_smooth(LineKind::Wire) {
-            let unwrapped = surface.unwrapped(UnwrapSettings { amount: 1.0, smooth_px: 2.0 });
+            let unwrapped = surface.unwrapping(UnwrapSettings { amount: 1.0, smooth_px: 2.0 });
             lines.extend(fields::wires(surface, &unwrapped, settings));
         }
         Self { lines: tidy::tidied(lines, settings) }

@@ -116,10 +116,10 @@ impl Operator {
     pub fn on_canvas_of(self, ratio: f32) -> Self {
         match self {
             Operator::Normal { alpha, beta, detail } => {
-                Operator::Normal { alpha: alpha * ratio, beta, detail }.held()
+                Operator::Normal { alpha: alpha * ratio, beta, detail }.clamp_to_ranges()
             }
             Operator::Reflection { alpha, detail } => {
-                Operator::Reflection { alpha: alpha * ratio, detail }.held()
+                Operator::Reflection { alpha: alpha * ratio, detail }.clamp_to_ranges()
             }
             of_px => of_px,
         }
@@ -129,7 +129,7 @@ impl Operator {
     pub fn scaled(self, by: f32) -> Self {
         match self {
             Operator::Surface { amount, smooth } => {
-                Operator::Surface { amount, smooth: smooth * by }.held()
+                Operator::Surface { amount, smooth: smooth * by }.clamp_to_ranges()
             }
             unitless => unitless,
         }

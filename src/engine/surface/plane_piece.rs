@@ -41,7 +41,7 @@ impl PlanePiece {
     ///
     /// MATH 8: `p ↦ c + Tᵀ (p − c − m) / s`, c what was shown at the piece's point, T its rotation.
     /// What is not finite counts as nothing, the scale is held in its range.
-    pub fn looked_up(&self, shown: Vec2) -> Affine2 {
+    pub fn picture_from_plane(&self, shown: Vec2) -> Affine2 {
         let finite = |v: f32| if v.is_finite() { v } else { 0.0 };
         let moved = Vec2::new(finite(self.moved.x), finite(self.moved.y));
         let scale = self.scale.max(*Self::SCALE.start()).min(*Self::SCALE.end());
@@ -86,12 +86,12 @@ mod tests {
             rotation: 90.0,
             ..PlanePiece::at(Vec2::ZERO)
         };
-        let look = piece.looked_up(vec2(10.0, 20.0));
+        let look = piece.picture_from_plane(vec2(10.0, 20.0));
         assert!(look.transform_point2(vec2(15.0, 20.0)).distance(vec2(10.0, 20.0)) < 1e-5);
         // What lay 3 px to the right lies 6 px above now: y points down.
         assert!(look.transform_point2(vec2(15.0, 14.0)).distance(vec2(13.0, 20.0)) < 1e-5);
         assert!(PlanePiece::at(vec2(3.0, 4.0)).is_still());
-        let still = PlanePiece::at(Vec2::ZERO).looked_up(vec2(7.0, 8.0));
+        let still = PlanePiece::at(Vec2::ZERO).picture_from_plane(vec2(7.0, 8.0));
         assert!(still.transform_point2(vec2(1.0, 2.0)).distance(vec2(1.0, 2.0)) < 1e-6);
     }
 
@@ -114,6 +114,8 @@ mod tests {
             rotation: f32::NAN,
             at: Vec2::ZERO,
         };
-        assert!(piece.looked_up(vec2(1.0, 2.0)).transform_point2(vec2(3.0, 4.0)).is_finite());
+        assert!(
+            piece.picture_from_plane(vec2(1.0, 2.0)).transform_point2(vec2(3.0, 4.0)).is_finite()
+        );
     }
 }

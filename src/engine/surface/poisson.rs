@@ -20,7 +20,7 @@ use crate::memory::filled_or_unwind;
 pub use constraints::SoftConstraints;
 use graph::PoissonGraph;
 use rayon::prelude::*;
-use rows::{GridRow, relaxed_row, residual_row, start_row};
+use rows::{GridRow, relax_row, residual_row, start_row};
 
 /// A grid of unknowns with couplings to the right and down; 0 where two are not coupled.
 pub struct PoissonGrid {
@@ -306,13 +306,7 @@ impl PoissonSolver {
         };
         let relax = |step: f32, from: &[f32], to: &mut [f32]| {
             rows_of(to, &|y, out| {
-                relaxed_row(
-                    self.grid.row(y),
-                    around(from, w, y),
-                    &b[y * w..(y + 1) * w],
-                    step,
-                    out,
-                );
+                relax_row(self.grid.row(y), around(from, w, y), &b[y * w..(y + 1) * w], step, out);
                 constraints.each_in(y * w..(y + 1) * w, |i, stiffness| {
                     let (sum, pull) = self.grid.pull(from, i);
                     out[i - y * w] = from[i] + step * ((b[i] + pull) / (sum + stiffness) - from[i]);

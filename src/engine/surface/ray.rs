@@ -276,7 +276,7 @@ impl Surface {
     /// it meets must face it.
     ///
     /// * `map`: this surface's [`Surface::ray_map`].
-    pub fn met_by(&self, map: &RayMap, ray: &SurfaceRay) -> Option<RayHit> {
+    pub fn trace(&self, map: &RayMap, ray: &SurfaceRay) -> Option<RayHit> {
         let line = RayLine::of(map, ray)?;
         let faces = |normal: Vec3| normal.dot(ray.direction) < -FACING;
         let base = self.base();

@@ -299,7 +299,7 @@ impl ShareMap {
             })
             .reduce_with(sweep::HiddenCounts::plus);
         match counted {
-            Some(counts) => counts.seen(count),
+            Some(counts) => counts.visible_shares(count),
             None => Self::full(heights.upright.size()),
         }
     }

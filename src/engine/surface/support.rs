@@ -53,7 +53,7 @@ pub fn is_out_of_reach(surface: &Surface, operator: Operator, at: Vec2, extent: 
     if away <= canvas.max_element() {
         return false;
     }
-    let unwrapping = surface.unwrapped(settings);
+    let unwrapping = surface.unwrapping(settings);
     let span = unwrapping.bounds(surface).at(PyramidBlock::whole(surface.size()));
     span.is_some_and(|span| {
         // Rounded where they are computed, the anchor's place most of all.

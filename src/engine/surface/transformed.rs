@@ -132,7 +132,7 @@ impl Surface {
             Arc::new(Plane::from_fn(canvas, |x, y| source(x, y).map_or(0, |(x, y)| parts.at(x, y))))
         });
         let matrix = Mat2::from_cols(as_vec(by.right), as_vec(by.down));
-        Ok(next.seen_by(self.transformed_eye(canvas, 1.0, |p| matrix * p + as_vec(by.origin))))
+        Ok(next.with_eye(self.transformed_eye(canvas, 1.0, |p| matrix * p + as_vec(by.origin))))
     }
 
     /// Every pixel as the mean of what it shows.
@@ -160,7 +160,7 @@ impl Surface {
             }))
         });
         let eye = self.transformed_eye(canvas, scale, |p| affine.transform_point2(p));
-        Ok(made.seen_by(eye))
+        Ok(made.with_eye(eye))
     }
 
     fn transformed_eye(&self, canvas: Size, scale: f32, map: impl Fn(Vec2) -> Vec2) -> Eye {

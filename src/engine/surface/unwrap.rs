@@ -99,7 +99,7 @@ impl Unwrapping {
         front: Option<&Surface>,
         settings: UnwrapSettings,
     ) -> Self {
-        let whole = front.map(|front| front.unwrapped(settings));
+        let whole = front.map(|front| front.unwrapping(settings));
         let [x, y] = [0, 1].map(|axis| {
             far.continued(size, |x, y| {
                 whole.as_ref().map_or(0.0, |whole| whole.planes()[axis].at(x, y))
@@ -242,8 +242,8 @@ impl Surface {
     /// The surface unwrapped, cached. Call it once before going parallel: threads that call it at
     /// the same time may each compute it. Settings that are not finite count as 0. For a far side
     /// it is that of the surface in front, continued.
-    pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
-        let settings = settings.held(self.size());
+    pub fn unwrapping(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
+        let settings = settings.clamp_to_ranges(self.size());
         self.derived.unwrappings.get_or_compute(settings.key(), self.kept_unwrappings(), |_| {
             self.on_either_side(
                 || Unwrapping::new(self, settings),
@@ -254,15 +254,15 @@ impl Surface {
 
     /// The same, calling `go_on` after each solve: `None` if it says no. It is not called for what
     /// is cached.
-    pub fn unwrapped_with_progress(
+    pub fn unwrapping_with_progress(
         &self,
         settings: UnwrapSettings,
         go_on: GoOn,
     ) -> Option<Arc<Unwrapping>> {
         if self.is_unwrapped(settings) {
-            return Some(self.unwrapped(settings));
+            return Some(self.unwrapping(settings));
         }
-        let settings = settings.held(self.size());
+        let settings = settings.clamp_to_ranges(self.size());
         let unwrapped = self.on_either_side(
             || Unwrapping::with_progress(self, settings, go_on),
             |far, front| Some(Unwrapping::on_far_side(self.size(), far, front, settings)),
@@ -276,7 +276,7 @@ impl Surface {
 
     /// Whether it is unwrapped with these settings already.
     pub fn is_unwrapped(&self, settings: UnwrapSettings) -> bool {
-        self.derived.unwrappings.get(&settings.held(self.size()).key()).is_some()
+        self.derived.unwrappings.get(&settings.clamp_to_ranges(self.size()).key()).is_some()
     }
 
     fn kept_unwrappings(&self) -> usize {

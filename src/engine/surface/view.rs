@@ -79,7 +79,7 @@ impl Eye {
 
 impl Surface {
     /// The same surface seen by another eye.
-    pub fn seen_by(mut self, eye: Eye) -> Self {
+    pub fn with_eye(mut self, eye: Eye) -> Self {
         self.eye = eye;
         self.derived.perspective_view = Default::default();
         self.derived.ray_maps.clear();
@@ -175,7 +175,7 @@ mod tests {
             depth: Plane::filled(size, 0.5),
             coverage: Plane::filled(size, 255),
         };
-        let surface = Surface::new(maps).unwrap().seen_by(Eye::of_fov(Some(60.0), size));
+        let surface = Surface::new(maps).unwrap().with_eye(Eye::of_fov(Some(60.0), size));
         let double = surface.stretched(Size::new(128, 96)).unwrap();
         let between = 0.5 * (surface.view(10, 20) + surface.view(11, 20));
         assert!(
@@ -197,13 +197,13 @@ mod tests {
             coverage: Plane::from_fn(size, |x, _| if x < 4 { 255 } else { 0 }),
         };
         let surface = Surface::new(maps).unwrap();
-        let shares: Vec<_> = surface.around(vec2(2.75, 3.0)).collect();
+        let shares: Vec<_> = surface.linked_pixels_around(vec2(2.75, 3.0)).collect();
         assert_eq!(shares, [(2, 2, 0.375), (3, 2, 0.125), (2, 3, 0.375), (3, 3, 0.125)]);
         assert_eq!(
-            surface.around(vec2(3.75, 3.5)).collect::<Vec<_>>(),
+            surface.linked_pixels_around(vec2(3.75, 3.5)).collect::<Vec<_>>(),
             [(3, 3, 1.0)],
             "what is bare does not count"
         );
-        assert_eq!(surface.around(vec2(7.0, 3.0)).count(), 0);
+        assert_eq!(surface.linked_pixels_around(vec2(7.0, 3.0)).count(), 0);
     }
 }

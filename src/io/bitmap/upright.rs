@@ -111,7 +111,7 @@ mod tests {
         let files = [turned(33, &exif(6)), turned(end, &exif(6)), turned(33, &marked), webp];
         for (file, name) in files.iter().zip(["a.png", "after.png", "marked.png", "a.webp"]) {
             let painted =
-                picture::painted(Path::new(name), file, 0, 0, &Budget::default()).unwrap();
+                picture::decode_paint(Path::new(name), file, 0, 0, &Budget::default()).unwrap();
             assert_eq!((painted.size.width, painted.size.height), (1, 2), "{name}");
         }
     }

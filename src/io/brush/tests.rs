@@ -156,7 +156,8 @@ fn a_mypaint_brush_becomes_numbers_and_what_is_added_to_them() {
     assert!(matches!(brush.tip, Tip::Ellipse { ratio } if ratio == 0.25));
     assert_eq!(brush.rotation, 270.0, "upright");
     assert!(
-        (brush.dynamics.added(Property::Hue, Input::Chance).unwrap().at(1.0) - 0.1).abs() < 1e-6
+        (brush.dynamics.added_curve(Property::Hue, Input::Chance).unwrap().at(1.0) - 0.1).abs()
+            < 1e-6
     );
     assert_eq!(brush.stabilizer, Stabilizer::Lag { secs: 0.015 });
     assert_eq!((brush.pickup.amount, brush.pickup.length), (0.7, 0.5));
@@ -173,7 +174,7 @@ fn a_mypaint_brush_that_follows_several_inputs_follows_them_all() {
     let ImportedBrush { brush, notes, .. } = only("b.myb", text.as_bytes());
     // The file does not say what multiplies it, so the pressure does.
     let inputs = DabInputs { pressure: 0.5, tilt: 1.0, seed: 3, ..DabInputs::default() };
-    let chance = brush.dynamics.added(Property::Flow, Input::Chance).unwrap();
+    let chance = brush.dynamics.added_curve(Property::Flow, Input::Chance).unwrap();
     let random = (0..=100).map(|i| chance.at(i as f32 / 100.0)).fold(0.0, f32::max);
     assert!((random - 0.1).abs() < 1e-5);
     let flow = driven(&brush, Property::Flow, brush.flow, inputs);

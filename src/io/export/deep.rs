@@ -36,7 +36,8 @@ pub fn encode_document(
             .map(|pixels| super::encode(file, format, &pixels, document.size, options))
             .transpose();
     }
-    let Some(pixels) = flattened(file, document, highlights(format), budget, progress)? else {
+    let Some(pixels) = flatten_within_budget(file, document, highlights(format), budget, progress)?
+    else {
         return Ok(None);
     };
     encode(file, format, &pixels, document.size, options).map(Some)
@@ -44,7 +45,7 @@ pub fn encode_document(
 
 /// A document flattened without rounding, if there is memory for it and for its file; `None` if
 /// canceled.
-pub(super) fn flattened(
+pub(super) fn flatten_within_budget(
     file: &Path,
     document: &Document,
     highlights: Highlights,

@@ -2,7 +2,7 @@
 //! depth. Floor 5. Names and conventions are those that compositing programs expect: `LAYER.R`,
 //! `normal.X`, `depth.Z`.
 
-use super::deep::{flattened, light};
+use super::deep::{flatten_within_budget, light};
 use crate::document::{Document, Highlights, Progress};
 use crate::math::Size;
 use crate::project::Cancelable;
@@ -24,7 +24,9 @@ pub fn encode(
 ) -> Cancelable<Vec<u8>> {
     let Some(document) = document.reshaped_with_progress(progress) else { return Ok(None) };
     let size = document.size;
-    let seen = |document: &Document| flattened(file, document, Highlights::Kept, budget, progress);
+    let seen = |document: &Document| {
+        flatten_within_budget(file, document, Highlights::Kept, budget, progress)
+    };
     let mut channels = Vec::new();
     let Some(whole) = seen(&document)? else { return Ok(None) };
     push_picture(&mut channels, "", whole, bits);

@@ -54,7 +54,7 @@ impl<'a> JsonNode<'a> {
     }
 
     /// A refusal of this value.
-    pub fn refused(&self, reason: impl ToString) -> Error {
+    pub fn refusal(&self, reason: impl ToString) -> Error {
         Error::invalid(self.file, self.field(), reason)
     }
 
@@ -78,7 +78,7 @@ impl<'a> JsonNode<'a> {
     }
 
     /// Names this value in a failure that it led to.
-    pub fn led_to(&self, error: Error) -> Error {
+    pub fn name_in_error(&self, error: Error) -> Error {
         Error::At { file: self.file.into(), field: self.path.clone(), error: Box::new(error) }
     }
 
@@ -91,7 +91,7 @@ impl<'a> JsonNode<'a> {
             Value::Array(_) => "a list",
             Value::Object(_) => "an object",
         };
-        self.refused(format!("is {is}; it must be {wanted}"))
+        self.refusal(format!("is {is}; it must be {wanted}"))
     }
 
     /// An object, field by field.
@@ -122,7 +122,7 @@ impl<'a> JsonNode<'a> {
         if !(least..=most).contains(&items.len()) {
             let wanted =
                 if least == most { format!("{most}") } else { format!("{least} to {most}") };
-            return Err(self.refused(format!("has {} items; it must have {wanted}", items.len())));
+            return Err(self.refusal(format!("has {} items; it must have {wanted}", items.len())));
         }
         let quick = items
             .iter()
@@ -140,7 +140,7 @@ impl<'a> JsonNode<'a> {
         let (low, high) = (*range.start(), *range.end());
         // As f32 first: a number just beyond the range in f64 may be its end in f32.
         if !self.is_expected(&range, number as f32) {
-            return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
+            return Err(self.refusal(format!("is {number}; it must be between {low} and {high}")));
         }
         Ok(number as f32)
     }
@@ -156,10 +156,10 @@ impl<'a> JsonNode<'a> {
         // 12.0 is a whole number too: other programs write it so.
         let whole = (number.fract() == 0.0).then_some(number as i64);
         let whole =
-            whole.ok_or_else(|| self.refused(format!("is {number}; it must be a whole number")))?;
+            whole.ok_or_else(|| self.refusal(format!("is {number}; it must be a whole number")))?;
         if self.ranged && !range.contains(&whole) {
             let (low, high) = (range.start(), range.end());
-            return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
+            return Err(self.refusal(format!("is {number}; it must be between {low} and {high}")));
         }
         Ok(whole)
     }
@@ -168,7 +168,7 @@ impl<'a> JsonNode<'a> {
     pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32> {
         let number = self.integer(i64::from(*range.start())..=i64::from(*range.end()))?;
         u32::try_from(number).map_err(|_| {
-            self.refused(format!("is {number}; it must be between 0 and {}", u32::MAX))
+            self.refusal(format!("is {number}; it must be between 0 and {}", u32::MAX))
         })
     }
 
@@ -196,7 +196,7 @@ impl<'a> JsonNode<'a> {
     pub fn color(&self) -> Result<Color> {
         let text = self.text()?;
         Color::parse(text).ok_or_else(|| {
-            self.refused(format!("is “{text}”; a color is written #rrggbb or #rrggbbaa"))
+            self.refusal(format!("is “{text}”; a color is written #rrggbb or #rrggbbaa"))
         })
     }
 
@@ -207,7 +207,7 @@ impl<'a> JsonNode<'a> {
         let found = table.iter().find(|(_, name)| *name == current).map(|(value, _)| *value);
         found.ok_or_else(|| {
             let names: Vec<_> = table.iter().map(|(_, name)| *name).collect();
-            self.refused(format!("is “{text}”; it must be one of {}", names.join(", ")))
+            self.refusal(format!("is “{text}”; it must be one of {}", names.join(", ")))
         })
     }
 }
@@ -238,7 +238,7 @@ impl<'a> Fields<'a> {
     /// A field that has no default.
     pub fn required(&mut self, name: &'static str) -> Result<JsonNode<'a>> {
         let found = self.get(name);
-        found.ok_or_else(|| self.below(name, &Value::Null).refused("is missing"))
+        found.ok_or_else(|| self.below(name, &Value::Null).refusal("is missing"))
     }
 
     fn below(&self, name: &str, value: &'a Value) -> JsonNode<'a> {
@@ -293,7 +293,7 @@ impl<'a> Fields<'a> {
             Some(known) => format!("is unknown; did you mean “{known}”?"),
             None => format!("is unknown; the known ones are {}", self.known.join(", ")),
         };
-        Err(self.below(name, value).refused(reason))
+        Err(self.below(name, value).refusal(reason))
     }
 }
 

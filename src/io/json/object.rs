@@ -67,7 +67,7 @@ impl JsonObject {
     /// Sets an object unless it is empty.
     pub fn object(&mut self, name: &str, value: JsonObject) {
         if !value.0.is_empty() {
-            self.set(name, value.done());
+            self.set(name, value.into_value());
         }
     }
 
@@ -82,7 +82,7 @@ impl JsonObject {
     }
 
     /// The object as a value.
-    pub fn done(self) -> Value {
+    pub fn into_value(self) -> Value {
         Value::Object(self.0)
     }
 }

@@ -17,7 +17,7 @@ pub struct Printer {
 
 impl Printer {
     /// Everything is closed, and the text ends with its line.
-    pub fn done(mut self) -> String {
+    pub fn into_text(mut self) -> String {
         self.text.push('\n');
         self.text
     }
@@ -161,7 +161,7 @@ mod tests {
     fn printed(value: &Value) -> String {
         let mut printer = Printer::default();
         printer.value(None, value);
-        printer.done()
+        printer.into_text()
     }
 
     #[test]
@@ -194,6 +194,6 @@ mod tests {
         printer.close_list();
         printer.value(Some("d"), &value["d"]);
         printer.close_object();
-        assert_eq!(printer.done(), printed(&value));
+        assert_eq!(printer.into_text(), printed(&value));
     }
 }

@@ -32,7 +32,7 @@ pub fn given_mask(
                     stored.channels[0].map(srgb::quantize)
                 }
             };
-            findings.given("mask", "file");
+            findings.add_given("mask", "file");
             let plane = if *invert { plane.map(|c| 255 - c) } else { plane };
             Ok(Some((path.display().to_string(), plane)))
         }
@@ -44,7 +44,7 @@ pub fn given_mask(
                     "“flat” needs a normal map",
                 ));
             };
-            findings.given("mask", "flat");
+            findings.add_given("mask", "flat");
             Ok(Some((normal.file.display().to_string(), not_flat(normal, depth))))
         }
     }
@@ -61,7 +61,7 @@ const SHARE_OF_ONE_DEPTH: f32 = 0.5;
 fn not_flat(normal: &StoredMap, depth: Option<&StoredMap>) -> Plane<u8> {
     let holds_edge = |map: &StoredMap| FilledEdge::of(map, None).map(|edge| edge.holds);
     let Some(flat) = holds_edge(normal) else { return Plane::filled(normal.size, 255) };
-    let outside = border::joined_to_border(normal.size, |i| flat.values()[i]);
+    let outside = border::connected_to_border(normal.size, |i| flat.values()[i]);
     let far = depth.filter(|depth| depth.size == normal.size).and_then(holds_edge);
     let count = |is: &dyn Fn(usize) -> bool| {
         (0..normal.size.area()).filter(|&i| outside.values()[i] && is(i)).count()
@@ -90,7 +90,7 @@ pub fn alpha(
     }
     let alpha =
         maps.iter().find_map(|m| m.alpha.as_ref().filter(|_| !encoding::has_x_in_alpha(m)))?;
-    findings.found("mask", "alpha", 0.95);
+    findings.add_detected("mask", "alpha", 0.95);
     Some(alpha.map(srgb::quantize))
 }
 
@@ -108,7 +108,7 @@ pub fn report_mask(
         (true, _) => "depth",
         _ => "normals",
     };
-    findings.found("mask", how, if bare > 0 { 0.9 } else { 0.5 });
+    findings.add_detected("mask", how, if bare > 0 { 0.9 } else { 0.5 });
     let Some(normal) = normal.filter(|_| bare == 0) else { return };
     let flat = not_flat(normal, depth).values().iter().filter(|c| **c == 0).count();
     let share = flat as f32 / coverage.values().len() as f32;

@@ -98,12 +98,12 @@ fn report(
     findings: &mut Findings,
 ) {
     match overrides.encoding {
-        Some(encoding) => findings.given("normal.encoding", encoding.name()),
-        None => findings.found("normal.encoding", reading.encoding.name(), confidence),
+        Some(encoding) => findings.add_given("normal.encoding", encoding.name()),
+        None => findings.add_detected("normal.encoding", reading.encoding.name(), confidence),
     }
     match overrides.srgb {
-        Some(srgb) => findings.given("normal.srgb", srgb),
-        None => findings.found("normal.srgb", reading.srgb, confidence),
+        Some(srgb) => findings.add_given("normal.srgb", srgb),
+        None => findings.add_detected("normal.srgb", reading.srgb, confidence),
     }
     if reading.srgb && overrides.srgb.is_none() {
         findings.note("the normals went through the sRGB curve by mistake; it was undone");

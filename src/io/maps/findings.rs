@@ -77,7 +77,7 @@ impl Findings {
     }
 
     /// Adds a choice that the file or the user made.
-    pub fn given(&mut self, field: &'static str, value: impl ToString) {
+    pub fn add_given(&mut self, field: &'static str, value: impl ToString) {
         self.choices.push(Finding {
             field,
             value: value.to_string(),
@@ -87,7 +87,7 @@ impl Findings {
     }
 
     /// Adds a choice that was detected.
-    pub fn found(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
+    pub fn add_detected(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
         self.choices.push(Finding {
             field,
@@ -98,7 +98,7 @@ impl Findings {
     }
 
     /// Adds a choice that was made for want of evidence.
-    pub fn assumed(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
+    pub fn add_assumed(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
         self.choices.push(Finding {
             field,

@@ -168,8 +168,8 @@ fn report(
 ) {
     let letters = NormalConvention::letters(found.axes.order.map(|c| c as u8));
     match overrides.channels {
-        Some(c) => findings.given("normal.channels", NormalConvention::letters(c)),
-        None => findings.found("normal.channels", letters, found.order_confidence),
+        Some(c) => findings.add_given("normal.channels", NormalConvention::letters(c)),
+        None => findings.add_detected("normal.channels", letters, found.order_confidence),
     }
     let flips = [
         ("normal.flip_x", overrides.flip_x),
@@ -178,19 +178,19 @@ fn report(
     ];
     for (k, (field, given)) in flips.into_iter().enumerate() {
         match (given, fixed.flip[k]) {
-            (Some(flip), _) => findings.given(field, flip),
-            (None, Some(flip)) => findings.assumed(field, flip, 0.9),
+            (Some(flip), _) => findings.add_given(field, flip),
+            (None, Some(flip)) => findings.add_assumed(field, flip, 0.9),
             (None, None) if found.confidence[k] < 0.5 => {
-                findings.assumed(field, found.axes.flip[k], found.confidence[k])
+                findings.add_assumed(field, found.axes.flip[k], found.confidence[k])
             }
-            (None, None) => findings.found(field, found.axes.flip[k], found.confidence[k]),
+            (None, None) => findings.add_detected(field, found.axes.flip[k], found.confidence[k]),
         }
     }
     if has_depth {
         let near = if found.near_high { "high" } else { "low" };
         match fixed.near_high {
-            Some(_) => findings.found("depth.near", near, 0.99),
-            None => findings.found("depth.near", near, found.near_confidence),
+            Some(_) => findings.add_detected("depth.near", near, 0.99),
+            None => findings.add_detected("depth.near", near, found.near_confidence),
         }
     }
 }
@@ -208,11 +208,11 @@ fn space(
     findings: &mut Findings,
 ) -> Option<Mat3> {
     if overrides.space == Some(NormalSpace::Camera) {
-        findings.given("normal.space", "camera");
+        findings.add_given("normal.space", "camera");
         return None;
     }
     if let Some(rows) = overrides.world_to_camera {
-        findings.given("normal.space", "world");
+        findings.add_given("normal.space", "world");
         return world::orthonormal(world::from_rows(rows)).or_else(|| {
             findings.note("normal.world_to_camera is not a rotation; it was ignored");
             None
@@ -236,7 +236,7 @@ fn space(
     if let Some((matrix, share)) = attribute
         && (wanted || named || share + 0.01 < away.min(toward))
     {
-        findings.found("normal.space", "world", if share < 0.02 { 0.98 } else { 0.6 });
+        findings.add_detected("normal.space", "world", if share < 0.02 { 0.98 } else { 0.6 });
         findings.note("the normals were rotated by the file's worldToCamera");
         return Some(matrix);
     }
@@ -250,7 +250,7 @@ fn space(
     let turned =
         aligned.is_some_and(|a| a.free.fit > 0.9 && a.is_turned() && angle(a.free.matrix) > 3.0);
     if !wanted && !named && !mixed && !turned {
-        findings.found("normal.space", "camera", if sided[2] { 0.95 } else { 0.6 });
+        findings.add_detected("normal.space", "camera", if sided[2] { 0.95 } else { 0.6 });
         return None;
     }
     let by_rim = world::from_rim(unit, inside);
@@ -259,7 +259,7 @@ fn space(
         // Depth of unknown polarity leaves half a turn about the view axis open; the rim settles
         // it.
         let matrix = upright(found.matrix, by_rim.as_ref());
-        findings.found("normal.space", "world", (found.fit * 2.0 - 1.0).max(0.1));
+        findings.add_detected("normal.space", "world", (found.fit * 2.0 - 1.0).max(0.1));
         findings.note(format!(
             "the normals are in world space; the rotation to the camera ({:.0}°) was found from \
              the depth map",
@@ -268,14 +268,14 @@ fn space(
         return Some(matrix);
     }
     if let Some(found) = by_rim.filter(|r| r.fit > 0.7 && sound(r)) {
-        findings.found("normal.space", "world", 0.5 * found.fit);
+        findings.add_detected("normal.space", "world", 0.5 * found.fit);
         findings.note(
             "the normals are in world space; the rotation was estimated from the silhouette. A \
              depth map or the camera's matrix would give a better one",
         );
         return Some(found.matrix);
     }
-    findings.assumed("normal.space", "camera", 0.2);
+    findings.add_assumed("normal.space", "camera", 0.2);
     findings.note(
         "some normals point away from the viewer, as world-space normals do, but no rotation to the camera was found",
     );

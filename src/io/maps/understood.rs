@@ -40,7 +40,7 @@ pub struct UnderstoodMaps {
 impl LoadedMaps<'_> {
     /// Converts the maps to the program's convention; the coverage is the one that is given, if
     /// any.
-    pub fn understood(mut self, given_coverage: Option<Plane<u8>>) -> Result<UnderstoodMaps> {
+    pub fn interpret(mut self, given_coverage: Option<Plane<u8>>) -> Result<UnderstoodMaps> {
         let Self { normal, depth, overrides, .. } = self;
         let raw_depth = depth
             .map(|d| depth::read(d, &overrides.depth, given_coverage.as_ref(), self.findings))
@@ -178,7 +178,7 @@ impl LoadedMaps<'_> {
     ) -> DepthEncoding {
         let (told, findings) = (&self.overrides.depth, &mut *self.findings);
         if let Some(encoding) = told.encoding {
-            findings.given("depth.encoding", encoding.name());
+            findings.add_given("depth.encoding", encoding.name());
             if encoding == DepthEncoding::RayDistance
                 && told.fov_degrees.or(stored.fov_degrees).is_none()
             {
@@ -188,12 +188,16 @@ impl LoadedMaps<'_> {
         }
         let layer = stored.layer.to_lowercase();
         if layer.contains("distance") && told.fov_degrees.or(stored.fov_degrees).is_some() {
-            findings.found("depth.encoding", "ray-distance", 0.7);
+            findings.add_detected("depth.encoding", "ray-distance", 0.7);
             return DepthEncoding::RayDistance;
         }
         let inverse = near_high && unit.is_some_and(|n| depth::is_inverse_depth(values, n, inside));
         let encoding = if inverse { DepthEncoding::Inverse } else { DepthEncoding::Planar };
-        findings.found("depth.encoding", encoding.name(), if unit.is_some() { 0.8 } else { 0.5 });
+        findings.add_detected(
+            "depth.encoding",
+            encoding.name(),
+            if unit.is_some() { 0.8 } else { 0.5 },
+        );
         encoding
     }
 }
@@ -202,9 +206,9 @@ impl LoadedMaps<'_> {
 fn find_depth_polarity(overrides: Option<bool>, leaning: f32, findings: &mut Findings) -> bool {
     let name = |high: bool| if high { "high" } else { "low" };
     match overrides {
-        Some(high) => findings.found("depth.near", name(high), 0.95),
-        None if leaning != 0.0 => findings.found("depth.near", name(leaning > 0.0), 0.7),
-        None => findings.assumed("depth.near", "low", 0.3),
+        Some(high) => findings.add_detected("depth.near", name(high), 0.95),
+        None if leaning != 0.0 => findings.add_detected("depth.near", name(leaning > 0.0), 0.7),
+        None => findings.add_assumed("depth.near", "low", 0.3),
     }
     overrides.unwrap_or(leaning > 0.0)
 }
@@ -212,7 +216,7 @@ fn find_depth_polarity(overrides: Option<bool>, leaning: f32, findings: &mut Fin
 impl UnderstoodMaps {
     /// Normalizes depth and derives the map that is missing. If canceled meanwhile, the result is
     /// of no use.
-    pub fn completed(
+    pub fn complete(
         self,
         overrides: &ConventionOverrides,
         findings: &mut Findings,

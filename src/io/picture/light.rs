@@ -13,7 +13,7 @@ pub(super) const WHOLE: [&str; 7] = ["", "combined", "beauty", "rgba", "rgb", "c
 /// The picture of an EXR, straight alpha.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let exr = ExrFile::open(file, bytes, budget)?;
-    picture(file, &exr, chosen(file, &exr)?, budget)
+    picture(file, &exr, choose_pass(file, &exr)?, budget)
 }
 
 /// The finished picture that a renderer stored with its maps, and its layer's name; `None` if there
@@ -66,7 +66,7 @@ pub(super) fn rank(pass: &ExrPass) -> usize {
 
 /// The color layer of an EXR: the unnamed one, else one called color or beauty, else the first
 /// with R, G and B, else a lone gray channel.
-pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
+pub fn choose_pass<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     let color = |pass: &&ExrPass| pass.letters("rgb").is_some();
     let gray = |pass: &&ExrPass| {
         pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1

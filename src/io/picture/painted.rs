@@ -13,13 +13,13 @@ use std::path::Path;
 
 /// Decodes a picture as [`decode`](super::decode) does, its corner at a canvas pixel: paint of 16
 /// bits a channel where the file has more than 8 and the budget allows it.
-pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Result<Painted> {
+pub fn decode_paint(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Result<Painted> {
     if ExrFile::is_exr(bytes) {
         let exr = ExrFile::open(file, bytes, budget)?;
-        return of_light(file, &exr, light::chosen(file, &exr)?, x, y, budget);
+        return of_light(file, &exr, light::choose_pass(file, &exr)?, x, y, budget);
     }
     if svg::is_svg(bytes) {
-        return svg::painted(file, bytes, x, y, budget);
+        return svg::decode_paint(file, bytes, x, y, budget);
     }
     if let Some(painted) = pixels::decode_tiles(bytes, x, y, budget) {
         return Ok(painted);

@@ -64,7 +64,7 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
     writer.finish().unwrap();
     let files = [encoded(&image, ImageFormat::Png), encoded(&image, ImageFormat::Tiff), profiled];
     for (file, name) in files.iter().zip(["a.png", "a.tif", "profiled.png"]) {
-        let found = painted(Path::new(name), file, -9, 20, &Budget::default()).unwrap();
+        let found = decode_paint(Path::new(name), file, -9, 20, &Budget::default()).unwrap();
         assert_eq!(found.size, Size::new(70, 130));
         assert!(
             wanted
@@ -74,7 +74,7 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
         );
     }
     let short = Budget { memory_bytes: 200_000, ..Budget::default() };
-    assert!(painted(Path::new("profiled.png"), &files[2], 0, 0, &short).is_err());
+    assert!(decode_paint(Path::new("profiled.png"), &files[2], 0, 0, &short).is_err());
 }
 
 #[test]
@@ -133,7 +133,8 @@ fn a_jpeg_without_its_end_is_shown_as_far_as_it_goes() {
     let whole = encoded(&opaque(), ImageFormat::Jpeg);
     let scan = whole.windows(2).rposition(|pair| pair == [0xff, 0xda]).unwrap();
     for cut in [whole.len() - 1, whole.len() - 2, (scan + whole.len()) / 2] {
-        let read = painted(Path::new("a.jpg"), &whole[..cut], 0, 0, &Budget::default()).unwrap();
+        let read =
+            decode_paint(Path::new("a.jpg"), &whole[..cut], 0, 0, &Budget::default()).unwrap();
         assert_eq!(read.size, Size::new(9, 5));
         assert!(read.warning.unwrap_or_default().contains("no end marker"), "cut at {cut}");
     }

@@ -283,7 +283,7 @@ impl MadeFiles {
         if let Some((_, known)) = self.selections.get(&key) {
             return Ok(known.clone());
         }
-        let covered = selection.coverage.covered();
+        let covered = selection.coverage.covered_rect();
         let rect = if covered.is_empty() { Rect::new(0, 0, 1, 1) } else { covered };
         let asset = pixels::encode_coverage(file, &selection.coverage.to_plane(rect))?;
         self.selections.insert(key, (selection.clone(), asset.clone()));

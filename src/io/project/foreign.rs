@@ -5,7 +5,7 @@ use super::MERGED;
 use super::manifest::Manifest;
 use super::png_header::{PNG_HEADER, png_size};
 use super::reader::ProjectReader;
-use super::repair::{alone, around, layer_mut, name_of};
+use super::repair::{alone, layer_mut, name_of, without_layers};
 use super::stack::{self, ElementContent, StackElement, StackXml};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};
 use crate::math::Size;
@@ -88,7 +88,7 @@ fn within(reading: &ProjectReader, used_px: u64) -> Result<()> {
 
 /// A document that another program saved but left our entries in: its layers are those of
 /// `stack.xml`, and those whose pictures are unchanged are as we saved them.
-pub fn restored(
+pub fn restore(
     reading: &mut ProjectReader,
     text: &[u8],
     value: &Value,
@@ -102,9 +102,9 @@ pub fn restored(
     let mut base = value.clone();
     base["layers"] = json!([]);
     base["canvas"] = json!({ "width": size.width, "height": size.height });
-    let around = around(&base);
+    let around = without_layers(&base);
     let base = reading.read_value(&base).or_else(|error| {
-        reading.lost(format!("the surface is lost: {error}"));
+        reading.note_loss(format!("the surface is lost: {error}"));
         Ok::<_, Error>(Document::empty(size))
     })?;
     let mut reader = ForeignReader {
@@ -133,7 +133,7 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
             break;
         }
         let Ok(bytes) = reading.archive.bytes(name, reading.budget.file_bytes) else { continue };
-        let painted = match picture::painted(Path::new(name), &bytes, 0, 0, reading.budget) {
+        let painted = match picture::decode_paint(Path::new(name), &bytes, 0, 0, reading.budget) {
             Ok(painted) => painted,
             Err(error) if reading.can_fit_if_rounded(&error) => return Err(error),
             Err(_) => continue,
@@ -151,7 +151,7 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
         }
     }
     let Some(size) = size else { return Err(error) };
-    reading.lost(format!(
+    reading.note_loss(format!(
         "{error}; {} of its pictures could be read, their order and places are lost",
         layers.len()
     ));
@@ -159,11 +159,15 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
 }
 
 /// The picture that another program put beside what it alone reads.
-pub fn shown(reading: &mut ProjectReader, entry: &str, sentence: &str) -> Result<Document> {
+pub fn read_stored_picture(
+    reading: &mut ProjectReader,
+    entry: &str,
+    sentence: &str,
+) -> Result<Document> {
     let bytes = reading.archive.bytes(entry, reading.budget.file_bytes)?;
     let path = reading.archive_path(entry);
-    let painted = picture::painted(&path, &bytes, 0, 0, reading.budget)?;
-    reading.lost(sentence);
+    let painted = picture::decode_paint(&path, &bytes, 0, 0, reading.budget)?;
+    reading.note_loss(sentence);
     let name = reading.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let tiles = painted.tiles;
     let content = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
@@ -240,7 +244,7 @@ impl ForeignReader<'_, '_> {
         match self.reading.read_value(&alone(&saved.around, &layer)) {
             Ok(document) => document.layers.into_iter().next().map(Arc::unwrap_or_clone),
             Err(error) => {
-                self.reading.lost(format!("“{}” became pixels: {error}", name_of(&layer)));
+                self.reading.note_loss(format!("“{}” became pixels: {error}", name_of(&layer)));
                 None
             }
         }
@@ -254,12 +258,12 @@ impl ForeignReader<'_, '_> {
         let path = self.reading.archive_path(&key.0);
         let read = self.reading.archive.bytes(&key.0, self.reading.budget.file_bytes);
         let decoded =
-            read.and_then(|bytes| picture::painted(&path, &bytes, x, y, self.reading.budget));
+            read.and_then(|bytes| picture::decode_paint(&path, &bytes, x, y, self.reading.budget));
         let decoded = match decoded {
             Ok(decoded) => decoded,
             Err(error @ Error::TooLarge { .. }) => return Err(error),
             Err(error) => {
-                self.reading.lost(format!("“{name}” is lost: {error}"));
+                self.reading.note_loss(format!("“{name}” is lost: {error}"));
                 return Ok(PixelLayer { file: String::new(), x, y, tiles: TileGrid::default() });
             }
         };

@@ -74,7 +74,8 @@ impl KritaReader<'_, '_> {
                     _ => "of an unknown kind",
                 };
                 let advice = "convert it to a paint layer in Krita";
-                self.reading.lost(format!("“{name}” is {what}, which is not supported; {advice}"));
+                self.reading
+                    .note_loss(format!("“{name}” is {what}, which is not supported; {advice}"));
                 return Ok(None);
             }
         };
@@ -82,7 +83,7 @@ impl KritaReader<'_, '_> {
         let blend = blend(op).unwrap_or_else(|| {
             let note =
                 format!("“{name}” is blended by “{op}” in Krita; here it is blended normally");
-            self.reading.lost(note);
+            self.reading.note_loss(note);
             BlendMode::Normal
         });
         let opacity = node.number("opacity").unwrap_or(255.0).max(0.0).min(255.0) / 255.0;
@@ -111,7 +112,7 @@ impl KritaReader<'_, '_> {
     fn stored(&mut self, node: &KritaNode, ending: &str) -> Result<Option<KritaPixels>> {
         let name = node.text("name").to_owned();
         let Some(entry) = self.entry(node, ending) else {
-            self.reading.lost(format!("“{name}” has no pixels in the file"));
+            self.reading.note_loss(format!("“{name}” has no pixels in the file"));
             return Ok(None);
         };
         let plain = self.entry(node, &format!("{ending}.defaultpixel"));
@@ -133,7 +134,7 @@ impl KritaReader<'_, '_> {
             }
             Err(error @ Error::TooLarge { .. }) => Err(error),
             Err(error) => {
-                self.reading.lost(format!("“{name}” is lost: {error}"));
+                self.reading.note_loss(format!("“{name}” is lost: {error}"));
                 Ok(None)
             }
         }
@@ -144,7 +145,7 @@ impl KritaReader<'_, '_> {
         let space = node.text("colorspacename");
         let Some(format) = PixelFormat::of(space, node.text("profile")) else {
             let name = node.text("name");
-            self.reading.lost(format!(
+            self.reading.note_loss(format!(
                 "“{name}” is lost: its colors are {space}; RGB and gray of 8 to 32 bits are \
                  supported"
             ));
@@ -174,13 +175,15 @@ impl KritaReader<'_, '_> {
             if kind != "transparencymask" {
                 if !matches!(kind, "selectionmask" | "decoratorlayer") {
                     let (mask, layer) = (mask.text("name"), node.text("name"));
-                    self.reading
-                        .lost(format!("the mask “{mask}” of “{layer}” is not supported ({kind})"));
+                    self.reading.note_loss(format!(
+                        "the mask “{mask}” of “{layer}” is not supported ({kind})"
+                    ));
                 }
                 continue;
             }
             if mask.text("visible") == "0" {
-                self.reading.lost(format!("the hidden mask “{}” is left out", mask.text("name")));
+                self.reading
+                    .note_loss(format!("the hidden mask “{}” is left out", mask.text("name")));
                 continue;
             }
             let Some(pixels) = self.stored(mask, ".pixelselection")? else { continue };

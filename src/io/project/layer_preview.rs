@@ -117,7 +117,7 @@ fn render_preview(
         return pixels_of(file, document, layer, tiles).map(Some);
     }
     let render = || {
-        let plain = seen.singles.around(layer.id, |layer| {
+        let plain = seen.singles.isolate_layer(layer.id, |layer| {
             (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
             layer.mask = layer.mask.take().filter(|_| kind.masked);
         });

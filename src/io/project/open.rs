@@ -45,7 +45,9 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     let mut reading =
         ProjectReader { file, archive: &archive, budget, notes, is_whole: true, known };
     if archive.is_damaged() {
-        reading.lost("the file's table of contents is damaged; its entries were found without it");
+        reading.note_loss(
+            "the file's table of contents is damaged; its entries were found without it",
+        );
     }
     let document = reading.document()?;
     let ProjectReader { mut notes, is_whole, .. } = reading;
@@ -93,7 +95,7 @@ impl ProjectReader<'_> {
             true => match self.value(DOCUMENT) {
                 Ok(value) => Some(value),
                 Err(error) => {
-                    self.lost(format!("{error}; only the layers' pictures are left"));
+                    self.note_loss(format!("{error}; only the layers' pictures are left"));
                     None
                 }
             },
@@ -103,12 +105,12 @@ impl ProjectReader<'_> {
             stack.as_ref().and_then(|text| text.as_ref().ok()).map(|text| crc32fast::hash(text));
         match (&manifest, stack) {
             (Some(manifest), Some(Ok(text))) if stack_crc != Some(manifest.stack) => {
-                let restored = foreign::restored(self, &text, &value, manifest);
+                let restored = foreign::restore(self, &text, &value, manifest);
                 restored.or_else(|error| {
                     if self.can_fit_if_rounded(&error) {
                         return Err(error);
                     }
-                    self.lost(format!("{error}; the layers are as Rilievo saved them"));
+                    self.note_loss(format!("{error}; the layers are as Rilievo saved them"));
                     self.read_document(value, Some(manifest))
                 })
             }
@@ -181,7 +183,7 @@ impl ProjectReader<'_> {
             });
             let known = known.map(|(_, tiles)| tiles.clone());
             let read =
-                || picture::painted(Path::new(&key.0), &bytes, key.1, key.2, self.budget).ok();
+                || picture::decode_paint(Path::new(&key.0), &bytes, key.1, key.2, self.budget).ok();
             let tiles = known.or_else(|| Some(read()?.tiles))?;
             // Pixels in memory count, not the rectangle around them.
             let px = (tiles.iter().count() * TILE_AREA) as u64;
@@ -214,7 +216,7 @@ impl ProjectReader<'_> {
                 });
             }
             None if self.archive.has_entry(PROCREATE_PREVIEW) => {
-                return foreign::shown(self, PROCREATE_PREVIEW, PROCREATE_NOTE);
+                return foreign::read_stored_picture(self, PROCREATE_PREVIEW, PROCREATE_NOTE);
             }
             None => {
                 Err(Error::decode(self.file, "it is not an OpenRaster file: it has no stack.xml"))

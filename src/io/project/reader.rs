@@ -29,7 +29,7 @@ impl ProjectReader<'_> {
     }
 
     /// Notes a loss.
-    pub fn lost(&mut self, sentence: impl Into<String>) {
+    pub fn note_loss(&mut self, sentence: impl Into<String>) {
         self.is_whole = false;
         self.notes.push(sentence.into());
     }

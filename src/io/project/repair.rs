@@ -54,17 +54,17 @@ pub fn leave_out_damaged(
 ) -> bool {
     let mut left_out = leave_out_selections(reading, document);
     if let Some(surface) = document.get("surface").cloned() {
-        let mut alone = around(document);
+        let mut alone = without_layers(document);
         alone["surface"] = surface;
         if let Err(error) = reading.read_value(&alone) {
-            reading.lost(format!("the surface is lost: {error}"));
+            reading.note_loss(format!("the surface is lost: {error}"));
             if let Value::Object(fields) = &mut *document {
                 fields.shift_remove("surface");
             }
             left_out = true;
         }
     }
-    let around = around(document);
+    let around = without_layers(document);
     let mut paths = Vec::new();
     list_layers(&document["layers"], "", &mut paths);
     for path in paths {
@@ -77,11 +77,11 @@ pub fn leave_out_damaged(
         let pixels = pixels.filter(|pixels| trouble(reading, &around, pixels).is_none());
         match pixels {
             Some(pixels) => {
-                reading.lost(format!("“{name}” became pixels: {error}"));
+                reading.note_loss(format!("“{name}” became pixels: {error}"));
                 *layer = pixels;
             }
             None => {
-                reading.lost(format!("“{name}” is lost: {error}"));
+                reading.note_loss(format!("“{name}” is lost: {error}"));
                 *layer = as_picture(layer, None);
             }
         }
@@ -98,7 +98,7 @@ fn leave_out_selections(reading: &mut ProjectReader, document: &mut Value) -> bo
     {
         let alone = json!({ "format": "rilievo", "canvas": canvas, "selections": [selection] });
         let Err(error) = reading.read_value(&alone) else { continue };
-        reading.lost(format!("a selection is lost: {error}"));
+        reading.note_loss(format!("a selection is lost: {error}"));
         if let Value::Object(fields) = selection {
             fields.shift_remove("mask");
         }
@@ -109,7 +109,7 @@ fn leave_out_selections(reading: &mut ProjectReader, document: &mut Value) -> bo
 
 /// A document without layers in which each of them can be read alone: its canvas and its
 /// selections, and parts of the same ids that hold nothing.
-pub fn around(document: &Value) -> Value {
+pub fn without_layers(document: &Value) -> Value {
     let mut out = json!({ "format": "rilievo", "version": document["version"], "layers": [] });
     for field in ["canvas", "selections"] {
         if let Some(value) = document.get(field) {

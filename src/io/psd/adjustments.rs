@@ -69,7 +69,7 @@ pub fn read(key: [u8; 4], data: &mut ByteCursor, colors: &Colors) -> Option<Colo
         }
         _ => return None,
     };
-    Some(adjustment.held())
+    Some(adjustment.clamp_to_ranges())
 }
 
 /// An adjustment as other programs will read it, its numbers rounded to those of the format; `None`
@@ -93,7 +93,7 @@ pub fn newer_brightness(data: &mut ByteCursor) -> Option<ColorAdjustment> {
     }
     let (brightness, contrast) = (said.number("Brgh")?, said.number("Cntr")?);
     let own = BrightnessContrast { brightness, contrast, legacy: said.is_set("useLegacy") };
-    Some(ColorAdjustment::BrightnessContrast(own).held())
+    Some(ColorAdjustment::BrightnessContrast(own).clamp_to_ranges())
 }
 
 fn number(data: &mut ByteCursor) -> Option<f32> {

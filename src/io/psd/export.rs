@@ -80,7 +80,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
                 .into(),
         );
     }
-    let guides = marks::written(document);
+    let guides = marks::guides_to_write(document);
     let bytes = encode_file(document.size, &records, &merged, (&selections, &guides), &ours);
     if bytes.len() > LONGEST_BYTES {
         let reason = format!(
@@ -276,7 +276,7 @@ fn record(item: &PlanItem) -> LayerRecord {
         // A fully locked layer also has its transparency locked.
         lock_alpha: item.lock != LayerLock::None,
         lock_all: item.lock == LayerLock::All,
-        label: marks::carried(item.label),
+        label: marks::nearest_label(item.label),
         ..LayerRecord::default()
     }
 }

@@ -104,7 +104,7 @@ fn straight(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option
 fn filled_rect(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Rect {
     let layer = match &record.mask {
         _ if !record.rect.is_empty() => record.rect,
-        Some(mask) if mask.outside == 0 => mask.covered(),
+        Some(mask) if mask.outside == 0 => mask.bounds(),
         _ => size.rect(),
     };
     if gradient.aligned && !layer.is_empty() { layer } else { size.rect() }

@@ -25,7 +25,7 @@ const LABELS: [LayerLabel; 8] = [
 ];
 
 /// A label of the format: there is no brown.
-pub fn carried(label: LayerLabel) -> LayerLabel {
+pub fn nearest_label(label: LayerLabel) -> LayerLabel {
     if LABELS.contains(&label) { label } else { LayerLabel::Orange }
 }
 
@@ -41,7 +41,7 @@ pub fn label(mut data: ByteCursor) -> LayerLabel {
 }
 
 /// The guides as the format holds them: to a 32nd of a pixel.
-pub fn written(document: &Document) -> Guides {
+pub fn guides_to_write(document: &Document) -> Guides {
     let near =
         |lines: &[f32]| lines.iter().map(|at| (at * STEPS_A_PX).round() / STEPS_A_PX).collect();
     Guides {

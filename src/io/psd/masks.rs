@@ -104,7 +104,7 @@ impl RecordMask {
     }
 
     /// The least rectangle around what is covered within its own.
-    pub fn covered(&self) -> Rect {
+    pub fn bounds(&self) -> Rect {
         let width = self.rect.width().max(1);
         let covered = self
             .values

@@ -26,7 +26,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     let damage = std::mem::take(&mut parsed.damage);
     let mut notes = damage.clone();
     if let Some(ours) = parsed.ours {
-        match restored(file, ours, &parsed.records, budget) {
+        match restore(file, ours, &parsed.records, budget) {
             Ok(Some(contents)) => {
                 notes.extend(contents.notes);
                 let document = with_guides_of(contents.document, parsed.guides.0);
@@ -44,7 +44,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         }
     }
     notes.extend(color_notes(&parsed));
-    let (document, is_less) = built(&mut parsed, budget, &mut notes);
+    let (document, is_less) = build_document(&mut parsed, budget, &mut notes);
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
         budget.room(file, "comparing its layers with its own picture", compared)?;
@@ -59,7 +59,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
 }
 
 /// The document that a file's records say, and whether something was left out.
-pub(super) fn built(
+pub(super) fn build_document(
     parsed: &mut ParsedPsd,
     budget: &Budget,
     notes: &mut Vec<String>,
@@ -100,7 +100,7 @@ pub(super) fn built(
 
 /// Ours keep their places to the last digit, unless another program moved them.
 fn with_guides_of(document: Document, found: Guides) -> Document {
-    if marks::written(&document) == found {
+    if marks::guides_to_write(&document) == found {
         document
     } else {
         Document { guides: found.into(), ..document }
@@ -149,7 +149,7 @@ fn flattened(parsed: &mut ParsedPsd) {
 
 /// The document that our own resource holds, the layers' pixels taken from the file; `None` where
 /// the layers are others.
-pub fn restored(
+pub fn restore(
     file: &Path,
     ours: &[u8],
     records: &[LayerRecord],

@@ -3,7 +3,7 @@
 
 use super::merged::off_white;
 use super::parse::{ParsedPsd, parse};
-use super::tree::restored;
+use super::tree::restore;
 use super::{LayerRecord, RecordSection};
 use crate::Budget;
 use crate::document::{Document, Guides, NamedSelection};
@@ -37,7 +37,7 @@ pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
         return lost(what);
     }
     let Some(ours) = parsed.ours else { return lost("what is live in it is missing".into()) };
-    let mut read = match restored(file, ours, &parsed.records, &budget) {
+    let mut read = match restore(file, ours, &parsed.records, &budget) {
         Err(error) => return lost(error.to_string()),
         Ok(None) => return lost("its layers are not recognized as this program's".into()),
         Ok(Some(read)) => read,
@@ -137,7 +137,7 @@ mod tests {
         let mut merged = write::on_white(&shown.to_straight_rgba(document.size.rect()));
         change(&mut records, &mut merged);
         let (selections, guides) =
-            (alpha_channels::of_document(document), marks::written(document));
+            (alpha_channels::of_document(document), marks::guides_to_write(document));
         let meant = Meant { document, records: &records, merged, selections, guides };
         read_back(file, bytes, meant).err().map(|error| error.to_string()).unwrap_or_default()
     }
@@ -203,7 +203,7 @@ mod tests {
             let shown = flatten(&everything(32), &Progress::default()).unwrap();
             let merged = write::on_white(&shown.to_straight_rgba(other.size.rect()));
             let (selections, guides) =
-                (alpha_channels::of_document(document), marks::written(document));
+                (alpha_channels::of_document(document), marks::guides_to_write(document));
             let meant = Meant { document, records: &records, merged, selections, guides };
             read_back(Path::new(FILE), &bytes, meant)
         };

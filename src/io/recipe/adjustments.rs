@@ -18,7 +18,7 @@ impl RecipeValue for ColorAdjustment {
         out.set("kind", self.name().into());
         let mut writer = ParameterWriter(out);
         self.clone().visit(&mut writer);
-        writer.0.done()
+        writer.0.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -81,7 +81,7 @@ impl ParameterVisitor for ParameterReader<'_> {
             if curve.points() == points {
                 Ok(curve)
             } else {
-                Err(node.refused(
+                Err(node.refusal(
                     "needs two points or more, the first number of each at least 1 above the last",
                 ))
             }
@@ -121,7 +121,7 @@ fn table(node: &JsonNode) -> Result<ColorTable> {
         ColorTable::new(title, side, is_separate, values).filter(|_| bytes.len().is_multiple_of(2))
     };
     bytes.and_then(read).ok_or_else(|| {
-        values.refused(format!("are not those of a table with {side} entries along its side"))
+        values.refusal(format!("are not those of a table with {side} entries along its side"))
     })
 }
 
@@ -160,7 +160,7 @@ impl ParameterVisitor for ParameterWriter {
         out.flag("separate", table.is_separate(), false);
         let bytes: Vec<u8> = table.values().iter().flat_map(|v| v.to_le_bytes()).collect();
         out.set("values", base64::encode(&bytes).into());
-        self.0.set(name.key, out.done());
+        self.0.set(name.key, out.into_value());
     }
 
     fn group(&mut self, name: ParameterName, inside: &mut dyn FnMut(&mut dyn ParameterVisitor)) {

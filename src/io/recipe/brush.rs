@@ -79,7 +79,7 @@ impl RecipeValue for BrushMode {
         if *self == BrushMode::Paint {
             out.set("kind", "paint".into());
         }
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -138,7 +138,7 @@ fn stabilizer(node: &JsonNode) -> Result<Stabilizer> {
         (None, Some(length_px), None) => Ok(Stabilizer::String { length_px }),
         (None, None, Some(secs)) => Ok(Stabilizer::Lag { secs }),
         (None, None, None) => Ok(Stabilizer::None),
-        _ => Err(node.refused("has more than one of average, string and lag; it must have one")),
+        _ => Err(node.refusal("has more than one of average, string and lag; it must have one")),
     }
 }
 
@@ -175,7 +175,7 @@ fn curves(node: &JsonNode) -> Result<[Option<Curve>; 2]> {
     let mut fields = node.fields()?;
     let added = fields.get("add").map(|node| {
         let refused = || {
-            node.refused(
+            node.refusal(
                 "is not a curve; the first numbers of its points must be between 0 and 1 and must \
                  not fall",
             )
@@ -193,7 +193,7 @@ fn curve(node: &JsonNode) -> Result<Curve> {
     }
     let curve = Curve::through(points(node, UNIT)?);
     curve.ok_or_else(|| {
-        node.refused("is not a curve; the first numbers of its points must not fall")
+        node.refusal("is not a curve; the first numbers of its points must not fall")
     })
 }
 
@@ -261,14 +261,14 @@ fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
             let own = dynamics.curve(property, input);
             let times =
                 (own != plain.curve(property, input)).then(|| own.map_or(0.into(), write_curve));
-            match (dynamics.added(property, input).map(write_curve), times) {
+            match (dynamics.added_curve(property, input).map(write_curve), times) {
                 (None, None) => {}
                 (None, Some(times)) => inputs.set(name, times),
                 (Some(added), times) => {
                     let mut both = JsonObject::default();
                     both.set("add", added);
                     both.set_some("times", times, |times| times);
-                    inputs.set(name, both.done());
+                    inputs.set(name, both.into_value());
                 }
             }
         }
@@ -313,11 +313,11 @@ mod tests {
             "seed": 4_000_000_000u32,
         });
         let brush = read(&text).unwrap();
-        assert_eq!(write_brush(&brush).done(), text);
+        assert_eq!(write_brush(&brush).into_value(), text);
         assert!(brush.dynamics.curve(Property::Flow, Input::Pressure).is_none());
-        assert_eq!(write_brush(&Brush::default()).done(), json!({}));
+        assert_eq!(write_brush(&Brush::default()).into_value(), json!({}));
         let average = json!({ "stabilizer": { "average": 0.5 } });
-        assert_eq!(write_brush(&read(&average).unwrap()).done(), average);
+        assert_eq!(write_brush(&read(&average).unwrap()).into_value(), average);
     }
 
     #[test]

@@ -78,7 +78,7 @@ mod tests {
     fn written(brush: &Brush) -> Value {
         let mut out = JsonObject::default();
         write(&mut out, brush);
-        out.done()
+        out.into_value()
     }
 
     #[test]

@@ -24,7 +24,7 @@ impl LayerReader<'_> {
             Some(node) => {
                 let (brush, _) = self.brush(&node, None)?;
                 if brush.mode.is_retouching() {
-                    return Err(node.refused("smudges, blurs or clones; lines are painted"));
+                    return Err(node.refusal("smudges, blurs or clones; lines are painted"));
                 }
                 brush
             }
@@ -78,7 +78,7 @@ pub fn write(out: &mut JsonObject, drawing: &FormDrawing) {
     out.object("hand", hand);
     let plain = FormDrawing::new(drawing.pattern);
     if drawing.brush != plain.brush {
-        out.set("brush", write_brush(&drawing.brush).done());
+        out.set("brush", write_brush(&drawing.brush).into_value());
     }
     out.color("color", drawing.color, plain.color);
 }
@@ -87,7 +87,7 @@ impl RecipeValue for LineSettings {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_lines(&mut out, self);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -99,7 +99,7 @@ impl RecipeValue for DrawingHand {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_settings(&mut out, DrawingHand::SETTINGS, self, &DrawingHand::DEFAULT);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {

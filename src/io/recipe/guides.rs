@@ -32,7 +32,7 @@ fn read_assistant(node: &JsonNode) -> Result<Assistant> {
         kind,
         points: points.list(3)?.iter().map(JsonNode::point).collect::<Result<_>>()?,
     };
-    assistant.fits().map_err(|why| points.refused(why))?;
+    assistant.fits().map_err(|why| points.refusal(why))?;
     Ok(assistant)
 }
 
@@ -53,14 +53,14 @@ fn write_guides(guides: &Guides) -> Value {
             out.set(name, lines.iter().map(|at| object::number(*at)).collect());
         }
     }
-    out.done()
+    out.into_value()
 }
 
 fn write_assistant(assistant: &Assistant) -> Value {
     let mut out = JsonObject::default();
     out.set("kind", assistant.kind.name().into());
     out.set("points", assistant.points.iter().map(|point| object::point(*point)).collect());
-    out.done()
+    out.into_value()
 }
 
 /// Whether the first version has no words for what is there.

@@ -93,7 +93,7 @@ impl LayerReader<'_> {
                 Ok(source)
             }
             (None, Some((text, node))) => self.pictures.text(self.source, &node, &text, adjust),
-            (None, None) => Err(node.refused("needs a “file” or a “text”")),
+            (None, None) => Err(node.refusal("needs a “file” or a “text”")),
         }
     }
 }
@@ -125,7 +125,7 @@ impl RecipeValue for Operator {
         if *self == Operator::None {
             out.set("kind", self.row().1.into());
         }
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -146,7 +146,7 @@ impl RecipeValue for Anchor {
         if self.source != self.at {
             out.set("source", object::point(self.source));
         }
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -168,7 +168,7 @@ impl RecipeValue for PlanePiece {
         }
         out.number("scale", self.scale, still.scale);
         out.number("rotation", self.rotation, still.rotation);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -193,7 +193,7 @@ impl RecipeValue for GradientStop {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let [t, color] = &node.list(2)?[..] else {
-            return Err(node.refused("must be [t, color]"));
+            return Err(node.refusal("must be [t, color]"));
         };
         Ok(GradientStop { t: t.number(UNIT)?, color: color.color()? })
     }
@@ -204,7 +204,7 @@ impl RecipeValue for Placement {
     fn to_json(&self) -> Value {
         let mut out = write_placement_beside(self, &unscaled(self.center));
         out.set("center", object::point(self.center));
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -217,7 +217,7 @@ impl RecipeValue for Adjust {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_adjust(&mut out, self);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -267,14 +267,14 @@ fn weights(node: &JsonNode) -> Result<Weights> {
 pub fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
     let items = node.list(Gradient::MOST_STOPS)?;
     if items.is_empty() {
-        return Err(node.refused("is empty; a gradient needs at least one stop"));
+        return Err(node.refusal("is empty; a gradient needs at least one stop"));
     }
     let mut stops: Vec<GradientStop> = Vec::with_capacity(items.len());
     for item in &items {
         let stop = GradientStop::from_json(item)?;
         if stops.last().is_some_and(|before| before.t > stop.t) {
             return Err(
-                item.list(2)?[0].refused("is less than the stop before it; stops go from 0 to 1")
+                item.list(2)?[0].refusal("is less than the stop before it; stops go from 0 to 1")
             );
         }
         stops.push(stop);
@@ -353,7 +353,7 @@ pub fn write_source(source: &PictureSource) -> Value {
     out.set("file", source.file.as_str().into());
     out.set_some("text", source.text.as_deref(), Text::to_json);
     write_adjust(&mut out, &source.adjust);
-    out.done()
+    out.into_value()
 }
 
 fn write_adjust(out: &mut JsonObject, adjust: &Adjust) {

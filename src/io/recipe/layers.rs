@@ -81,7 +81,7 @@ impl LayerReader<'_> {
             liquify.is_some() || transform.as_ref().is_some_and(|own| own.mesh().is_some());
         if is_warped && !layer.content.can_be_warped() {
             let why = "shows nothing of its own, so a mesh or liquify cannot displace it";
-            return Err(warped.as_ref().unwrap_or(node).refused(why));
+            return Err(warped.as_ref().unwrap_or(node).refusal(why));
         }
         let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
         Ok(Layer { label, mask, clip_to_surface, transform, liquify, on, ..layer })
@@ -91,7 +91,7 @@ impl LayerReader<'_> {
     pub fn home(&self, node: &JsonNode) -> Result<HomeFrame> {
         let id = node.text()?;
         if id != HomeFrame::CANVAS && !self.homes.iter().any(|known| known == id) {
-            return Err(node.refused(format!("is “{id}”; there is no part with that id")));
+            return Err(node.refusal(format!("is “{id}”; there is no part with that id")));
         }
         Ok(HomeFrame::on(id))
     }
@@ -128,11 +128,11 @@ pub fn write(layers: &[Arc<Layer>], canvas: Size, list: &SelectionList) -> Value
         match &layer.content {
             Content::Group(group) => out.set("layers", write(&group.layers, canvas, list)),
             Content::Strokes(live) => {
-                out.set("strokes", strokes::written(live.params(), list).collect())
+                out.set("strokes", strokes::write_strokes(live.params(), list).collect())
             }
             _ => {}
         }
-        out.done()
+        out.into_value()
     };
     layers.iter().map(one).collect()
 }
@@ -147,7 +147,8 @@ pub fn print(layers: &[Arc<Layer>], canvas: Size, list: &SelectionList, out: &mu
             Content::Group(group) => print(&group.layers, canvas, list, out),
             Content::Strokes(live) => {
                 out.open_list(Some("strokes"));
-                strokes::written(live.params(), list).for_each(|stroke| out.value(None, &stroke));
+                strokes::write_strokes(live.params(), list)
+                    .for_each(|stroke| out.value(None, &stroke));
                 out.close_list();
             }
             _ => {}

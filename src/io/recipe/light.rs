@@ -36,7 +36,7 @@ impl RecipeValue for Light {
         }
         out.color("color", self.color, base.color);
         out.number("intensity", self.intensity, base.intensity);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -63,7 +63,7 @@ impl RecipeValue for Scaling {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_scaling(&mut out, self, &Scaling::NONE);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -73,7 +73,7 @@ impl RecipeValue for Scaling {
 
 impl RecipeValue for Term {
     fn to_json(&self) -> Value {
-        write_term(self, &PLAIN).done()
+        write_term(self, &PLAIN).into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -85,7 +85,7 @@ impl RecipeValue for Features {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_features(&mut out, self);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -95,7 +95,7 @@ impl RecipeValue for Features {
 
 impl RecipeValue for Shadows {
     fn to_json(&self) -> Value {
-        write_shadows(self, &Shadows::DEFAULT).done()
+        write_shadows(self, &Shadows::DEFAULT).into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -116,7 +116,7 @@ impl RecipeValue for BallStrokes {
 
 impl RecipeValue for Painter {
     fn to_json(&self) -> Value {
-        write_painter(self, &Painter::DEFAULT).done()
+        write_painter(self, &Painter::DEFAULT).into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -180,7 +180,7 @@ pub fn features(fields: &mut Fields) -> Result<Features> {
     };
     let items = node.list(Features::MOST_SCALES)?;
     if items.is_empty() {
-        return Err(node.refused("is empty; at least one scale is needed"));
+        return Err(node.refusal("is empty; at least one scale is needed"));
     }
     let one = |item: &JsonNode| {
         let mut fields = item.fields()?;
@@ -285,7 +285,7 @@ pub fn write_ball_strokes(strokes: &BallStrokes) -> Value {
         return strokes.on.into();
     }
     out.flag("on", strokes.on, true);
-    out.done()
+    out.into_value()
 }
 
 /// Fields that are not given are those of `base`.
@@ -316,7 +316,7 @@ pub fn write_painter(painter: &Painter, base: &Painter) -> JsonObject {
 pub fn direction(node: &JsonNode) -> Result<Vec3> {
     let v = node.vector(-1e6..=1e6)?;
     if node.is_ranged() && !Light::has_direction(v) {
-        return Err(node.refused("has no length, so it has no direction"));
+        return Err(node.refusal("has no length, so it has no direction"));
     }
     Ok(v)
 }
@@ -346,7 +346,7 @@ pub fn write_features(out: &mut JsonObject, features: &Features) {
                 let mut out = JsonObject::default();
                 write_scale(&mut out, scale);
                 out.number("weight", scale.weight, base.weight);
-                out.done()
+                out.into_value()
             };
             out.set("scales", scales.iter().map(one).collect());
         }

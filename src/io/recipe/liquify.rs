@@ -35,7 +35,7 @@ pub fn read(node: &JsonNode) -> Result<Option<Arc<Lattice>>> {
 fn place(node: &JsonNode) -> Result<TileAt> {
     let items = node.list(2)?;
     let [column, row] = &items[..] else {
-        return Err(node.refused("is not a place [column, row]"));
+        return Err(node.refusal("is not a place [column, row]"));
     };
     let far = i64::from(Lattice::FARTHEST_BLOCK);
     Ok(TileAt::new(column.integer(-far..=far)? as i32, row.integer(-far..=far)? as i32))
@@ -44,7 +44,7 @@ fn place(node: &JsonNode) -> Result<TileAt> {
 fn side(node: &JsonNode) -> Result<Vec<f32>> {
     let items = node.list(NODES)?;
     if items.len() != NODES {
-        return Err(node.refused(format!("has {} numbers; it must have {NODES}", items.len())));
+        return Err(node.refusal(format!("has {} numbers; it must have {NODES}", items.len())));
     }
     let most = (Lattice::FARTHEST_PX * Lattice::PER_PX) as i64;
     items.iter().map(|item| Ok(item.integer(-most..=most)? as f32 / Lattice::PER_PX)).collect()

@@ -33,12 +33,12 @@ impl RecipeValue for DerivedMask {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_derived(&mut out, *self);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
-        let mask = derived(&mut fields)?.ok_or_else(|| node.refused("has no “kind”"))?;
+        let mask = derived(&mut fields)?.ok_or_else(|| node.refusal("has no “kind”"))?;
         fields.finish()?;
         Ok(mask)
     }
@@ -109,7 +109,7 @@ pub fn write(mask: &LayerMask) -> Value {
     }
     out.flag("invert", mask.invert, false);
     out.flag("disabled", mask.disabled, false);
-    out.done()
+    out.into_value()
 }
 
 fn write_derived(out: &mut JsonObject, mask: DerivedMask) {

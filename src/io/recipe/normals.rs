@@ -57,7 +57,7 @@ impl RecipeValue for NoiseRelief {
         if self.seed != base.seed {
             out.set("seed", self.seed.into());
         }
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -85,7 +85,7 @@ pub fn write(out: &mut JsonObject, normals: &NormalLayer, canvas: Size) {
         DetailSource::Grain(grain) => {
             let mut source = JsonObject::default();
             source.set("noise", grain.to_json());
-            out.set("source", source.done());
+            out.set("source", source.into_value());
         }
     }
     out.object("placement", write_placement(&normals.placement, canvas));

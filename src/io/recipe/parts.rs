@@ -70,7 +70,7 @@ impl LayerReader<'_> {
             let part = self.part(item, i)?;
             if list.iter().any(|other| other.id == part.id) {
                 return Err(
-                    item.refused(format!("has the id “{}”, which another part has", part.id))
+                    item.refusal(format!("has the id “{}”, which another part has", part.id))
                 );
             }
             list.push(Arc::new(part));
@@ -107,7 +107,7 @@ impl LayerReader<'_> {
             ..plain
         };
         fields.finish()?;
-        part.fits().map_err(|why| node.refused(why))?;
+        part.fits().map_err(|why| node.refusal(why))?;
         Ok(part)
     }
 
@@ -154,7 +154,7 @@ impl LayerReader<'_> {
         let axis = match axis.as_deref() {
             None => None,
             Some([a, b]) => Some([*a, *b]),
-            Some(_) => return Err(fields.node().refused("has an axis that is not two points")),
+            Some(_) => return Err(fields.node().refusal("has an axis that is not two points")),
         };
         let puff = fields.number("puff", 1.0, Inflation::PUFF)?;
         Ok(PartKind::Lathe { outline: self.outline(fields)?, axis, puff })
@@ -213,7 +213,7 @@ impl LayerReader<'_> {
             (known.surface.size(), known.source.matrix) == (size, matrix)
                 && written.fields().iter().all(is_same)
         };
-        if let Some(known) = self.pictures.known_maps(is_told) {
+        if let Some(known) = self.pictures.cached_maps(is_told) {
             for name in ["normal", "depth", "mask"] {
                 fields.get(name);
             }
@@ -221,12 +221,12 @@ impl LayerReader<'_> {
         }
         let source = SurfaceSource { matrix, ..surface::maps_of(fields)? };
         if source.normal.is_none() && source.depth.is_none() {
-            return Err(node.refused("names neither a normal map nor a depth map"));
+            return Err(node.refusal("names neither a normal map nor a depth map"));
         }
         let found = maps::import(&source, self.source.files, self.source.budget)
-            .map_err(|error| node.led_to(error))?;
+            .map_err(|error| node.name_in_error(error))?;
         let made = Arc::new(found.surface).onto(size, source.map().as_ref());
-        let surface = made.map_err(|error| node.refused(error))?;
+        let surface = made.map_err(|error| node.refusal(error))?;
         self.notes.extend(found.findings.notes);
         Ok(PartKind::Maps(PartMaps {
             source: Arc::new(source),
@@ -280,7 +280,7 @@ impl LayerReader<'_> {
         let color = fields.get("color").map(|node| node.color()).transpose()?;
         let at = fields.get("at").map(|node| node.point()).transpose()?;
         if at.is_some() && color.is_none() {
-            return Err(node.refused("has a place (“at”), but no color"));
+            return Err(node.refusal("has a place (“at”), but no color"));
         }
         let color = color.map(|color| FlatColor { color, at });
         let source = if let Some(layer) = fields.get("layer") {
@@ -295,10 +295,10 @@ impl LayerReader<'_> {
         } else if let Some(object) = fields.get("object") {
             OutlineSource::Object(object.whole(1..=u32::MAX)?)
         } else {
-            return Err(node.refused("names no layer, file, selection, path or object"));
+            return Err(node.refusal("names no layer, file, selection, path or object"));
         };
         if color.is_some() && !matches!(source, OutlineSource::Layer { .. }) {
-            return Err(node.refused("has a color, but no layer"));
+            return Err(node.refusal("has a color, but no layer"));
         }
         fields.finish()?;
         Ok(source)
@@ -323,7 +323,7 @@ fn curve(node: &JsonNode) -> Result<BevelCurve> {
     let points = points(node, BevelCurve::MOST_POINTS)?;
     if points.len() < 2 || points.windows(2).any(|pair| pair[0].x > pair[1].x) {
         return Err(
-            node.refused("must have two points or more, each farther in than the one before")
+            node.refusal("must have two points or more, each farther in than the one before")
         );
     }
     Ok(BevelCurve::Points(points))

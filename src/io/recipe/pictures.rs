@@ -75,7 +75,7 @@ impl PictureCache {
         text: &Text,
         adjust: Adjust,
     ) -> Result<PictureSource> {
-        let laid = text::lay_out(text, source.budget).map_err(|e| node.led_to(e))?;
+        let laid = text::lay_out(text, source.budget).map_err(|e| node.name_in_error(e))?;
         let size = laid.picture.size;
         self.spend(source, size, laid.picture.bytes() + size.area() * 6)?;
         self.texts += 1;
@@ -92,7 +92,8 @@ impl PictureCache {
         }
         let bytes = bytes(source, name)?;
         let path = source.files.path(name.text()?);
-        let picture = picture::decode(&path, &bytes, source.budget).map_err(|e| name.led_to(e))?;
+        let picture =
+            picture::decode(&path, &bytes, source.budget).map_err(|e| name.name_in_error(e))?;
         // Counted with it is the texture that it is sampled through, in bytes and with its mip
         // levels.
         self.spend(source, picture.size, picture.bytes() + picture.size.area() * 6)?;
@@ -118,7 +119,7 @@ impl PictureCache {
         }
         let bytes = bytes(source, name)?;
         let read = detail::read(&source.files.path(file), &bytes, convention, source.budget);
-        let normals = read.map_err(|e| name.led_to(e))?;
+        let normals = read.map_err(|e| name.name_in_error(e))?;
         self.spend(source, normals.size(), normals.size().area() * 2 * size_of::<Vec3>())?;
         let map = Arc::new(DetailMap::new(blurred(normals, blur_px)));
         let (file, convention) = (file.to_owned(), convention.clone());
@@ -184,8 +185,8 @@ impl PictureCache {
                 },
                 None => {
                     let (bytes, path) = (bytes(source, name)?, source.files.path(name.text()?));
-                    picture::painted(&path, &bytes, x, y, source.budget)
-                        .map_err(|e| name.led_to(e))?
+                    picture::decode_paint(&path, &bytes, x, y, source.budget)
+                        .map_err(|e| name.name_in_error(e))?
                 }
             };
             let tiles =
@@ -208,7 +209,7 @@ impl PictureCache {
         let bytes = bytes(source, name)?;
         let plane =
             picture::decode_coverage(&source.files.path(name.text()?), &bytes, source.budget);
-        let plane = plane.map_err(|e| name.led_to(e))?;
+        let plane = plane.map_err(|e| name.name_in_error(e))?;
         self.spend(source, plane.size(), plane.size().area())?;
         Ok(CoverageGrid::from_plane(&plane, x, y))
     }
@@ -223,7 +224,7 @@ impl PictureCache {
     }
 
     /// Those of the maps that are known already which are meant.
-    pub fn known_maps(&self, is_meant: impl Fn(&PartMaps) -> bool) -> Option<PartMaps> {
+    pub fn cached_maps(&self, is_meant: impl Fn(&PartMaps) -> bool) -> Option<PartMaps> {
         self.maps.iter().find(|maps| is_meant(maps)).cloned()
     }
 
@@ -241,10 +242,10 @@ impl PictureCache {
         }
         let bytes = bytes(source, name)?;
         let plane = picture::decode_coverage(&source.files.path(&file), &bytes, source.budget);
-        let plane = Arc::new(plane.map_err(|e| name.led_to(e))?);
+        let plane = Arc::new(plane.map_err(|e| name.name_in_error(e))?);
         if let Some(canvas) = canvas.filter(|_| !fits(&plane)) {
             return Err(
-                name.refused(format!("“{file}” has {} pixels, the canvas {canvas}", plane.size()))
+                name.refusal(format!("“{file}” has {} pixels, the canvas {canvas}", plane.size()))
             );
         }
         self.coverages.insert(file.clone(), plane.clone());
@@ -265,7 +266,7 @@ fn blurred(normals: Plane<Vec3>, blur_px: f32) -> Plane<Vec3> {
 fn bytes(source: RecipeSource, name: &JsonNode) -> Result<Vec<u8>> {
     let text = name.text()?;
     if let Some(reason) = files::refusal(text) {
-        return Err(name.refused(format!("“{text}” is refused: {reason}")));
+        return Err(name.refusal(format!("“{text}” is refused: {reason}")));
     }
-    source.files.read(text, source.budget).map_err(|e| name.led_to(e))
+    source.files.read(text, source.budget).map_err(|e| name.name_in_error(e))
 }

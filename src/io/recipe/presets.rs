@@ -80,19 +80,19 @@ pub fn preset_brush(key: &str) -> Option<(Brush, Operator)> {
 }
 
 /// The preset that a field names, perhaps as version 0.1 did.
-pub(super) fn named(key: &JsonNode) -> Result<(Brush, Operator)> {
+pub(super) fn read_preset_name(key: &JsonNode) -> Result<(Brush, Operator)> {
     let wanted = key.text()?;
     let Some((_, text)) = BRUSHES.iter().find(|(known, _)| *known == current_name(wanted)) else {
         let names: Vec<_> = preset_names().collect();
-        return Err(key.refused(format!("is “{wanted}”; the presets are {}", names.join(", "))));
+        return Err(key.refusal(format!("is “{wanted}”; the presets are {}", names.join(", "))));
     };
-    let preset = built_in(wanted, text).map_err(|e| key.led_to(e))?;
+    let preset = built_in(wanted, text).map_err(|e| key.name_in_error(e))?;
     Ok((preset.brush, preset.operator))
 }
 
 fn built_in(key: &str, text: &str) -> Result<BrushPreset> {
     let mut none =
-        |node: &JsonNode| Err(node.refused("is a file; the brushes of the program have none"));
+        |node: &JsonNode| Err(node.refusal("is a file; the brushes of the program have none"));
     read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
 }
 
@@ -107,7 +107,7 @@ pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
         let named = node.text()?;
         let found = like.pictures().find(|source| source.file == named).cloned();
         found.ok_or_else(|| {
-            node.refused(format!("is “{named}”; the current brush has no such picture"))
+            node.refusal(format!("is “{named}”; the current brush has no such picture"))
         })
     };
     tips::read(&mut fields, &mut brush, &mut picture)?;
@@ -117,7 +117,7 @@ pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
 
 /// Everything that differs from the plain brush, pictures by name.
 pub fn written_brush(brush: &Brush) -> Value {
-    write_brush(brush).done()
+    write_brush(brush).into_value()
 }
 
 /// A preset in a file of its own; its pictures are next to it.
@@ -165,9 +165,9 @@ pub fn write_preset(preset: &BrushPreset) -> Value {
     if preset.color != SHOWN {
         out.set("color", object::color(preset.color));
     }
-    out.set("brush", write_brush(&preset.brush).done());
+    out.set("brush", write_brush(&preset.brush).into_value());
     out.object("operator", write_operator(preset.operator));
-    out.done()
+    out.into_value()
 }
 
 #[cfg(test)]

@@ -55,11 +55,11 @@ pub fn read(node: &JsonNode, most: usize, left: &mut usize) -> Result<Vec<Sample
                     node.too_large(format!("has more than {most} readings of the pen"))
                 }
                 Unreadable::Damaged => {
-                    node.refused("is no text of readings as Rilievo writes them")
+                    node.refusal("is no text of readings as Rilievo writes them")
                 }
             })?;
             match read.iter().enumerate().find_map(|(i, sample)| Some((i, trouble(sample)?))) {
-                Some((i, reason)) => return Err(node.item(i).refused(reason)),
+                Some((i, reason)) => return Err(node.item(i).refusal(reason)),
                 None => read,
             }
         }
@@ -86,7 +86,7 @@ pub fn read_pressed(node: &JsonNode, most: usize, left: &mut usize) -> Result<Ve
         let is_pressed = tilt == Vec2::ZERO && time_secs == 0.0;
         is_pressed
             .then_some((at, pressure))
-            .ok_or_else(|| node.item(i).refused("has more than a place and a pressure"))
+            .ok_or_else(|| node.item(i).refusal("has more than a place and a pressure"))
     };
     read(node, most, left)?.into_iter().enumerate().map(pressed).collect()
 }
@@ -96,7 +96,7 @@ fn read_row(node: &JsonNode) -> Result<Sample> {
     let values = node.numbers(2, COLUMNS, COORDINATE)?;
     let value = |i: usize| values.get(i).copied().unwrap_or(UNSAID[i - 2]);
     let sample = of_numbers([values[0], values[1], value(2), value(3), value(4), value(5)]);
-    trouble(&sample).map_or(Ok(sample), |reason| Err(node.refused(reason)))
+    trouble(&sample).map_or(Ok(sample), |reason| Err(node.refusal(reason)))
 }
 
 /// Why a reading cannot be one.

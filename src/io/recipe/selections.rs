@@ -47,11 +47,11 @@ impl LayerReader<'_> {
             fields.finish()?;
             let known = (selection.clone(), name.as_ref().map(|(name, _)| name.clone()));
             if self.selections.insert(id.text()?.to_owned(), known).is_some() {
-                return Err(id.refused("is the id of another selection too"));
+                return Err(id.refusal("is the id of another selection too"));
             }
             if let Some((name, at)) = name {
                 if name.is_empty() || kept.iter().any(|known| known.name == name) {
-                    return Err(at.refused("must be there, and no other selection's"));
+                    return Err(at.refusal("must be there, and no other selection's"));
                 }
                 kept.push(NamedSelection { name, selection });
             }
@@ -63,7 +63,7 @@ impl LayerReader<'_> {
     pub fn selection_of(&self, node: &JsonNode) -> Result<Arc<Selection>> {
         let id = node.text()?;
         let known = self.selections.get(id).map(|(selection, _)| selection.clone());
-        known.ok_or_else(|| node.refused(format!("is “{id}”; there is no selection with that id")))
+        known.ok_or_else(|| node.refusal(format!("is “{id}”; there is no selection with that id")))
     }
 
     /// The kept selection that an outline names, by its id or, in an edit, by its name; one that
@@ -72,7 +72,7 @@ impl LayerReader<'_> {
         let id = node.text()?;
         match self.selections.get(id) {
             Some((_, name)) => Ok(name.clone().unwrap_or_else(|| id.to_owned())),
-            None => Err(node.refused(format!("is “{id}”; there is no selection with that id"))),
+            None => Err(node.refusal(format!("is “{id}”; there is no selection with that id"))),
         }
     }
 
@@ -131,7 +131,7 @@ impl RecipeValue for SurfaceRegion {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_region(&mut out, self);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -175,16 +175,16 @@ pub fn write(out: &mut JsonObject, document: &Document, list: &SelectionList) {
         match &selection.made {
             Some(region) => write_region(&mut mask, region),
             None => {
-                let rect = selection.coverage.covered();
+                let rect = selection.coverage.covered_rect();
                 mask.set("file", file(place).into());
                 mask.number("x", rect.x0 as f32, 0.0);
                 mask.number("y", rect.y0 as f32, 0.0);
             }
         }
-        entry.set("mask", mask.done());
-        entry.done()
+        entry.set("mask", mask.into_value());
+        entry.into_value()
     };
-    out.set("selections", list.named().enumerate().map(one).collect());
+    out.set("selections", list.iter_with_names().enumerate().map(one).collect());
     if let Some(place) = document.active_selection.as_ref().and_then(|active| list.place(active)) {
         out.set("active_selection", id(place).into());
     }
@@ -206,7 +206,7 @@ pub fn write_of_stroke(stroke: &Stroke, list: &SelectionList) -> JsonObject {
 
 /// The list's name for a kept selection.
 pub fn id_of_kept(name: &str, list: &SelectionList) -> Option<String> {
-    list.named().position(|(known, _)| known == Some(name)).map(id)
+    list.iter_with_names().position(|(known, _)| known == Some(name)).map(id)
 }
 
 /// A stroke's JSON with those fields.

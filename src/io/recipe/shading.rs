@@ -197,5 +197,5 @@ fn write_environment(environment: &Environment) -> Value {
     out.word("projection", &Projection::ALL, environment.projection, Projection::LatLong);
     out.number("rotation", environment.rotation, 0.0);
     out.number("exposure", environment.exposure, 0.0);
-    out.done()
+    out.into_value()
 }

@@ -36,7 +36,7 @@ impl LayerReader<'_> {
         let brush = fields.get("brush").map(|brush| self.brush(&brush, before)).transpose()?;
         let (brush, preset) = brush.unwrap_or_default();
         if brush.mode.is_retouching() {
-            return Err(node.refused(
+            return Err(node.refusal(
                 "has a brush that smudges, blurs or clones; strokes of a stroke layer paint",
             ));
         }
@@ -59,7 +59,7 @@ impl LayerReader<'_> {
         let (on, transform) = (fields.get("on"), fields.get("transform"));
         let Some(on) = on else {
             return match transform {
-                Some(node) => Err(node.refused("is for strokes that have their own “on”")),
+                Some(node) => Err(node.refusal("is for strokes that have their own “on”")),
                 None => Ok(None),
             };
         };
@@ -68,7 +68,7 @@ impl LayerReader<'_> {
             home.own = match transforms::read(&node, None)?.shape {
                 TransformShape::Matrix(coefficients) => coefficients,
                 TransformShape::Quad(_) | TransformShape::Mesh(_) => {
-                    return Err(node.refused("must be a matrix"));
+                    return Err(node.refusal("must be a matrix"));
                 }
             };
         }
@@ -84,12 +84,12 @@ impl LayerReader<'_> {
     ) -> Result<(Brush, Operator)> {
         let mut fields = node.fields()?;
         let (base, operator) = match fields.get("preset") {
-            Some(name) => presets::named(&name)?,
+            Some(name) => presets::read_preset_name(&name)?,
             None if fields.boolean("same", false)? => match before {
                 Some(before) => (before, Operator::None),
                 None => {
                     return Err(
-                        node.refused("is the same as before, but there is no stroke before it")
+                        node.refusal("is the same as before, but there is no stroke before it")
                     );
                 }
             },
@@ -105,7 +105,7 @@ impl LayerReader<'_> {
 }
 
 /// The strokes of a layer as in its `strokes`, one after the other.
-pub fn written<'a>(
+pub fn write_strokes<'a>(
     list: &'a StrokeList,
     selections: &'a SelectionList,
 ) -> impl Iterator<Item = Value> + 'a {
@@ -138,7 +138,7 @@ fn write(stroke: &Stroke, brush: &JsonObject) -> Value {
         }
     }
     out.set("samples", samples::write(stroke.samples()));
-    out.done()
+    out.into_value()
 }
 
 /// The difference of a brush from the one before it, if it is only that; a plain brush needs no
@@ -189,7 +189,7 @@ mod tests {
         let none =
             SelectionList::of(&crate::document::Document::empty(crate::math::Size::new(4, 4)));
         let told: Vec<Value> =
-            written(&list, &none).map(|stroke| stroke["brush"].clone()).collect();
+            write_strokes(&list, &none).map(|stroke| stroke["brush"].clone()).collect();
         assert_eq!(
             told[1..3],
             [
@@ -202,7 +202,7 @@ mod tests {
         assert_eq!(told[6], told[0]);
         let text = serde_json::json!({
             "canvas": { "width": 4, "height": 4 },
-            "layers": [{ "kind": "strokes", "strokes": written(&list, &none).collect::<Value>() }],
+            "layers": [{ "kind": "strokes", "strokes": write_strokes(&list, &none).collect::<Value>() }],
         });
         let read = crate::project::sample::read(&text, &crate::UserFiles::default());
         for (stroke, brush) in read.strokes(read.layers[0].id).iter().zip(&brushes) {

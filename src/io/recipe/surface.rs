@@ -26,7 +26,7 @@ pub fn read(node: &JsonNode) -> Result<Option<SurfaceSource>> {
         if has_parts && source.mask.is_none() && source.matrix.is_none() {
             return Ok(None);
         }
-        return Err(node.refused("names neither a normal map nor a depth map"));
+        return Err(node.refusal("names neither a normal map nor a depth map"));
     }
     Ok(Some(source))
 }
@@ -45,7 +45,7 @@ pub fn maps_of(fields: &mut Fields) -> Result<SurfaceSource> {
 pub fn matrix(node: &JsonNode) -> Result<[f64; 6]> {
     let matrix = transforms::matrix_of(node)?;
     let source = SurfaceSource { matrix: Some(matrix), ..SurfaceSource::default() };
-    source.fits().map(|()| matrix).map_err(|why| node.refused(why))
+    source.fits().map(|()| matrix).map_err(|why| node.refusal(why))
 }
 
 fn normal(node: &JsonNode) -> Result<MapSource<NormalConvention>> {
@@ -92,7 +92,7 @@ fn channels(node: &JsonNode) -> Result<[u8; 3]> {
     let letters = node.text()?;
     let read = NormalConvention::channels_from_letters(letters);
     read.ok_or_else(|| {
-        node.refused(format!("is “{letters}”; it must be three different letters of rgba"))
+        node.refusal(format!("is “{letters}”; it must be three different letters of rgba"))
     })
 }
 
@@ -100,7 +100,7 @@ fn channels(node: &JsonNode) -> Result<[u8; 3]> {
 fn rotation(node: &JsonNode) -> Result<[[f32; 3]; 3]> {
     let rows = node.list(4)?;
     if rows.len() < 3 {
-        return Err(node.refused(format!("has {} rows; it must have 3 or 4", rows.len())));
+        return Err(node.refusal(format!("has {} rows; it must have 3 or 4", rows.len())));
     }
     let mut rotation = [[0.0; 3]; 3];
     for (row, into) in rows.iter().zip(&mut rotation) {
@@ -150,7 +150,7 @@ fn file(fields: &mut Fields) -> Result<String> {
     let node = fields.required("file")?;
     let name = node.text()?;
     match files::refusal(name) {
-        Some(reason) => Err(node.refused(format!("“{name}” is refused: {reason}"))),
+        Some(reason) => Err(node.refusal(format!("“{name}” is refused: {reason}"))),
         None => Ok(name.to_owned()),
     }
 }

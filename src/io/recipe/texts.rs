@@ -16,7 +16,7 @@ impl RecipeValue for Text {
             let run = |run: &TextRun| {
                 let mut out = JsonObject::default();
                 write_run(&mut out, run);
-                out.done()
+                out.into_value()
             };
             out.set("runs", self.runs.iter().map(run).collect());
         }
@@ -28,7 +28,7 @@ impl RecipeValue for Text {
         if self.origin != plain.origin {
             out.set("origin", object::point(self.origin));
         }
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
@@ -92,7 +92,7 @@ fn read_run(fields: &mut Fields) -> Result<TextRun> {
 fn family(node: &JsonNode) -> Result<String, Error> {
     let family = node.text()?;
     match family.chars().count() > TextStyle::LONGEST_FAMILY {
-        true => Err(node.refused(format!("is longer than {}", TextStyle::LONGEST_FAMILY))),
+        true => Err(node.refusal(format!("is longer than {}", TextStyle::LONGEST_FAMILY))),
         false => Ok(family.to_owned()),
     }
 }

@@ -94,7 +94,7 @@ fn hose(fields: &mut Fields, picture: &mut PictureReader) -> Result<Hose> {
     let pictures =
         files.list(Hose::MOST_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
     if pictures.is_empty() {
-        return Err(files.refused("is empty; a hose has at least one picture"));
+        return Err(files.refusal("is empty; a hose has at least one picture"));
     }
     let ranks = match fields.get("ranks") {
         Some(node) => node.list(Hose::MOST_RANKS)?.iter().map(rank).collect::<Result<_>>()?,
@@ -124,7 +124,7 @@ fn grain(node: &JsonNode, picture: &mut PictureReader) -> Result<BrushGrain> {
     let levels = fields.get("levels").map_or(Ok(plain.levels), |node| {
         let levels = node.numbers(2, 2, BrushGrain::LEVEL)?;
         if levels[0] >= levels[1] {
-            return Err(node.refused("must have the lower level first"));
+            return Err(node.refusal("must have the lower level first"));
         }
         Ok([levels[0], levels[1]])
     })?;
@@ -260,7 +260,7 @@ mod tests {
             let mut out = JsonObject::default();
             write_tip(&mut out, &brush.tip);
             write_grain(&mut out, brush.grain.as_ref());
-            assert_eq!(out.done(), text);
+            assert_eq!(out.into_value(), text);
         }
     }
 

@@ -22,16 +22,16 @@ pub fn read(node: &JsonNode, canvas: Option<Size>) -> Result<LayerTransform> {
         (None, Some(node), None) => TransformShape::Quad(corners(node)?),
         (None, None, Some(node)) => TransformShape::Mesh(Arc::new(mesh_of(node, canvas)?)),
         (None, None, None) => {
-            return Err(node.refused("has neither “matrix” nor “quad” nor “mesh”"));
+            return Err(node.refusal("has neither “matrix” nor “quad” nor “mesh”"));
         }
         (Some(_), Some(_), _) => {
-            return Err(node.refused("has both “matrix” and “quad”; it must have one"));
+            return Err(node.refusal("has both “matrix” and “quad”; it must have one"));
         }
-        _ => return Err(node.refused("has “mesh” and another shape; it must have one")),
+        _ => return Err(node.refusal("has “mesh” and another shape; it must have one")),
     };
     fields.finish()?;
     let transform = LayerTransform { shape, filter };
-    transform.fits().map_err(|why| matrix.or(quad).unwrap_or_else(|| node.clone()).refused(why))?;
+    transform.fits().map_err(|why| matrix.or(quad).unwrap_or_else(|| node.clone()).refusal(why))?;
     Ok(transform)
 }
 
@@ -40,7 +40,7 @@ pub fn matrix_of(node: &JsonNode) -> Result<[f64; 6]> {
     let items = node.list(6)?;
     let [a, b, c, d, e, f] = &items[..] else {
         return Err(
-            node.refused(format!("has {} numbers; it must have 6: a, b, c, d, e, f", items.len()))
+            node.refusal(format!("has {} numbers; it must have 6: a, b, c, d, e, f", items.len()))
         );
     };
     let [a, b, c, d] = [a, b, c, d].map(|item| item.exact_number(LayerTransform::FACTOR));
@@ -59,42 +59,42 @@ fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
         (Some(node), _) => {
             let items = node.list(4)?;
             let [x, y, w, h] = &items[..] else {
-                return Err(node.refused("is not a frame [x, y, width, height]"));
+                return Err(node.refusal("is not a frame [x, y, width, height]"));
             };
             let side = |node: &JsonNode| node.number(MeshFrame::SIDE_PX);
             let corner = vec2(x.number(COORDINATE)?, y.number(COORDINATE)?);
             MeshFrame { corner, size: vec2(side(w)?, side(h)?) }
         }
         (None, Some(canvas)) => MeshFrame::of(canvas),
-        (None, None) => return Err(node.refused("needs a “frame”")),
+        (None, None) => return Err(node.refusal("needs a “frame”")),
     };
     let list = fields.required("points")?;
     let items = list.list(columns * rows)?;
     if items.len() != columns * rows {
         let (found, wanted) = (items.len(), columns * rows);
-        return Err(list.refused(format!("has {found} points; {columns} × {rows} make {wanted}")));
+        return Err(list.refusal(format!("has {found} points; {columns} × {rows} make {wanted}")));
     }
     let point = |node: &JsonNode| -> Result<_> {
         let items = node.list(2)?;
-        let [x, y] = &items[..] else { return Err(node.refused("is not a point [x, y]")) };
+        let [x, y] = &items[..] else { return Err(node.refusal("is not a point [x, y]")) };
         Ok(vec2(x.number(COORDINATE)?, y.number(COORDINATE)?))
     };
     let points = items.iter().map(point).collect::<Result<_>>()?;
     fields.finish()?;
-    Mesh::new(columns, rows, frame, points).ok_or_else(|| node.refused("is no mesh"))
+    Mesh::new(columns, rows, frame, points).ok_or_else(|| node.refusal("is no mesh"))
 }
 
 fn corners(node: &JsonNode) -> Result<[DVec2; 4]> {
     let corner = |node: &JsonNode| -> Result<DVec2> {
         let items = node.list(2)?;
-        let [x, y] = &items[..] else { return Err(node.refused("is not a point [x, y]")) };
+        let [x, y] = &items[..] else { return Err(node.refusal("is not a point [x, y]")) };
         Ok(DVec2::new(x.exact_number(COORDINATE)?, y.exact_number(COORDINATE)?))
     };
     let items = node.list(4)?;
     let corners: Vec<DVec2> = items.iter().map(corner).collect::<Result<_>>()?;
     corners
         .try_into()
-        .map_err(|_| node.refused(format!("has {} points; it must have 4", items.len())))
+        .map_err(|_| node.refusal(format!("has {} points; it must have 4", items.len())))
 }
 
 /// A transform as recipes write it.
@@ -117,7 +117,7 @@ pub fn write(transform: &LayerTransform) -> Value {
         }
     }
     out.word("filter", &Resampling::ALL, transform.filter, Resampling::default());
-    out.done()
+    out.into_value()
 }
 
 #[cfg(test)]

@@ -57,7 +57,7 @@ impl Journal {
     /// as.
     ///
     /// If this cannot be written, the drawing is offered for recovery once more than necessary.
-    pub fn saved(
+    pub fn mark_saved(
         &mut self,
         title: &str,
         file: Option<&Path>,

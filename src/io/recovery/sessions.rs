@@ -111,7 +111,7 @@ pub fn read(
 
 impl LostSession {
     /// When the session began, from its name.
-    pub fn begun(&self) -> Option<SystemTime> {
+    pub fn start_time(&self) -> Option<SystemTime> {
         let name = self.path.file_stem()?.to_str()?;
         let micros = u64::from_str_radix(name.split('-').next()?, 16).ok()?;
         UNIX_EPOCH.checked_add(Duration::from_micros(micros))

@@ -68,7 +68,7 @@ fn drawn(count: usize) -> Arc<crate::paint::Stroke> {
     let one = |i: usize| {
         let t = i as f32 / 240.0;
         let at = crate::math::vec2(24.0 + 18.0 * t.sin(), 20.0 + 15.0 * (0.3 * t).cos());
-        Sample { pressure: 0.5 + 0.4 * t.sin(), time_secs: t, ..Sample::at(at) }.settled()
+        Sample { pressure: 0.5 + 0.4 * t.sin(), time_secs: t, ..Sample::at(at) }.normalized()
     };
     Arc::new(Stroke::new(
         Brush::default(),

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub fn check(fs: &dyn Fs, file: &Path, terms: &Terms) -> Result<()> {
     let replacing =
         ReplaceJob { fs, named: file, bytes: &[], terms, progress: &Progress::default() };
-    replacing.allowed(&replacing.target()?)
+    replacing.check_allowed(&replacing.target()?)
 }
 
 /// Both paths lead to one file, whatever its names.
@@ -64,7 +64,7 @@ impl ReplaceJob<'_> {
     }
 
     /// Checks that the existing file may be replaced.
-    pub(super) fn allowed(&self, target: &Path) -> Result<()> {
+    pub(super) fn check_allowed(&self, target: &Path) -> Result<()> {
         let io = |e| self.failed("", e);
         if self.fs.found(target).map_err(io)?.is_none() {
             // A file that is gone cannot be lost.
@@ -80,7 +80,7 @@ impl ReplaceJob<'_> {
             |reason: &str| Err(Error::Changed { file: self.named.into(), reason: reason.into() });
         match self.terms.over {
             Overwrite::Forced => return Ok(()),
-            Overwrite::Nothing => return Err(self.taken()),
+            Overwrite::Nothing => return Err(self.taken_error()),
             Overwrite::This(stamp) if self.stamp_of(target)? != stamp => {
                 return changed("another program changed it since it was opened");
             }
@@ -89,7 +89,7 @@ impl ReplaceJob<'_> {
         if self.fs.is_read_only(target).map_err(io)? { changed("it is read-only") } else { Ok(()) }
     }
 
-    pub(super) fn taken(&self) -> Error {
+    pub(super) fn taken_error(&self) -> Error {
         Error::Changed {
             file: self.named.into(),
             reason: "a file of this name already exists".into(),

@@ -26,7 +26,8 @@ fn an_svg_is_known_by_its_first_element() {
 
 #[test]
 fn a_drawing_is_paint_at_its_own_size() {
-    let painted = painted(Path::new("a.svg"), DISC.as_bytes(), 0, 0, &Budget::default()).unwrap();
+    let painted =
+        decode_paint(Path::new("a.svg"), DISC.as_bytes(), 0, 0, &Budget::default()).unwrap();
     assert_eq!(painted.size, Size::new(40, 20));
     let rgba = painted.tiles.to_straight_rgba(painted.size.rect());
     let at = |x: usize, y: usize| &rgba[(y * 40 + x) * 4..][..4];
@@ -69,7 +70,7 @@ fn nothing_outside_of_the_file_is_read() {
         named.display()
     );
     let file = folder.path().join("a.svg");
-    let painted = painted(&file, text.as_bytes(), 0, 0, &Budget::default()).unwrap();
+    let painted = decode_paint(&file, text.as_bytes(), 0, 0, &Budget::default()).unwrap();
     assert!(painted.tiles.to_straight_rgba(painted.size.rect()).iter().all(|&v| v == 0));
 }
 
@@ -81,7 +82,7 @@ fn what_is_wrong_is_said() {
     let cut = said(&DISC[..DISC.len() - 20]);
     assert!(cut.contains("a.svg: cannot be read: the SVG cannot be parsed"), "{cut}");
     let wide = b"<svg xmlns='http://www.w3.org/2000/svg' width='1e9' height='3'/>";
-    let huge = painted(Path::new("a.svg"), wide, 0, 0, &Budget::default());
+    let huge = decode_paint(Path::new("a.svg"), wide, 0, 0, &Budget::default());
     assert!(huge.err().unwrap().to_string().contains("a.svg"));
     let small = Budget { memory_bytes: 1 << 20, ..Budget::default() };
     let refused = decode(Path::new("a.svg"), DISC.as_bytes(), &small).unwrap_err().to_string();

@@ -85,7 +85,7 @@ impl ConvertedBrush {
         let target = OutputFile::new(to, terms.clone())?;
         let none = || Error::unsupported(to, "the brush cannot be shown");
         let (pixels, size) =
-            (swatch::painted(preset, side).ok_or_else(none)?, Size::new(side, side));
+            (swatch::render_swatch(preset, side).ok_or_else(none)?, Size::new(side, side));
         let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;
         Ok(ConvertedBrush::Picture(target, picture::to_tiles(&picture, 0, 0), size))
     }

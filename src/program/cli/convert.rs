@@ -94,7 +94,7 @@ fn terms(args: &ConvertArgs, output: Output, reads: Vec<PathBuf>) -> Terms {
 
 /// The document with all that the format can hold.
 fn whole(to: &Path, document: &Document, terms: &Terms) -> Result<()> {
-    progress::shown(|progress| {
+    progress::run_with_progress(|progress| {
         // Nothing here cancels, so it is always saved.
         let Some(encoded) = save::encode(document, to, progress)? else { return Ok(()) };
         encoded.save(to, terms, progress)?;
@@ -126,12 +126,14 @@ fn picture(
     }
     let target = OutputFile::new(&args.to, terms)?;
     if args.layers {
-        let bytes = progress::shown(|progress| {
+        let bytes = progress::run_with_progress(|progress| {
             layers::encode(&args.to, document, bits, &budget, progress)
         })?;
         return target.replace(&bytes.unwrap_or_default());
     }
-    progress::shown(|progress| target.write_document(document, &options, &budget, progress))
+    progress::run_with_progress(|progress| {
+        target.write_document(document, &options, &budget, progress)
+    })
 }
 
 /// Every layer with pixels, hidden ones too, by a name made from the requested one:
@@ -156,7 +158,7 @@ fn each_layer(
     }
     for (target, layer) in targets {
         let Some(alone) = document.with_only(&[layer]) else { continue };
-        progress::shown(|progress| {
+        progress::run_with_progress(|progress| {
             target.write_document(&alone, options, &args.limits.budget(), progress)
         })?;
     }

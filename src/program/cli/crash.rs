@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
 /// The message of any failure, including a panic.
-pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), String> {
+pub fn catch_panic(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), String> {
     set_hook(Box::new(|panic| {
         let place =
             panic.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));
@@ -44,8 +44,8 @@ mod tests {
     #[test]
     fn what_finds_no_memory_becomes_a_sentence_that_helps() {
         let _turn = turn();
-        let said =
-            caught(|| std::panic::panic_any(OutOfMemory { bytes: 4_000_000_000 })).unwrap_err();
+        let said = catch_panic(|| std::panic::panic_any(OutOfMemory { bytes: 4_000_000_000 }))
+            .unwrap_err();
         let _ = std::panic::take_hook();
         assert!(
             said.starts_with("there is no memory for 4.0 GB more; close other programs"),
@@ -53,7 +53,7 @@ mod tests {
         );
         let asked =
             || crate::io::Budget::default().within(1).room(std::path::Path::new("a.png"), "it", 2);
-        let said = caught(asked).unwrap_err();
+        let said = catch_panic(asked).unwrap_err();
         let _ = std::panic::take_hook();
         assert!(said.contains("--max-memory"), "{said}");
     }
@@ -61,7 +61,7 @@ mod tests {
     #[test]
     fn a_panic_becomes_a_sentence() {
         let _turn = turn();
-        let said = caught(|| panic!("a {} went missing", "tile")).unwrap_err();
+        let said = catch_panic(|| panic!("a {} went missing", "tile")).unwrap_err();
         let _ = std::panic::take_hook();
         assert!(
             said.starts_with("internal error: a tile went missing (src/program/cli/crash.rs:"),

@@ -323,7 +323,7 @@ impl SurfaceReport {
         out["depth_range_px"] = json!(import.surface.depth_range_px());
         out["depth_at_0_and_1"] = json!(findings.depth_range.map(|(near, far)| [near, far]));
         out["found"] = Value::Object(found.collect());
-        out["surface"] = recipe::surface::write(&self.source.spelled(findings)).done();
+        out["surface"] = recipe::surface::write(&self.source.spelled(findings)).into_value();
         out["notes"] = json!(findings.notes);
         out
     }

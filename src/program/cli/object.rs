@@ -93,7 +93,7 @@ pub fn loaded(
                 recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto })
             };
             let ((document, mut notes), rounded) =
-                deep_paint::fitted(file, &budget, read, |(document, _)| document)?;
+                deep_paint::read_within_budget(file, &budget, read, |(document, _)| document)?;
             notes.extend(rounded);
             (document, notes)
         }

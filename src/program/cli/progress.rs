@@ -12,7 +12,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const REDRAW: Duration = Duration::from_millis(100);
 
 /// Does the work and shows its progress.
-pub fn shown<T>(work: impl FnOnce(&Progress) -> T) -> T {
+pub fn run_with_progress<T>(work: impl FnOnce(&Progress) -> T) -> T {
     let progress = Progress::default();
     if !std::io::stderr().is_terminal() {
         return work(&progress);

@@ -76,7 +76,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             bits: args.bits,
             ..ExportOptions::default()
         };
-        progress::shown(|progress| {
+        progress::run_with_progress(|progress| {
             target.write_document(&shown, &options, &args.limits.budget(), progress)
         })?;
         // Notes would only hide an error.

@@ -121,7 +121,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
             ShowArg::One(SurfaceView::Unwrapped) => {
                 let refused = |why| Error::invalid(named_file(args), "--show unwrapped", why);
                 let options = view::UnwrapOptions { scale: args.scale, ..Default::default() };
-                let seen = view::unwrapped(&document, layer, options, &Progress::default())
+                let seen = view::render_unwrapped(&document, layer, options, &Progress::default())
                     .map_err(refused)?;
                 let picture = seen.picture().ok_or_else(|| refused(ViewUnavailable::NoMemory))?;
                 write(&target, &picture)?;
@@ -203,7 +203,7 @@ fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
                 )
             };
             let (document, rounded) =
-                deep_paint::fitted(recipe, &budget, read, |document| document)?;
+                deep_paint::read_within_budget(recipe, &budget, read, |document| document)?;
             tell(recipe, rounded.as_slice());
             Ok((document, [vec![recipe.clone()], files.read_paths()].concat()))
         }

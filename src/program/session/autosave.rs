@@ -77,7 +77,7 @@ impl FollowedDocument {
         let held = (!open.is_dirty()).then(|| (open.title(), open.file.clone(), open.stamp));
         if let Some((title, file, stamp)) = held.as_ref().filter(|_| is_edited || held != self.held)
         {
-            recovery.saved(title, file.as_deref(), *stamp);
+            recovery.mark_saved(title, file.as_deref(), *stamp);
         }
         self.held = held;
         is_edited
@@ -168,7 +168,7 @@ impl Autosave {
     }
 
     /// For a thread that finds or recovers lost sessions.
-    pub fn lost(&self) -> LostSessions {
+    pub fn lost_sessions(&self) -> LostSessions {
         LostSessions { fs: self.fs.clone(), folder: self.folder.clone() }
     }
 }

@@ -118,7 +118,7 @@ fn file_of(folder: &Path, key: &str) -> PathBuf {
 }
 
 /// The user's own brushes in a folder, by name, and a sentence for each that cannot be read.
-pub fn kept(folder: &Path) -> (Vec<BrushPreset>, Vec<String>) {
+pub fn load_brushes(folder: &Path) -> (Vec<BrushPreset>, Vec<String>) {
     // A folder that does not exist yet holds none.
     let entries =
         std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
@@ -247,7 +247,7 @@ mod tests {
             .apply(&mut session)
             .unwrap();
         assert_eq!(session.preset, "wide-pen");
-        let (presets, notes) = kept(&own);
+        let (presets, notes) = load_brushes(&own);
         let told = |preset: &BrushPreset| {
             (preset.key.clone(), preset.brush.spacing, preset.brush.pictures().count())
         };
@@ -274,7 +274,7 @@ mod tests {
         import(&mut session, &file).unwrap();
         assert_eq!((session.preset.as_str(), session.tools.brush.size), ("leaf-3", 30.0));
         std::fs::write(folder.path().join("broken.json"), "{").unwrap();
-        let (presets, notes) = kept(folder.path());
+        let (presets, notes) = load_brushes(folder.path());
         assert!(
             presets.is_empty() && notes.len() == 1 && notes[0].contains("broken.json"),
             "{notes:?}"

@@ -7,12 +7,12 @@ use crate::raster::TileGrid;
 use std::sync::Arc;
 
 /// What a layer paints on the canvas, without any surface.
-pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
-    painted_with_progress(document, layer, &Progress::default())
+pub fn render_layer(document: &Document, layer: LayerId) -> Option<TileGrid> {
+    render_layer_with_progress(document, layer, &Progress::default())
 }
 
 /// The same; `None` also if canceled.
-pub fn painted_with_progress(
+pub fn render_layer_with_progress(
     document: &Document,
     layer: LayerId,
     progress: &Progress,
@@ -24,5 +24,5 @@ pub fn painted_with_progress(
 
 /// What a layer of a document looks like as a drawing.
 pub fn traits_of(document: &Document, layer: LayerId) -> Option<DrawingTraits> {
-    Some(DrawingTraits::of(&painted(document, layer)?, document.size))
+    Some(DrawingTraits::of(&render_layer(document, layer)?, document.size))
 }

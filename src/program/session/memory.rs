@@ -28,13 +28,13 @@ impl Session {
         let others = self.open_documents.iter().filter(|open| open.key != front.key);
         let in_order: Vec<_> = std::iter::once(front).chain(others).collect();
         Some(HeldDocuments {
-            presents: in_order.iter().map(|open| open.shown().clone()).collect(),
+            presents: in_order.iter().map(|open| open.shown_document().clone()).collect(),
             pasts: in_order
                 .iter()
                 .map(|open| {
                     let steps = std::iter::once(open.document()).chain(open.history.others());
                     // The history may have dropped what the file holds.
-                    steps.chain([open.saved()]).cloned().collect()
+                    steps.chain([open.saved_document()]).cloned().collect()
                 })
                 .collect(),
         })

@@ -145,12 +145,12 @@ impl OpenDocument {
     }
 
     /// The document as shown: with the preview.
-    pub fn shown(&self) -> &Document {
+    pub fn shown_document(&self) -> &Document {
         self.preview.as_ref().map_or(self.history.present(), |preview| &preview.document)
     }
 
     /// How the surface is unwrapped, while it is shown so.
-    pub fn unwrapped(&self) -> Option<UnwrapSettings> {
+    pub fn unwrap_settings(&self) -> Option<UnwrapSettings> {
         self.unwrapped
     }
 
@@ -163,8 +163,8 @@ impl OpenDocument {
     }
 
     /// The sheet that is shown, if it is laid out already: see [`OpenDocument::layout`].
-    pub fn known_layout(&self) -> Option<Arc<PlaneLayout>> {
-        self.document().surface.as_ref()?.known_plane_layout(self.unwrapped?)
+    pub fn cached_layout(&self) -> Option<Arc<PlaneLayout>> {
+        self.document().surface.as_ref()?.cached_plane_layout(self.unwrapped?)
     }
 
     /// The sheet that is shown, laid out now if necessary.
@@ -174,7 +174,7 @@ impl OpenDocument {
 
     /// The size of what the view shows: the picture, or the sheet.
     pub fn shown_size(&self) -> Size {
-        self.known_layout().map_or(self.document().size, |layout| layout.size())
+        self.cached_layout().map_or(self.document().size, |layout| layout.size())
     }
 
     /// The file's name, or the one given.
@@ -189,7 +189,7 @@ impl OpenDocument {
     }
 
     /// The document as its file holds it.
-    pub fn saved(&self) -> &Document {
+    pub fn saved_document(&self) -> &Document {
         &self.saved
     }
 
@@ -282,7 +282,7 @@ impl OpenDocument {
 
     /// The chosen part as shown.
     pub fn chosen_part(&self) -> Option<&Arc<Part>> {
-        self.shown().parts.part(self.part.as_deref()?)
+        self.shown_document().parts.part(self.part.as_deref()?)
     }
 
     /// The selected strokes of the selected layer that exist, in rising order.
@@ -292,7 +292,7 @@ impl OpenDocument {
         else {
             return Vec::new();
         };
-        let count = self.shown().strokes(*layer).len();
+        let count = self.shown_document().strokes(*layer).len();
         chosen.iter().copied().filter(|&index| index < count).collect()
     }
 

@@ -10,7 +10,7 @@ use crate::document::{
     NormalLayer,
 };
 use crate::io::recipe::preset_brush;
-use crate::math::range::{STOPS, held};
+use crate::math::range::{STOPS, clamp_to_range};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
     Adjust, Brush, ColorAdjustment, DrawingHand, FormDrawing, FormPattern, Gradient, GradientStop,
@@ -184,7 +184,7 @@ impl Property {
             }
             Property::Transformed { transform } => layer.transform.clone_from(transform),
             Property::Unliquified {} => layer.liquify = None,
-            Property::Opacity { to } => layer.opacity = held(*to, &Layer::OPACITY),
+            Property::Opacity { to } => layer.opacity = clamp_to_range(*to, &Layer::OPACITY),
             Property::Blend { mode } => layer.blend = *mode,
             Property::BlendLinear { on } => layer.blend_linear = *on,
             Property::ClipBelow { on } => layer.clip_below = *on,
@@ -219,7 +219,9 @@ impl Property {
                 }
             }
             Content::Normals(normals) => match self {
-                Property::Strength { to } => normals.strength = held(*to, &NormalLayer::STRENGTH),
+                Property::Strength { to } => {
+                    normals.strength = clamp_to_range(*to, &NormalLayer::STRENGTH)
+                }
                 Property::Place { placement } => normals.placement = *placement,
                 Property::Beyond { outside } => normals.outside = *outside,
                 Property::Grained { grain } => normals.source = DetailSource::Grain(finite(*grain)),
@@ -290,7 +292,7 @@ impl Property {
             (Property::Lines { lines }, FormPattern::Lines(own)) => *own = *lines,
             (Property::Hand { hand }, _) => next.hand = *hand,
             (Property::Fill { color }, _) => next.color = *color,
-            (Property::LineSize { to }, _) => next.brush.size = held(*to, &Brush::SIZE),
+            (Property::LineSize { to }, _) => next.brush.size = clamp_to_range(*to, &Brush::SIZE),
             (Property::DrawnWith { preset }, _) => {
                 let (brush, _) = preset_brush(preset).filter(|(b, _)| !b.mode.is_retouching())?;
                 next.brush = Brush { size: next.brush.size, ..brush };
@@ -318,30 +320,32 @@ impl Property {
             Property::Ambient { term } => next.ambient = *term,
             Property::Diffuse { term } => next.diffuse = *term,
             Property::Specular { term } => next.specular = *term,
-            Property::Shininess { to } => next.shininess = held(*to, &Shading::SHININESS),
+            Property::Shininess { to } => next.shininess = clamp_to_range(*to, &Shading::SHININESS),
             Property::Bands { to } => {
                 next.bands = (*to).clamp(*Shading::BANDS.start(), *Shading::BANDS.end())
             }
-            Property::Exponent { to } => next.exponent = held(*to, &Shading::EXPONENT),
+            Property::Exponent { to } => next.exponent = clamp_to_range(*to, &Shading::EXPONENT),
             Property::Anisotropy { nu, nv } => {
-                (next.nu, next.nv) =
-                    (held(*nu, &Shading::SHININESS), held(*nv, &Shading::SHININESS));
+                (next.nu, next.nv) = (
+                    clamp_to_range(*nu, &Shading::SHININESS),
+                    clamp_to_range(*nv, &Shading::SHININESS),
+                );
             }
-            Property::RefractiveIndex { to } => next.index = held(*to, &Shading::INDEX),
+            Property::RefractiveIndex { to } => next.index = clamp_to_range(*to, &Shading::INDEX),
             Property::Shadowed { shadows } => next.shadows = *shadows,
             Property::Painted { painter } => next.painter = *painter,
             Property::BallMarks { strokes } => next.strokes = *strokes,
             Property::InMood { mood } => next = mood.on(shading),
             Property::Features { features } => next.features = features.clone(),
             Property::Occlusion { to } => {
-                next.occlusion_radius_px = held(*to, &Shading::OCCLUSION_RADIUS_PX);
+                next.occlusion_radius_px = clamp_to_range(*to, &Shading::OCCLUSION_RADIUS_PX);
             }
             Property::Bounces { to } => next.bounces = (*to).min(*Shading::BOUNCES.end()),
             Property::Surrounded { projection, rotation, exposure } => {
                 let environment = next.environment.as_mut()?;
                 environment.projection = *projection;
                 (environment.rotation, environment.exposure) =
-                    (held(*rotation, &TURNS), held(*exposure, &STOPS));
+                    (clamp_to_range(*rotation, &TURNS), clamp_to_range(*exposure, &STOPS));
             }
             Property::Without { part: PicturePart::Environment } => next.environment = None,
             Property::Without { part: PicturePart::Sphere } => next.sphere = None,
@@ -366,10 +370,10 @@ impl Property {
 /// A grain with numbers that a document may hold.
 fn finite(grain: NoiseRelief) -> NoiseRelief {
     NoiseRelief {
-        size_px: held(grain.size_px, &NoiseRelief::SIZE_PX),
+        size_px: clamp_to_range(grain.size_px, &NoiseRelief::SIZE_PX),
         octaves: grain.octaves.clamp(*NoiseRelief::OCTAVES.start(), *NoiseRelief::OCTAVES.end()),
-        roughness: held(grain.roughness, &NoiseRelief::ROUGHNESS),
-        stretch: held(grain.stretch, &NoiseRelief::STRETCH),
+        roughness: clamp_to_range(grain.roughness, &NoiseRelief::ROUGHNESS),
+        stretch: clamp_to_range(grain.stretch, &NoiseRelief::STRETCH),
         seed: grain.seed,
     }
 }

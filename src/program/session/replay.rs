@@ -284,7 +284,7 @@ pub(crate) use names;
 
 /// The lines of a replay as values. Empty lines and lines that begin with `#` are skipped.
 pub fn lines<T: ReplayValue>(file: &Path, text: &str) -> Result<Vec<T>> {
-    let read = |(i, text)| line(text).map_err(|reason| refused(file, i + 1, reason)).transpose();
+    let read = |(i, text)| line(text).map_err(|reason| line_error(file, i + 1, reason)).transpose();
     text.lines().enumerate().filter_map(read).collect()
 }
 
@@ -298,6 +298,6 @@ pub fn line<T: ReplayValue>(text: &str) -> std::result::Result<Option<T>, String
 }
 
 /// The error of a line that cannot be read, counted from 1.
-pub fn refused(file: &Path, line: usize, reason: String) -> Error {
+pub fn line_error(file: &Path, line: usize, reason: String) -> Error {
     Error::invalid(file, format!("line {line}"), reason)
 }

@@ -5,8 +5,8 @@ mod endings;
 mod maps;
 
 pub use endings::{
-    DOCUMENTS, PICTURES, SAVED, exported, is_document, is_openable, is_saved_to, is_whole_document,
-    with_document_extension, without_ending,
+    DOCUMENTS, PICTURES, SAVED, export_extensions, is_document, is_openable, is_saved_to,
+    is_whole_document, with_document_extension, without_ending,
 };
 pub use maps::{
     SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of, sorted,

@@ -17,7 +17,7 @@ impl StoredPreview {
         let read = || {
             let budget = Budget::of_this_machine();
             budget.room(file, "the picture of it", canvas.area() as u64 * 4).ok()?;
-            let painted = picture::painted(file, png?.bytes(), 0, 0, &budget).ok()?;
+            let painted = picture::decode_paint(file, png?.bytes(), 0, 0, &budget).ok()?;
             (painted.size == canvas).then_some(painted.tiles)
         };
         Self(Mutex::new(read()))

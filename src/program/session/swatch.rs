@@ -22,24 +22,24 @@ const RADIUS: f32 = 0.43;
 
 /// A preset's picture, straight RGBA bytes, `side` px square. `None` if `side` is 0 or far too
 /// large.
-pub fn painted(preset: &BrushPreset, side: u32) -> Option<Vec<u8>> {
+pub fn render_swatch(preset: &BrushPreset, side: u32) -> Option<Vec<u8>> {
     if !(1..=4096).contains(&side) {
         return None;
     }
     let follows_relief = preset.brush.dynamics.has_input(Input::Curvature);
     let surface = ball(side as usize, if follows_relief { GROOVES } else { 0.0 })?;
-    painted_on(preset, Arc::new(surface))
+    render_swatch_on(preset, Arc::new(surface))
 }
 
 /// The same on another surface, as large as that is.
-pub fn painted_on(preset: &BrushPreset, surface: Arc<Surface>) -> Option<Vec<u8>> {
+pub fn render_swatch_on(preset: &BrushPreset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     let size = surface.size();
     let side = size.width.min(size.height) as f32;
     let BrushPreset { operator, brush, .. } = preset;
     let background =
         if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
     if brush.is_dependent_on_paint() {
-        let drawn = retouched::drawn(preset, surface, side / NATURAL_SIDE, SLATE)?;
+        let drawn = retouched::draw_stroke(preset, surface, side / NATURAL_SIDE, SLATE)?;
         return Some(flatten(&drawn, &Progress::default())?.to_straight_rgba(size.rect()));
     }
     let brush = scaled(brush, side / NATURAL_SIDE, side);

@@ -45,7 +45,7 @@ fn names(session: &Session) -> Vec<String> {
 }
 
 fn pixel(session: &Session, x: i32, y: i32) -> [u8; 4] {
-    flatten(&session.active().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y)
+    flatten(&session.active().unwrap().drawn_document(), &Progress::default()).unwrap().pixel(x, y)
 }
 
 const PAPER: &str = r##"{"in":"file","do":"new","width":200,"height":150,"background":"#ffffff"}"##;
@@ -61,7 +61,7 @@ const STROKE: &str = r##"
 fn a_stroke_on_paper_is_one_named_step_that_can_be_undone() {
     let mut session = replay(&format!("{PAPER}{STROKE}"));
     assert_eq!(names(&session), ["Background", "Strokes"]);
-    assert_eq!(session.active().unwrap().history.done(), Some("Brush stroke"));
+    assert_eq!(session.active().unwrap().history.undo_label(), Some("Brush stroke"));
     assert_eq!(pixel(&session, 100, 70), [0xc0, 0x20, 0x10, 255]);
     assert!(session.active().unwrap().is_dirty());
     session.replay(Path::new("story"), r#"{"in":"edit","do":"undo"}"#).unwrap();
@@ -266,7 +266,7 @@ fn a_fill_stops_at_a_stroke_and_is_one_step() {
         {{"in":"pointer","do":"release"}}"##
     ));
     assert_eq!(names(&session), ["Background", "Strokes", "Paint"]);
-    assert_eq!(session.active().unwrap().history.done(), Some("Fill"));
+    assert_eq!(session.active().unwrap().history.undo_label(), Some("Fill"));
     assert_eq!(
         (pixel(&session, 100, 20), pixel(&session, 100, 70)),
         ([0, 255, 0, 255], [0xc0, 0x20, 0x10, 255])

@@ -46,7 +46,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else {
         return (None, Outcome::Idle);
     };
-    if let Some(why) = closed::locked(layer) {
+    if let Some(why) = closed::why_locked(layer) {
         return (None, Outcome::Refused(why.into()));
     }
     let taken = handle_at(layer, context.document.size, pen.place(), context.px_per_pt);

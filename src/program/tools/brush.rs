@@ -26,7 +26,7 @@ use stroke::{StrokeGesture, StrokeTarget};
 /// The pen comes down with the brush. A selected layer that cannot hold strokes gets a stroke layer
 /// above it.
 pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
-    if let Some(refused) = retouch::refused(context, pen, purpose) {
+    if let Some(refused) = retouch::refuse_press(context, pen, purpose) {
         return (None, refused);
     }
     let (document, id) = match paintable(context, purpose) {
@@ -84,7 +84,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
             .within(context.document.stroke_selection())
     };
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
-    let work = retouch::begun(context, &images, pen, layer, &strokes, &scene);
+    let work = retouch::begin_stroke(context, &images, pen, layer, &strokes, &scene);
     // With Shift a straight line from where the last stroke ended, with the pressure of this
     // sample.
     let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
@@ -142,7 +142,9 @@ fn paintable(
         let why = match holds {
             true => closed::unpaintable(document, layer),
             // A stroke gets a layer of its own, next to it.
-            false => closed::locked(layer).or_else(|| closed::hidden_around(document, layer.id)),
+            false => {
+                closed::why_locked(layer).or_else(|| closed::why_hidden_around(document, layer.id))
+            }
         };
         match why {
             Some(why) => return Err(Some(why)),

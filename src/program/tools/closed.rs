@@ -5,7 +5,7 @@
 use crate::document::{Document, Layer, LayerId, LayerLock};
 
 /// Why nothing can be done to the content of a layer: it is locked.
-pub fn locked(layer: &Layer) -> Option<String> {
+pub fn why_locked(layer: &Layer) -> Option<String> {
     let is_locked = layer.lock == LayerLock::All;
     is_locked.then(|| {
         format!(
@@ -17,11 +17,11 @@ pub fn locked(layer: &Layer) -> Option<String> {
 
 /// Why nothing can be painted on a layer: it is locked, or it or a group around it is hidden.
 pub fn unpaintable(document: &Document, layer: &Layer) -> Option<String> {
-    locked(layer).or_else(|| hidden(document, layer.id))
+    why_locked(layer).or_else(|| why_hidden(document, layer.id))
 }
 
 /// Why paint on a layer would not be seen: it or a group around it is hidden.
-pub fn hidden(document: &Document, id: LayerId) -> Option<String> {
+pub fn why_hidden(document: &Document, id: LayerId) -> Option<String> {
     let layer = document.layer(id)?;
     if !layer.visible {
         return Some(format!(
@@ -29,11 +29,11 @@ pub fn hidden(document: &Document, id: LayerId) -> Option<String> {
             layer.name
         ));
     }
-    hidden_around(document, id)
+    why_hidden_around(document, id)
 }
 
 /// Why paint next to a layer would not be seen: a group around it is hidden.
-pub fn hidden_around(document: &Document, id: LayerId) -> Option<String> {
+pub fn why_hidden_around(document: &Document, id: LayerId) -> Option<String> {
     let layer = document.layer(id)?;
     let mut around = document.place_of(id)?.group;
     while let Some(group) = around.and_then(|id| document.layer(id)) {

@@ -4,7 +4,7 @@
 use super::gizmo::TransformHandle;
 use super::snap::{SnapLines, SnapTargets};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::math::{COORDINATE, Rect, Size, Vec2, vec2};
 
 /// The settings of the crop tool.
@@ -140,7 +140,10 @@ impl CropGesture {
 
 /// A point in whole px that files can hold.
 fn place(at: Vec2) -> (i32, i32) {
-    (held(at.x, &COORDINATE).round() as i32, held(at.y, &COORDINATE).round() as i32)
+    (
+        clamp_to_range(at.x, &COORDINATE).round() as i32,
+        clamp_to_range(at.y, &COORDINATE).round() as i32,
+    )
 }
 
 /// The area from a fixed corner to the pen, at least a pixel; with an aspect it is as large as the

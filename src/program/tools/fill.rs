@@ -20,7 +20,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let selected = context.layer.and_then(|id| context.document.layer(id));
     let why = selected.and_then(|layer| match layer.content {
         Content::Pixels(_) => closed::unpaintable(context.document, layer),
-        _ => closed::hidden_around(context.document, layer.id),
+        _ => closed::why_hidden_around(context.document, layer.id),
     });
     (
         None,

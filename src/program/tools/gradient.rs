@@ -23,7 +23,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if let Some(layer) = selected
         && let Content::Gradient(live) = &layer.content
     {
-        if let Some(why) = closed::locked(layer) {
+        if let Some(why) = closed::why_locked(layer) {
             return (None, Outcome::Refused(why.into()));
         }
         let gradient = live.params().clone();

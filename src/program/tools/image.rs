@@ -12,7 +12,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let Some((layer, Content::Image(live))) = layer.map(|layer| (layer, &layer.content)) else {
         return (None, Outcome::Idle);
     };
-    if let Some(why) = closed::locked(layer) {
+    if let Some(why) = closed::why_locked(layer) {
         return (None, Outcome::Refused(why.into()));
     }
     let how = match pen.keys {

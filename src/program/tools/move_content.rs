@@ -11,14 +11,15 @@ use crate::paint::picking;
 
 /// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    if let several @ [_, _, ..] = context.chosen() {
+    if let several @ [_, _, ..] = context.selected_layers() {
         return press_several(context, several, pen);
     }
     let layer = context.layer.and_then(|id| context.document.layer(id));
-    if let Some(why) = layer.and_then(|layer| closed::locked(layer)) {
+    if let Some(why) = layer.and_then(|layer| closed::why_locked(layer)) {
         return (None, Outcome::Refused(why.into()));
     }
-    let held = layer.and_then(|layer| held(context.document, layer, pen.place(), pen.keys.shift));
+    let held =
+        layer.and_then(|layer| target_at(context.document, layer, pen.place(), pen.keys.shift));
     let Some((layer, held)) = layer.zip(held) else { return (None, Outcome::Idle) };
     let stroke = match held {
         MoveTarget::Stroke(index) => Some(index),
@@ -30,7 +31,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
 /// Several layers are moved whole, whatever they hold.
 fn press_several(context: &ToolContext, layers: &[LayerId], pen: PenSample) -> GestureStart {
     let document = context.document;
-    if let Some(why) = layers.iter().find_map(|id| closed::locked(document.layer(*id)?)) {
+    if let Some(why) = layers.iter().find_map(|id| closed::why_locked(document.layer(*id)?)) {
         return (None, Outcome::Refused(why.into()));
     }
     (Some(Box::new(MoveGesture::begin(context, layers.to_vec(), None, pen))), Outcome::Idle)
@@ -47,7 +48,7 @@ pub enum MoveTarget {
 
 /// What a press at a canvas point would hold: the topmost stroke there, or the whole layer; nothing
 /// if it is locked. `whole`: the layer in any case.
-pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option<MoveTarget> {
+pub fn target_at(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option<MoveTarget> {
     if layer.lock == LayerLock::All {
         return None;
     }
@@ -226,13 +227,13 @@ mod tests {
         let layers = vec![Arc::new(Layer::new("ink", Content::Strokes(Live::new(list))))];
         let document = Document { layers, ..Document::empty(Size::new(80, 40)) };
         let layer = &document.layers[0];
-        let at = |x: f32, whole| held(&document, layer, vec2(x, 20.0), whole);
+        let at = |x: f32, whole| target_at(&document, layer, vec2(x, 20.0), whole);
         assert_eq!(
             [at(10.0, false), at(60.0, false)],
             [Some(MoveTarget::Stroke(0)), Some(MoveTarget::Stroke(1))]
         );
         assert_eq!([at(35.0, false), at(60.0, true)], [Some(MoveTarget::Layer); 2]);
         let locked = Layer { lock: LayerLock::All, ..Layer::clone(layer) };
-        assert_eq!(held(&document, &locked, vec2(10.0, 20.0), false), None);
+        assert_eq!(target_at(&document, &locked, vec2(10.0, 20.0), false), None);
     }
 }

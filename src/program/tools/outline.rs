@@ -111,7 +111,7 @@ pub fn of_stroke(stroke: &Arc<Stroke>, scene: &Scene) -> Vec<[Vec2; 2]> {
     const LEAST: f32 = 24.0;
     /// Cells along the longer side: a stroke's outline winds more than a dab's.
     const CELLS: i32 = 400;
-    let covered = stroke.covered(scene);
+    let covered = stroke.render_opaque(scene);
     let area = stroke.bounds(scene).grown(1);
     let step = (area.width().max(area.height()) as i32 / CELLS).max(1);
     let (cols, rows) = (area.width() as i32 / step + 1, area.height() as i32 / step + 1);

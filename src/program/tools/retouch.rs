@@ -44,7 +44,7 @@ impl ActiveWork {
 
 /// The outcome of a press that starts no stroke: a source point for clones, or the reason; `None`
 /// if a stroke can start.
-pub(super) fn refused(
+pub(super) fn refuse_press(
     context: &ToolContext,
     pen: PenSample,
     purpose: StrokePurpose,
@@ -77,7 +77,7 @@ pub(super) fn refused(
 /// What works on the pixels of a layer; `None` where the strokes only add paint.
 ///
 /// * `strokes`: one for each image.
-pub(super) fn begun(
+pub(super) fn begin_stroke(
     context: &ToolContext,
     images: &[SymmetryImage],
     pen: PenSample,

@@ -99,7 +99,10 @@ fn is_grabbing(context: &ToolContext, pen: PenSample) -> bool {
 /// The tolerance that a drag to the right or the left sets.
 fn dragged(from: f32, by_px: f32, px_per_pt: f32, range: &Range) -> f32 {
     let span = range.end() - range.start();
-    crate::math::range::held(from + by_px / px_per_pt.max(1e-6) * span / TOLERANCE_PT, range)
+    crate::math::range::clamp_to_range(
+        from + by_px / px_per_pt.max(1e-6) * span / TOLERANCE_PT,
+        range,
+    )
 }
 
 fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {

@@ -6,7 +6,7 @@ pub mod sculpt;
 pub mod touch;
 
 use crate::document::{Document, Part};
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::math::{Affine2, Mat2, Size, Vec2, Vec3, vec2, vec3};
 use crate::shape::{SculptStroke, SculptTool, Touch};
 use std::sync::Arc;
@@ -60,22 +60,22 @@ impl ShapeSettings {
             radius: (first.radius * scale).round(),
             ..first
         }
-        .held()
+        .clamp_to_ranges()
     }
 
     /// The same with numbers that a part may hold.
-    pub fn held(&self) -> Self {
+    pub fn clamp_to_ranges(&self) -> Self {
         let normal =
             vec3(self.normal.x, self.normal.y, self.normal.z.max(0.0)).normalize_or(Vec3::Z);
         Self {
             tool: self.tool,
-            size: held(self.size, &SculptStroke::SIZE),
-            hardness: held(self.hardness, &SculptStroke::HARDNESS),
-            height: held(self.height, &SculptStroke::STRENGTH),
-            share: held(self.share, &crate::math::UNIT),
+            size: clamp_to_range(self.size, &SculptStroke::SIZE),
+            hardness: clamp_to_range(self.hardness, &SculptStroke::HARDNESS),
+            height: clamp_to_range(self.height, &SculptStroke::STRENGTH),
+            share: clamp_to_range(self.share, &crate::math::UNIT),
             normal,
-            radius: held(self.radius, &Touch::RADIUS),
-            reach: held(self.reach, &Touch::REACH),
+            radius: clamp_to_range(self.radius, &Touch::RADIUS),
+            reach: clamp_to_range(self.reach, &Touch::REACH),
         }
     }
 

@@ -4,7 +4,7 @@
 
 use super::gizmo::TransformGizmo;
 use crate::document::{AssistantKind, Content, Document, LayerId};
-use crate::math::range::{Range, held};
+use crate::math::range::{Range, clamp_to_range};
 use crate::math::{COORDINATE, Vec2, vec2};
 
 /// What is snapped to, and what is shown.
@@ -54,13 +54,16 @@ impl CanvasGrid {
     pub const SUBDIVISIONS: std::ops::RangeInclusive<u32> = 1..=16;
 
     /// With its numbers within their ranges.
-    pub fn held(self) -> Self {
+    pub fn clamp_to_ranges(self) -> Self {
         Self {
-            spacing: held(self.spacing, &Self::SPACING),
+            spacing: clamp_to_range(self.spacing, &Self::SPACING),
             subdivisions: self
                 .subdivisions
                 .clamp(*Self::SUBDIVISIONS.start(), *Self::SUBDIVISIONS.end()),
-            offset: vec2(held(self.offset.x, &COORDINATE), held(self.offset.y, &COORDINATE)),
+            offset: vec2(
+                clamp_to_range(self.offset.x, &COORDINATE),
+                clamp_to_range(self.offset.y, &COORDINATE),
+            ),
         }
     }
 
@@ -171,7 +174,8 @@ impl SnapTargets {
                 }
             }
         }
-        targets.grid = Some(aids.grid.held()).filter(|_| aids.to_grid && aids.grid_shown);
+        targets.grid =
+            Some(aids.grid.clamp_to_ranges()).filter(|_| aids.to_grid && aids.grid_shown);
         targets
     }
 
@@ -182,7 +186,7 @@ impl SnapTargets {
 
     /// A point after snapping.
     pub fn point(&self, at: Vec2) -> Snapped {
-        snapped(at, self, self.radius_px)
+        snap(at, self, self.radius_px)
     }
 
     /// The further move of a dragged box that makes its edges or its middle snap.
@@ -221,7 +225,7 @@ impl SnapLines {
 /// separately.
 ///
 /// Total: an invalid point is returned unchanged.
-pub fn snapped(point: Vec2, candidates: &SnapTargets, radius_px: f32) -> Snapped {
+pub fn snap(point: Vec2, candidates: &SnapTargets, radius_px: f32) -> Snapped {
     let mut found = Snapped { at: point, lines: SnapLines::default() };
     if !point.is_finite() {
         return found;

@@ -16,7 +16,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if !matches!(layer.content, Content::Strokes(_)) {
         return nothing;
     }
-    if let Some(why) = closed::locked(layer) {
+    if let Some(why) = closed::why_locked(layer) {
         return (None, Outcome::Refused(why.into()));
     }
     let strokes = context.document.strokes(layer.id);

@@ -1,7 +1,7 @@
 //! Symmetry: every stroke of the brush with its mirror images, each a stroke of its own over its
 //! own part of the surface. Floor 5.
 
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::math::{COORDINATE, Mat2, Size, TURNS, Vec2, vec2};
 use crate::paint::{Brush, Sample, StrokeFrame};
 
@@ -70,9 +70,10 @@ impl SymmetryAxes {
     }
 
     /// With its numbers within their ranges.
-    pub fn held(self) -> Self {
-        let place = |p: Vec2| vec2(held(p.x, &COORDINATE), held(p.y, &COORDINATE));
-        Self { center: self.center.map(place), turn: held(self.turn, &TURNS) }
+    pub fn clamp_to_ranges(self) -> Self {
+        let place =
+            |p: Vec2| vec2(clamp_to_range(p.x, &COORDINATE), clamp_to_range(p.y, &COORDINATE));
+        Self { center: self.center.map(place), turn: clamp_to_range(self.turn, &TURNS) }
     }
 
     fn rotation(&self) -> Mat2 {
@@ -113,7 +114,7 @@ impl SymmetryAxes {
                 Self { turn, ..*self }
             }
         };
-        next.held()
+        next.clamp_to_ranges()
     }
 }
 

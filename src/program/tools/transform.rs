@@ -33,15 +33,16 @@ pub struct TransformSettings {
 /// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
-    let content = GizmoContent::new(context.tools.transform.target, document, context.chosen());
+    let content =
+        GizmoContent::new(context.tools.transform.target, document, context.selected_layers());
     let of_shape = content == GizmoContent::Shape;
-    let chosen = if of_shape { &[] } else { context.chosen() };
+    let chosen = if of_shape { &[] } else { context.selected_layers() };
     let layers: Vec<&Layer> =
         chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
     if layers.is_empty() && !of_shape {
         return (None, Outcome::Refused("Select a layer first.".into()));
     }
-    if let Some(why) = layers.iter().find_map(|layer| closed::locked(layer)) {
+    if let Some(why) = layers.iter().find_map(|layer| closed::why_locked(layer)) {
         return (None, Outcome::Refused(why.into()));
     }
     if !of_shape && let Some(begun) = mesh::press(context, pen) {
@@ -106,7 +107,11 @@ pub fn turn(degrees: f64) -> Option<PlaneMap> {
 
 /// Layers with what they show mapped about its middle. `None` for empty layers, or where that
 /// cannot be expressed.
-pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> Option<Document> {
+pub fn transform_about_middle(
+    document: &Document,
+    layers: &[LayerId],
+    map: PlaneMap,
+) -> Option<Document> {
     let pivot = TransformGizmo::around(document, layers)?.pivot();
     // A middle between pixels along only one axis would move pixels by halves when they are turned.
     let pivot = if map.coefficients().is_some_and(|c| c[1] != 0.0) { pivot.round() } else { pivot };
@@ -115,7 +120,7 @@ pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> O
 }
 
 /// A map about the middle of the shape as a matrix on the canvas. `None` if there is no shape.
-pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
+pub fn matrix_about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
     let [low, high] = TransformGizmo::of_shape(document)?.bounds();
     let middle = (low + high) * 0.5;
     let pivot =

@@ -43,7 +43,7 @@ pub struct Ants {
 
 impl Ants {
     /// The smallest rectangle that holds all that is selected, as last drawn.
-    pub fn covered(&self) -> Option<Rect> {
+    pub fn bounds(&self) -> Option<Rect> {
         self.covered
     }
 
@@ -94,7 +94,7 @@ impl Ants {
         visible: Rect,
         draw: impl Fn(&mut Mesh, &Run, f32),
     ) {
-        let selected = session.shown().and_then(|document| document.selected());
+        let selected = session.shown_document().and_then(|document| document.selected());
         self.follow(selected);
         let Some(grid) = selected else { return };
         if session.hides_selection || session.active().is_some_and(|open| open.quick_mask) {
@@ -134,7 +134,7 @@ impl Ants {
             return;
         }
         self.runs.retain(|key, _| key.is_of(grid));
-        (self.grid, self.covered, self.coarser) = (grid.clone(), Some(grid.covered()), 0);
+        (self.grid, self.covered, self.coarser) = (grid.clone(), Some(grid.covered_rect()), 0);
     }
 
     fn runs_of(&mut self, grid: &CoverageGrid, at: TileAt, level: u32) -> Arc<Vec<Run>> {

@@ -20,7 +20,7 @@ pub fn draw(
     to_screen: &impl Fn(Vec2) -> Pos2,
     is_tool: bool,
 ) {
-    let Some(document) = session.shown() else { return };
+    let Some(document) = session.shown_document() else { return };
     // Far enough that its ends are out of sight.
     let reach = 4.0 * document.size.center().length();
     let alpha = if is_tool { 200 } else { 90 };

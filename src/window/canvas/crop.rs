@@ -46,7 +46,7 @@ fn outside(
     area: [Vec2; 4],
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
-    let Some(document) = session.shown() else { return };
+    let Some(document) = session.shown_document() else { return };
     let canvas = crop::corners(document.size.rect());
     let (low, high) = (canvas[0].min(area[0]), canvas[2].max(area[2]));
     let pieces = [

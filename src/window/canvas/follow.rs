@@ -27,7 +27,7 @@ impl Canvas {
         area: egui::Rect,
     ) {
         let Some(open) = session.active() else { return };
-        let drawn = open.drawn();
+        let drawn = open.drawn_document();
         if self.key != Some(open.key)
             || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size)
         {
@@ -47,7 +47,7 @@ impl Canvas {
             .is_some_and(|(old, dragged)| *dragged == is_dragged && is_same_look(old, &drawn))
         {
             // Any part of the picture may be in sight on the sheet.
-            let visible = if open.unwrapped().is_some() {
+            let visible = if open.unwrap_settings().is_some() {
                 drawn.size.rect()
             } else {
                 visible_rect(view, area)
@@ -66,7 +66,7 @@ impl Canvas {
             && ctx.current_pass_index() > 0
             && self.took < SOON;
         let wait = if is_soon { SOON } else { Duration::ZERO };
-        let painted = self.render_thread.iter().flat_map(|thread| thread.painted(wait));
+        let painted = self.render_thread.iter().flat_map(|thread| thread.take_rendered(wait));
         let painted = painted.filter(|painted| painted.picture == self.picture);
         let mut is_draft_next = self.is_draft_in_front;
         for painted in painted {

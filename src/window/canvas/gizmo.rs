@@ -17,10 +17,12 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     let chosen = open.outermost_chosen();
     if session.tools.transform.target == TransformTarget::Paint
         && let [one] = chosen[..]
-        && let Some((mesh, points)) =
-            open.shown().layer(one).and_then(|layer| mesh::points_of(open.shown(), layer))
+        && let Some((mesh, points)) = open
+            .shown_document()
+            .layer(one)
+            .and_then(|layer| mesh::points_of(open.shown_document(), layer))
     {
-        let Some(map) = open.shown().map_of(one) else { return };
+        let Some(map) = open.shown_document().map_of(one) else { return };
         let at = |p: Vec2| to_screen(map.outside_own().to_canvas(mesh.at(p).0).unwrap_or(p));
         grid(painter, &mesh, &at);
         for (k, point) in points.into_iter().enumerate() {

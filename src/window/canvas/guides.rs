@@ -18,7 +18,9 @@ pub fn draw_unwrapped(
     on_sheet: OnSheet,
     to_screen: &impl Fn(Vec2) -> Pos2,
 ) {
-    let Some(document) = session.shown().filter(|_| session.tools.aids.guides) else { return };
+    let Some(document) = session.shown_document().filter(|_| session.tools.aids.guides) else {
+        return;
+    };
     let (w, h) = (document.size.width as f32, document.size.height as f32);
     let upright = document.guides.vertical.iter().map(|&x| [vec2(x, 0.0), vec2(x, h)]);
     let level = document.guides.horizontal.iter().map(|&y| [vec2(0.0, y), vec2(w, y)]);
@@ -36,7 +38,7 @@ pub fn draw(
     visible: Rect,
     zoom: f32,
 ) {
-    let Some(document) = session.shown() else { return };
+    let Some(document) = session.shown_document() else { return };
     let aids = &session.tools.aids;
     let low = vec2(visible.x0 as f32, visible.y0 as f32);
     let high = vec2(visible.x1 as f32, visible.y1 as f32);

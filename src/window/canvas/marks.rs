@@ -60,7 +60,7 @@ pub fn draw(
     if tool == ToolKind::Move {
         held::draw(painter, session, under, &to_screen);
     }
-    let (Some(at), Some(document)) = (under, session.shown()) else { return };
+    let (Some(at), Some(document)) = (under, session.shown_document()) else { return };
     match tool {
         ToolKind::Brush | ToolKind::Eraser => {
             let radius = (0.5 * session.tools.brush.size).max(0.5);
@@ -145,7 +145,7 @@ fn picked(painter: &Painter, session: &Session, at: Pos2) {
 
 /// The axes of symmetry.
 fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let Some(document) = session.shown() else { return };
+    let Some(document) = session.shown_document() else { return };
     for axis in session.tools.symmetry.kind.lines_about(document.size, session.tools.symmetry.axes)
     {
         let ends = axis.map(to_screen);
@@ -186,7 +186,7 @@ struct OutlineCache {
 /// The selected strokes: their outlines, or the lines through their samples while they move.
 fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some((open, layer)) = session.active().zip(session.layer()) else { return };
-    let document = open.shown();
+    let document = open.shown_document();
     let strokes = document.strokes_on_canvas(layer.id);
     let chosen: Vec<&Arc<PaintStroke>> =
         open.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
@@ -248,7 +248,9 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
         }
         Content::Shading(_) => {
             // From the middle toward each light, as far as it leans.
-            let Some(canvas) = session.shown().map(|document| document.size) else { return };
+            let Some(canvas) = session.shown_document().map(|document| document.size) else {
+                return;
+            };
             for light in anchors::handles(layer, canvas) {
                 let ends = [to_screen(canvas.center()), to_screen(light)];
                 painter.line_segment(ends, Stroke::new(3.0, Color32::from_black_alpha(90)));
@@ -271,7 +273,7 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
         }
         _ => {}
     }
-    let Some(canvas) = session.shown().map(|document| document.size) else { return };
+    let Some(canvas) = session.shown_document().map(|document| document.size) else { return };
     for (i, handle) in anchors::handles(layer, canvas).into_iter().enumerate() {
         let at = to_screen(handle);
         painter.circle_filled(at, 7.0, Color32::from_black_alpha(130));

@@ -27,7 +27,7 @@ struct ViewInputs {
 impl ViewInputs {
     fn of(session: &Session, view: SurfaceView) -> Option<Self> {
         let layer = session.layer().cloned().filter(|_| view.is_of_layer());
-        Some(Self { view, document: session.shown()?.clone(), layer })
+        Some(Self { view, document: session.shown_document()?.clone(), layer })
     }
 
     fn is_same(&self, other: &ViewInputs) -> bool {

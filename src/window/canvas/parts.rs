@@ -65,7 +65,9 @@ impl PartMarks {
         under: Option<Vec2>,
         tool: ToolKind,
     ) {
-        let (Some(document), true) = (session.shown(), tool.is_shape_tool()) else { return };
+        let (Some(document), true) = (session.shown_document(), tool.is_shape_tool()) else {
+            return;
+        };
         let areas = self.known.areas(document).to_vec();
         let to_screen = |p: Vec2| {
             let p = screen_from_canvas.transform_point2(p);
@@ -236,7 +238,7 @@ fn arrows(
     to_screen: &impl Fn(Vec2) -> Pos2,
     screen_from_canvas: Affine2,
 ) {
-    let Some(document) = session.shown() else { return };
+    let Some(document) = session.shown_document() else { return };
     for touch in touches(document).into_iter().take(MOST_TOUCHES) {
         let at = to_screen(touch.at);
         // A turned or mirrored view also turns or mirrors directions.

@@ -14,7 +14,7 @@ const MARKS_PT: f32 = 6.0;
 /// The room of rulers at the upper and the left edge, points; they measure the picture, not the
 /// unwrapped sheet.
 pub fn room_pt(session: &Session) -> f32 {
-    let is_picture = session.active().is_some_and(|open| open.unwrapped().is_none());
+    let is_picture = session.active().is_some_and(|open| open.unwrap_settings().is_none());
     if session.tools.aids.rulers && is_picture { RULER_PT } else { 0.0 }
 }
 

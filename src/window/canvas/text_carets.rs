@@ -17,7 +17,7 @@ const DESCENT: f32 = 0.2;
 
 /// Draws them over the canvas. A text that is bent shows none: its letters are elsewhere.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let (Some(layer), Some(document)) = (session.layer(), session.shown()) else { return };
+    let (Some(layer), Some(document)) = (session.layer(), session.shown_document()) else { return };
     let Content::Image(live) = &layer.content else { return };
     let (image, Some(text)) = (live.params(), &live.params().source.text) else { return };
     if image.bend.operator != Operator::None {

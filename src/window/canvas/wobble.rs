@@ -50,7 +50,7 @@ impl Wobble {
         let turn = (painter.ctx().input(|input| input.time) - self.since_secs) / SECS;
         let angle = MOST_RAD * (std::f64::consts::TAU * turn).sin() as f32;
         let size = self.scene.size();
-        let seen = self.scene.seen_from(angle);
+        let seen = self.scene.render_from(angle);
         let pixels = seen
             .into_iter()
             .map(|[r, g, b, a]| Color32::from_rgba_premultiplied(r, g, b, a))

@@ -15,7 +15,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Undo",
         &[ctrl(Key::Z)],
         "Undo the last step",
-        |session| session.active().is_some_and(|open| open.history.done().is_some()),
+        |session| session.active().is_some_and(|open| open.history.undo_label().is_some()),
         |_, requests| requests.act(Action::Edit(EditAction::Undo {})),
     ),
     row(

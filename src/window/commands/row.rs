@@ -84,7 +84,7 @@ pub fn has_document(session: &Session) -> bool {
 }
 
 pub fn has_surface(session: &Session) -> bool {
-    session.shown().is_some_and(|document| document.surface.is_some())
+    session.shown_document().is_some_and(|document| document.surface.is_some())
 }
 
 pub fn has_layer(session: &Session) -> bool {

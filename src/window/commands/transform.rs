@@ -122,7 +122,7 @@ fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
     let takes_shape = session.tool == ToolKind::Transform
         && session.tools.transform.target == TransformTarget::Shape;
     let open = session.active().filter(|_| takes_shape)?;
-    let by = transform::about_shape(open.document(), map?)?;
+    let by = transform::matrix_about_shape(open.document(), map?)?;
     Some(Action::Part(PartAction::TakeAlong { by, done: true }))
 }
 

@@ -28,7 +28,7 @@ fn is_over(session: &Session, name: &str) -> bool {
 }
 
 fn is_unwrapped(session: &Session) -> bool {
-    session.active().is_some_and(|open| open.unwrapped().is_some())
+    session.active().is_some_and(|open| open.unwrap_settings().is_some())
 }
 
 const fn alt(key: Key) -> KeyboardShortcut {

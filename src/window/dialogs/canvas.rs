@@ -17,7 +17,7 @@ const SIDE: std::ops::RangeInclusive<u32> = 1..=16_384;
 const PRINT_PPI: f32 = 300.0;
 
 /// The requested dialog, for a canvas of a size.
-pub fn asked(ask: &WindowRequest, size: Size) -> Dialog {
+pub fn dialog_for(ask: &WindowRequest, size: Size) -> Dialog {
     match ask {
         WindowRequest::ImageSizeDialog => Dialog::ImageSize(ImageSizeDialog::of(size)),
         WindowRequest::TurnDialog => Dialog::Turn(TurnDialog::of(size)),

@@ -48,10 +48,10 @@ impl ExportDialog {
     ) -> DialogAnswer {
         ui.set_width(320.0);
         ui.heading("Export the picture");
-        if let (Some(preview), Some(document)) = (preview, session.shown()) {
+        if let (Some(preview), Some(document)) = (preview, session.shown_document()) {
             self.preview(ui, preview, document.size);
         }
-        if let Some(document) = session.shown() {
+        if let Some(document) = session.shown_document() {
             ui.weak(format!("{} pixels", document.size));
         }
         for (extension, about) in FORMATS {
@@ -65,7 +65,7 @@ impl ExportDialog {
         ui.add_enabled_ui(self.extension == "jpg", |ui| {
             ui.add(Slider::new(&mut self.quality, 1..=100).text("Quality"));
         });
-        match buttons(ui, "Export…", session.shown().is_some()) {
+        match buttons(ui, "Export…", session.shown_document().is_some()) {
             Some(true) => DialogAnswer::Ask(WindowRequest::Export(self.extension)),
             Some(false) => DialogAnswer::Close,
             None => DialogAnswer::Open,

@@ -15,12 +15,12 @@ use crate::file_purpose::FilePurpose;
 use crate::io::maps::{self, ImportedSurface};
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedFile};
-use crate::widgets::{check_box, choice_row, named, sentence};
+use crate::widgets::{check_box, choice_row, sentence, set_accessible_name};
 use eframe::egui::{
     self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2,
 };
 use std::path::{Path, PathBuf};
-use ways::{FLIPS, ReadingWay, SIDES, lit, xor};
+use ways::{FLIPS, ReadingWay, SIDES, light_surface, xor};
 
 /// The dialog's state.
 #[derive(Default)]
@@ -130,7 +130,7 @@ impl ImportDialog {
             self.first = Some((file, first));
             let chosen = xor(now, first);
             self.clicked = self.ways().iter().position(|(_, flips)| *flips == chosen).unwrap_or(0);
-            let shown = |flips: [bool; 2]| lit(&import.surface, xor(flips, chosen));
+            let shown = |flips: [bool; 2]| light_surface(&import.surface, xor(flips, chosen));
             let pictures =
                 self.ways().iter().filter_map(|&(name, flips)| loaded(ctx, name, &shown(flips)?));
             self.lit = pictures.collect();
@@ -247,7 +247,7 @@ impl ImportDialog {
             ui.horizontal(|ui| {
                 crate::widgets::name(ui, label);
                 let response = ui.button("Choose…");
-                named(&response, &format!("Choose {}", label.to_lowercase()));
+                set_accessible_name(&response, &format!("Choose {}", label.to_lowercase()));
                 if response.clicked() {
                     *ask = Some(purpose);
                 }
@@ -255,7 +255,10 @@ impl ImportDialog {
                     Some(file) => {
                         ui.label(name(file)).on_hover_text(file);
                         let response = ui.small_button("Leave out");
-                        named(&response, &format!("Leave out {}", label.to_lowercase()));
+                        set_accessible_name(
+                            &response,
+                            &format!("Leave out {}", label.to_lowercase()),
+                        );
                         if response.clicked() {
                             match purpose {
                                 FilePurpose::DepthMap => self.source.depth = None,

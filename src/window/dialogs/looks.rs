@@ -6,7 +6,7 @@ use crate::look_pictures::LookPictures;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, Session};
-use crate::widgets::named;
+use crate::widgets::set_accessible_name;
 use eframe::egui::{self, ScrollArea, Ui, vec2};
 
 /// The longer side of a picture, points.
@@ -73,7 +73,7 @@ impl LooksDialog {
                 None => ui.add_sized(vec2(SHOWN_PT, SHOWN_PT), egui::Button::new("…")),
             };
             let response = response.on_hover_text(&look.about);
-            named(&response, &format!("Look: {}", look.name));
+            set_accessible_name(&response, &format!("Look: {}", look.name));
             ui.small(&look.name);
             response.clicked()
         });

@@ -37,7 +37,8 @@ impl MapsDialog {
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         ui.set_width(340.0);
         ui.heading("Export maps of the shape");
-        let Some(surface) = session.shown().and_then(|document| document.surface.as_ref()) else {
+        let Some(surface) = session.shown_document().and_then(|document| document.surface.as_ref())
+        else {
             ui.label("This document has no shape. Make one (Layer, Give it a shape…).");
             return super::close(ui);
         };

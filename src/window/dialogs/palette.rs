@@ -4,12 +4,12 @@
 mod find;
 
 use super::DialogAnswer;
-use crate::keymap::{KeyTarget, Keymap, shown};
+use crate::keymap::{KeyTarget, Keymap, key_text};
 use crate::panel_layout::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::widgets::{list, named};
+use crate::widgets::{list, set_accessible_name};
 use eframe::egui::{Button, Key, TextEdit, Ui};
 use find::PaletteEntry;
 
@@ -34,12 +34,12 @@ impl CommandPalette {
                 .hint_text("Command, tool or setting")
                 .desired_width(f32::INFINITY),
         );
-        named(&field, "Command");
+        set_accessible_name(&field, "Command");
         field.request_focus();
         if field.changed() {
             self.at = 0;
         }
-        let found = find::found(&self.typed, |entry| can_be_done(entry, session));
+        let found = find::find_entries(&self.typed, |entry| can_be_done(entry, session));
         let (up, down, enter) = ui.input(|i| {
             (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter))
         });
@@ -83,7 +83,7 @@ fn row(
         PaletteEntry::Tool(tool) => keymap.of(KeyTarget::Tool(tool)).first().copied(),
         PaletteEntry::Panel(_) | PaletteEntry::Setting(..) => None,
     };
-    let keys = keys.map(|keys| shown(ui.ctx(), keys)).unwrap_or_default();
+    let keys = keys.map(|keys| key_text(ui.ctx(), keys)).unwrap_or_default();
     let beside = [entry.kind(), &keys].join("  ");
     let button = Button::selectable(is_next, entry.name()).shortcut_text(beside.trim());
     ui.add_enabled(can_be_done(entry, session), button.min_size([400.0, 0.0].into()))

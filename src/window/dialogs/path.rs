@@ -3,7 +3,7 @@
 
 use super::{DialogAnswer, buttons};
 use crate::file_purpose::FilePurpose;
-use crate::widgets::{list, named};
+use crate::widgets::{list, set_accessible_name};
 use eframe::egui::{Button, TextEdit, Ui};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -79,7 +79,7 @@ impl PathDialog {
             let field = ui
                 .add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY))
                 .labelled_by(label.id);
-            named(&field, "File name");
+            set_accessible_name(&field, "File name");
             if !std::mem::replace(&mut self.is_begun, true) {
                 field.request_focus();
             }
@@ -107,7 +107,7 @@ impl PathDialog {
     /// Overwriting a file needs a second confirmation.
     fn choose(&mut self, file: PathBuf) -> DialogAnswer {
         // With its final name, so that the question is about the file that would be lost.
-        let file = self.purpose.named(file, self.extension);
+        let file = self.purpose.final_name(file, self.extension);
         if self.purpose.is_saving() && file.is_file() && self.replaces.as_ref() != Some(&file) {
             self.name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             self.folder = file.parent().map_or_else(|| self.folder.clone(), Path::to_owned);

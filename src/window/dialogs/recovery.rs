@@ -76,7 +76,7 @@ fn first((lost, _): (LostSession, bool)) -> LostSession {
 
 /// When the session began, its file, and a warning if recovery failed before.
 fn described(lost: &LostSession) -> String {
-    let age = lost.begun().and_then(|begun| SystemTime::now().duration_since(begun).ok());
+    let age = lost.start_time().and_then(|begun| SystemTime::now().duration_since(begun).ok());
     let begun = age.map(|age| format!("Started {} ago", spoken(age)));
     let place = lost
         .file

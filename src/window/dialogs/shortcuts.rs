@@ -2,8 +2,8 @@
 //! are shown before a key is reassigned. Floor 7.
 
 use super::{DialogAnswer, close};
-use crate::keymap::{KeyTarget, Keymap, shown};
-use crate::widgets::{list, named};
+use crate::keymap::{KeyTarget, Keymap, key_text};
+use crate::widgets::{list, set_accessible_name};
 use eframe::egui::{Event, Grid, Key, KeyboardShortcut, Modifiers, RichText, TextEdit, Ui};
 
 #[derive(Default)]
@@ -38,7 +38,7 @@ impl ShortcutsDialog {
         let field = ui.add(
             TextEdit::singleline(&mut self.filter).hint_text("Find").desired_width(f32::INFINITY),
         );
-        named(&field, "Find a shortcut");
+        set_accessible_name(&field, "Find a shortcut");
         self.listen(ui, keymap);
         self.request(ui, keymap);
         let wanted = self.filter.to_lowercase();
@@ -68,10 +68,10 @@ impl ShortcutsDialog {
         let name = keyed.name();
         let keys = keymap.of(keyed);
         for &one in &keys {
-            let text = shown(ui.ctx(), one);
+            let text = key_text(ui.ctx(), one);
             let response =
                 ui.button(RichText::new(&text).monospace()).on_hover_text("Click to remove it");
-            named(&response, &format!("{text} of {name}"));
+            set_accessible_name(&response, &format!("{text} of {name}"));
             if response.clicked() {
                 keymap.set(keyed, keys.iter().copied().filter(|known| *known != one).collect());
             }
@@ -79,13 +79,13 @@ impl ShortcutsDialog {
         let is_waiting = self.waiting == Some(name);
         let response =
             ui.selectable_label(is_waiting, if is_waiting { "Press a key…" } else { "+" });
-        named(&response, &format!("Add a key to {name}"));
+        set_accessible_name(&response, &format!("Add a key to {name}"));
         if response.on_hover_text("Then press the key; Escape cancels").clicked() {
             (self.waiting, self.conflict) = (Some(name), None);
         }
         if keymap.is_chosen(keyed) {
             let response = ui.small_button("Reset").on_hover_text("The default keys");
-            named(&response, &format!("Reset {name}"));
+            set_accessible_name(&response, &format!("Reset {name}"));
             if response.clicked() {
                 keymap.reset(keyed);
             }
@@ -131,7 +131,7 @@ impl ShortcutsDialog {
         let Some(keyed) = keyed(name) else { return };
         let Some(other) = keymap.conflict(keys, keyed) else { return self.conflict = None };
         ui.horizontal_wrapped(|ui| {
-            let text = format!("{} belongs to “{}”.", shown(ui.ctx(), keys), other.name());
+            let text = format!("{} belongs to “{}”.", key_text(ui.ctx(), keys), other.name());
             ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
             if ui.button(format!("Give it to “{name}”")).clicked() {
                 keymap.take(keys, keyed);

@@ -44,7 +44,7 @@ impl UnwrappedDialog {
             radio(ui, &mut self.scale, scale, about);
         }
         check_box(ui, &mut self.is_deep, "16 bits a channel");
-        match buttons(ui, "Export…", session.shown().is_some()) {
+        match buttons(ui, "Export…", session.shown_document().is_some()) {
             Some(true) => DialogAnswer::Ask(WindowRequest::ExportUnwrapped),
             Some(false) => DialogAnswer::Close,
             None => DialogAnswer::Open,

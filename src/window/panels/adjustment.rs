@@ -11,7 +11,7 @@ use crate::paint::adjustment::{
 };
 use crate::paint::{ColorAdjustment, GradientStop};
 use crate::theme::ACCENT;
-use crate::widgets::{NumberField, ValueChange, check, choice_row, named};
+use crate::widgets::{NumberField, ValueChange, check, choice_row, set_accessible_name};
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2};
 
 /// Changes of an adjustment, and whether a table was asked for.
@@ -57,14 +57,14 @@ pub fn show(
         };
         next.visit(&mut shown);
         let ParameterRows { changed, asks_for_table, .. } = shown;
-        let changed = changed.map(|done| ValueChange { to: next.held(), done });
+        let changed = changed.map(|done| ValueChange { to: next.clamp_to_ranges(), done });
         AdjustmentAnswer { changed, asks_for_table }
     })
     .inner
 }
 
 fn answer(to: ColorAdjustment, done: bool) -> AdjustmentAnswer {
-    let changed = Some(ValueChange { to: to.held(), done });
+    let changed = Some(ValueChange { to: to.clamp_to_ranges(), done });
     AdjustmentAnswer { changed, asks_for_table: false }
 }
 
@@ -273,7 +273,7 @@ fn level_handles(
     };
     let size = egui::vec2(ui.available_width(), HEIGHT_PT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    named(&response, "Histogram of levels");
+    set_accessible_name(&response, "Histogram of levels");
     let graph = Rect::from_min_max(rect.min, pos2(rect.right(), rect.bottom() - FOOT_PT));
     let visuals = ui.visuals();
     let rim = visuals.widgets.noninteractive.bg_stroke;

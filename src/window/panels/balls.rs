@@ -6,7 +6,7 @@ use crate::math::srgb;
 use crate::raster::Picture;
 use crate::session::Action;
 use crate::session::actions::LayerAction;
-use crate::widgets::named;
+use crate::widgets::set_accessible_name;
 use eframe::egui::load::SizedTexture;
 use eframe::egui::{self, Color32, ColorImage, Id, TextureHandle, TextureOptions, Ui, vec2};
 use std::collections::HashMap;
@@ -36,7 +36,7 @@ pub fn chooser(ui: &mut Ui, setter: &mut LayerSetter) {
             let shown = SizedTexture::new(texture.id(), vec2(36.0, 36.0));
             let response = ui.add(egui::Button::image(shown).frame(false));
             let response = response.on_hover_text(format!("{}: a painted ball", ball.name));
-            named(&response, &format!("Ball: {}", ball.name));
+            set_accessible_name(&response, &format!("Ball: {}", ball.name));
             if response.clicked() {
                 let (layer, name) = (setter.layer.clone(), ball.key.to_owned());
                 let action = LayerAction::PaintedBall { layer, name, hollows: false };

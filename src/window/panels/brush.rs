@@ -13,7 +13,7 @@ use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::widgets::{NumberField, check, choice_row, named, sentence};
+use crate::widgets::{NumberField, check, choice_row, sentence, set_accessible_name};
 use eframe::egui::{self, Ui};
 
 /// The sections of the brush editor that can be unfolded.
@@ -334,7 +334,7 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             ui.label(&label);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let remove = ui.small_button("Remove").on_hover_text("Removes this row");
-                named(&remove, &format!("Remove {label}"));
+                set_accessible_name(&remove, &format!("Remove {label}"));
                 if remove.clicked() {
                     to = Some(brush.dynamics.without(*property, *input, shape.is_additive()));
                 }

@@ -82,7 +82,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         60.0,
     );
     requests.actions.extend(reach.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
-    if session.shown().is_some_and(|document| !document.parts.is_empty()) {
+    if session.shown_document().is_some_and(|document| !document.parts.is_empty()) {
         let hint = "A stroke that begins on a part of the shape stays on it";
         let on = check(ui, "This part only", hint, !session.tools.crosses_parts);
         let across = on.map(|on| Action::Hand(HandAction::AcrossParts { on: !on }));

@@ -10,7 +10,7 @@ use crate::session::actions::{FileAction, HandAction};
 use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
 use crate::swatches::Swatches;
-use crate::widgets::{NumberField, named, title};
+use crate::widgets::{NumberField, set_accessible_name, title};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     self, Align, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2,
@@ -94,7 +94,7 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
         let field = TextEdit::singleline(&mut name)
             .hint_text("Name")
             .desired_width(ui.available_width() - 96.0);
-        named(&ui.add(field), "Name of the brush to keep");
+        set_accessible_name(&ui.add(field), "Name of the brush to keep");
         let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Keep brush"));
         if button.on_hover_text("Adds the current brush to the list").clicked() {
             requests.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
@@ -109,11 +109,11 @@ fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
         let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(ui.available_width() - 74.0);
-        named(&ui.add(field), "Search brushes");
+        set_accessible_name(&ui.add(field), "Search brushes");
         let import = ui.button("Import…").on_hover_text(
             "Brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), a preset (.json), or a picture as a tip",
         );
-        named(&import, "Import a brush…");
+        set_accessible_name(&import, "Import a brush…");
         if import.clicked() {
             requests.request(WindowRequest::Choose(FilePurpose::Brush));
         }

@@ -6,7 +6,7 @@ use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::theme::color32;
-use crate::widgets::{NumberField, ValueChange, named, swatch};
+use crate::widgets::{NumberField, ValueChange, set_accessible_name, swatch};
 use eframe::egui::{self, Color32, Id, Mesh, Rect, Sense, Shape, Stroke, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
@@ -267,7 +267,7 @@ fn hex(ui: &mut Ui, color: Color) -> Option<Color> {
     let shown = Color { a: 255, ..color }.to_string();
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_else(|| shown.clone());
     let response = ui.add(TextEdit::singleline(&mut text).desired_width(74.0).char_limit(9));
-    named(&response, "Hex color");
+    set_accessible_name(&response, "Hex color");
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, text));
         return None;

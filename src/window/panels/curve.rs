@@ -5,7 +5,7 @@ use crate::math::{Vec2, vec2};
 use crate::paint::Curve;
 use crate::paint::dynamics::{MAX_POINTS, MOST_ADDED};
 use crate::theme::ACCENT;
-use crate::widgets::{ValueChange, named};
+use crate::widgets::{ValueChange, set_accessible_name};
 use eframe::egui::{self, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2};
 
 /// The distance within which the pointer grabs a point, screen points.
@@ -81,7 +81,7 @@ impl CurveSquare<'_> {
     pub fn show(&self, ui: &mut Ui, mut points: Vec<Vec2>) -> Option<ValueChange<Vec<Vec2>>> {
         let size = egui::vec2(ui.available_width(), self.height_pt);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        named(&response, self.label);
+        set_accessible_name(&response, self.label);
         let inner = rect.shrink(5.0);
         let on_screen = |p: Vec2| {
             pos2(inner.left() + p.x * inner.width(), inner.bottom() - p.y * inner.height())

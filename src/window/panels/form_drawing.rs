@@ -8,7 +8,7 @@ use crate::paint::{Brush, DrawingHand, FormDrawing, FormPattern};
 use crate::session::actions::LayerAction;
 use crate::session::{Property, Session};
 use crate::surface::form_lines::{LineKind, LineSettings};
-use crate::widgets::{NumberField, check, named, title};
+use crate::widgets::{NumberField, check, set_accessible_name, title};
 use eframe::egui::{self, Ui};
 
 /// The panel of one.
@@ -81,7 +81,7 @@ fn brush(ui: &mut Ui, session: &Session, drawing: &FormDrawing, setter: &mut Lay
             }
         }
     });
-    named(&response.response, "Brush of the lines");
+    set_accessible_name(&response.response, "Brush of the lines");
     let hint = "The brush and the color in hand draw the lines";
     let can_draw = !session.tools.brush.mode.is_retouching();
     let button = ui.add_enabled(can_draw, egui::Button::new("Use my brush"));

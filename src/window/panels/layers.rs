@@ -52,7 +52,7 @@ pub fn show(
     thumbnails: &mut Thumbnails,
     requests: &mut UiRequests,
 ) {
-    let Some(document) = session.shown() else {
+    let Some(document) = session.shown_document() else {
         ui.weak("No document is open.");
         return;
     };
@@ -166,7 +166,7 @@ fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             (Icon::Delete, "Delete layer", |layer| LayerAction::Delete { layer }),
         ];
         for (icon, label, make) in buttons {
-            let hint = crate::commands::named(label).map_or(label, |command| command.hint);
+            let hint = crate::commands::find_command(label).map_or(label, |command| command.hint);
             if icon_button(ui, icon, label, false)
                 .on_hover_text(format!("{label}\n{hint}"))
                 .clicked()

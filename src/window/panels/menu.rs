@@ -5,7 +5,7 @@ use crate::commands::{
     ADJUSTMENT_LAYERS, ADJUSTMENTS, GUIDES, MENUS, MenuCommand, PARTS, SHADING, TRANSFORMS,
 };
 use crate::icons::{Icon, sized_button};
-use crate::keymap::shown;
+use crate::keymap::key_text;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, SelectionAction};
 use crate::session::{Action, Session};
@@ -86,7 +86,7 @@ fn entry(
     let is_on = command.is_on.is_some_and(|is_on| is_on(session, &settings.layout));
     let mut button = Button::selectable(is_on, command.name);
     if let Some(keys) = settings.keymap.first(command) {
-        button = button.shortcut_text(shown(ui.ctx(), keys));
+        button = button.shortcut_text(key_text(ui.ctx(), keys));
     }
     let response = ui.add_enabled((command.can)(session), button);
     if response.on_hover_text(command.hint).clicked() {

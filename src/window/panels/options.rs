@@ -75,7 +75,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if let Some(changed) = numbers(ui, operator) {
         set(requests, &whose, changed);
     }
-    let has_surface = session.shown().is_none_or(|document| document.surface.is_some());
+    let has_surface = session.shown_document().is_none_or(|document| document.surface.is_some());
     if !has_surface && operator != Operator::None {
         ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks stay flat");
         let hint = "Makes a shape from what the drawing covers, so that marks bend over it and \

@@ -7,7 +7,7 @@ use crate::math::srgb::Color;
 use crate::mood_pictures::MoodPictures;
 use crate::session::Property;
 use crate::shading::{Mood, NumberSetting, Painter, Shading, Shadows};
-use crate::widgets::{NumberField, check, named, title};
+use crate::widgets::{NumberField, check, set_accessible_name, title};
 use eframe::egui::{self, Ui};
 
 /// One of the colors of the light.
@@ -52,7 +52,7 @@ pub fn moods(ui: &mut Ui, shading: &Shading, pictures: &MoodPictures, setter: &m
                 None => egui::Button::new(text),
             };
             let response = ui.add(button.selected(is_on)).on_hover_text("Lamps, shadows and all");
-            named(&response, &format!("Mood: {}", mood.label()));
+            set_accessible_name(&response, &format!("Mood: {}", mood.label()));
             if response.clicked() && !is_on {
                 setter.set(Property::InMood { mood }, true);
             }

@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         return;
     };
     let mut setter = LayerSetter { layer: path, requests };
-    let has_surface = session.shown().is_some_and(|document| document.surface.is_some());
+    let has_surface = session.shown_document().is_some_and(|document| document.surface.is_some());
     match &layer.content {
         Content::Fill(color) => {
             let changed = colors::picker(ui, "Fill color", *color);
@@ -55,8 +55,11 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         }
         Content::Gradient(live) => gradient(ui, live.params(), &mut setter),
         Content::Shading(live) => {
-            let canvas = session.shown().map_or(Vec2::ONE, |document| 2.0 * document.size.center());
-            if let (Model::Painter, Some(document)) = (live.params().model, session.shown()) {
+            let canvas =
+                session.shown_document().map_or(Vec2::ONE, |document| 2.0 * document.size.center());
+            if let (Model::Painter, Some(document)) =
+                (live.params().model, session.shown_document())
+            {
                 moods.follow(ui.ctx(), document, layer);
             }
             material::shading(ui, live.params(), canvas, moods, &mut setter);
@@ -81,7 +84,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
     }
     ui.separator();
     let on_mask = session.active().is_some_and(|open| open.on_mask);
-    if let Some(document) = session.shown() {
+    if let Some(document) = session.shown_document() {
         home(ui, document, layer, &mut setter);
     }
     common(ui, layer, has_surface, on_mask, &mut setter);
@@ -102,7 +105,7 @@ fn beneath(ui: &Ui, session: &Session, layer: &Layer) -> Option<Arc<Histogram>> 
     if let Some((_, found)) = last.filter(|(known, _)| *known == key) {
         return found;
     }
-    let found = Histogram::beneath(document, layer.id, &Progress::default()).map(Arc::new);
+    let found = Histogram::of_backdrop(document, layer.id, &Progress::default()).map(Arc::new);
     ui.data_mut(|data| data.insert_temp(kept, (key, found.clone())));
     found
 }

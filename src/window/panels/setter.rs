@@ -5,7 +5,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath, Property};
-use crate::widgets::{ValueChange, named};
+use crate::widgets::{ValueChange, set_accessible_name};
 use eframe::egui::Ui;
 
 /// Pushes changes of one layer.
@@ -31,7 +31,7 @@ impl LayerSetter<'_> {
     /// A button that requests a picture for the layer.
     pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
         let response = ui.button(text);
-        named(&response, &format!("Choose {}", part.label().to_lowercase()));
+        set_accessible_name(&response, &format!("Choose {}", part.label().to_lowercase()));
         if response.clicked() {
             self.requests.request(WindowRequest::Choose(FilePurpose::Part(part)));
         }

@@ -38,7 +38,7 @@ pub fn show(
     pictures: &mut PartPictures,
     requests: &mut UiRequests,
 ) {
-    let Some((open, document)) = session.active().zip(session.shown()) else {
+    let Some((open, document)) = session.active().zip(session.shown_document()) else {
         ui.weak("No document is open.");
         return;
     };

@@ -8,11 +8,11 @@ use crate::session::actions::PartAction;
 use crate::session::{Action, Session};
 use crate::shape::{SculptStroke, SculptTool, Touch};
 use crate::tools::{ShapeSettings, ToolKind};
-use crate::widgets::{NumberField, named, sentence};
+use crate::widgets::{NumberField, sentence, set_accessible_name};
 use eframe::egui::{Button, Sense, Ui, vec2};
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let has_parts = session.shown().is_some_and(|document| !document.parts.is_empty());
+    let has_parts = session.shown_document().is_some_and(|document| !document.parts.is_empty());
     if !has_parts {
         ui.weak("There is no part to work on yet.");
         if ui.button("Give it a shape…").clicked() {
@@ -47,7 +47,7 @@ fn leaned([right, up]: [f32; 2]) -> Vec3 {
 fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     let side = ui.spacing().interact_size.y + 4.0;
     let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::drag());
-    named(&response, "Direction of touches");
+    set_accessible_name(&response, "Direction of touches");
     ball(ui.painter(), rect.center(), 0.46 * side, now.normal);
     let mut to = None;
     if response.dragged() {

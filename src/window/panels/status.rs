@@ -10,7 +10,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Session;
 use crate::session::memory::DocumentMemory;
 use crate::usage::{KEPT_SHARE, MemoryMeter};
-use crate::widgets::{NumberField, bar, named};
+use crate::widgets::{NumberField, bar, set_accessible_name};
 use eframe::egui::{self, Button, RichText, Ui};
 
 pub fn show<W: JobWindow>(
@@ -42,7 +42,7 @@ pub fn show<W: JobWindow>(
             }
             return;
         };
-        let document = open.shown();
+        let document = open.shown_document();
         let percent =
             open.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
         if ui
@@ -53,7 +53,7 @@ pub fn show<W: JobWindow>(
             requests.request(WindowRequest::Scale(1.0));
         }
         ui.weak(document.size.to_string());
-        if open.unwrapped().is_some() {
+        if open.unwrap_settings().is_some() {
             ui.label("Unwrapped").on_hover_text(
                 "You are painting on the unwrapped surface; View, Unwrapped shows the picture",
             );
@@ -158,7 +158,7 @@ fn memory_menu(
         bytes_text(maps),
         bytes_text(kept)
     );
-    named(&button.response, "Memory of this document");
+    set_accessible_name(&button.response, "Memory of this document");
     button.response.on_hover_text(about);
 }
 

@@ -34,7 +34,7 @@ pub fn show(
     };
     buttons(ui, layer, n, &chosen, requests);
     title(ui, if chosen.len() == 1 { "Stroke" } else { "Strokes" });
-    if let Some(document) = session.shown()
+    if let Some(document) = session.shown_document()
         && let Some(part) =
             home::choice(ui, document, first.home().map(|home| &home.frame), "As its layer")
     {

@@ -8,7 +8,7 @@ use crate::widgets::{NumberField, sentence, title};
 use eframe::egui::{Button, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let Some(document) = session.shown() else {
+    let Some(document) = session.shown_document() else {
         ui.weak("No document is open.");
         return;
     };

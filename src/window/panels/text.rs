@@ -7,7 +7,7 @@ use crate::document::LayerId;
 use crate::io::text;
 use crate::paint::{Text, TextAlign, TextStyle};
 use crate::session::{Property, Session, Writing};
-use crate::widgets::{NumberField, check, name, named};
+use crate::widgets::{NumberField, check, name, set_accessible_name};
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, ComboBox, Id, TextEdit, Ui};
 use std::ops::Range;
@@ -132,7 +132,7 @@ fn field(
     }
     let edit = TextEdit::multiline(&mut string).id(id).desired_rows(2).desired_width(f32::INFINITY);
     let output = edit.show(ui);
-    named(&output.response, "Words");
+    set_accessible_name(&output.response, "Words");
     let byte =
         |letters: usize| string.char_indices().nth(letters).map_or(string.len(), |(byte, _)| byte);
     let range = output.cursor_range.map(|range| {
@@ -189,7 +189,7 @@ fn family(ui: &mut Ui, layer: LayerId, current: &str) -> Option<String> {
                     }
                 }
             });
-        named(&response.response, "Font");
+        set_accessible_name(&response.response, "Font");
     });
     chosen
 }

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use crate::icons::{Icon, icon_button, sized_button};
-use crate::keymap::{KeyTarget, Keymap, shown};
+use crate::keymap::{KeyTarget, Keymap, key_text};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
@@ -68,7 +68,7 @@ fn button(
     let keys = keymap
         .of(KeyTarget::Tool(tool))
         .first()
-        .map_or_else(String::new, |&keys| format!(" ({})", shown(ui.ctx(), keys)));
+        .map_or_else(String::new, |&keys| format!(" ({})", key_text(ui.ctx(), keys)));
     if response.on_hover_text(format!("{}{keys}\n{}", tool.label(), tool.hint())).clicked() {
         requests.act(Action::Hand(HandAction::Tool { tool }));
     }

@@ -10,13 +10,13 @@ use crate::session::actions::{HandAction, LayerAction, PartAction};
 use crate::session::{Action, Property, Session};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{GizmoNumbers, PIVOTS};
-use crate::widgets::{choice, named};
+use crate::widgets::{choice, set_accessible_name};
 use eframe::egui::{Button, DragValue, Ui};
 use std::ops::RangeInclusive;
 
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    if session.shown().is_some_and(|document| document.surface.is_some())
+    if session.shown_document().is_some_and(|document| document.surface.is_some())
         && let Some(target) = choice(
             ui,
             "What is transformed",
@@ -128,7 +128,8 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ));
     };
     let Some(edited) = numbers(ui, was) else { return };
-    let to = if edited.keeps_pivot { edited.to.about(gizmo.pivot_share, &was) } else { edited.to };
+    let to =
+        if edited.keeps_pivot { edited.to.align_pivot(gizmo.pivot_share, &was) } else { edited.to };
     let layer = session.layer_paths();
     if let Some(by) = to.map_from(&before) {
         let done = edited.done;
@@ -160,7 +161,7 @@ fn numbers(ui: &mut Ui, was: GizmoNumbers) -> Option<EditedNumbers> {
             let field =
                 DragValue::new(value).range(range).max_decimals(2).speed(0.5).suffix(suffix);
             let response = ui.add(field);
-            named(&response, name);
+            set_accessible_name(&response, name);
             done |= response.changed() && !response.dragged() || response.drag_stopped();
             response.changed() || response.drag_stopped()
         };

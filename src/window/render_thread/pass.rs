@@ -44,7 +44,7 @@ impl PassBatch {
         self.left as f32 / self.painted.max(1) as f32
     }
 
-    pub fn painted(self, picture: u64, size: Size) -> RenderedTileBatch {
+    pub fn into_batch(self, picture: u64, size: Size) -> RenderedTileBatch {
         let Self { tiles, is_settled, took, .. } = self;
         RenderedTileBatch { picture, is_draft: false, size, tiles, is_settled, took, refused: None }
     }

@@ -21,7 +21,8 @@ impl MainWindow {
     /// Runs a command by its name, as a menu would.
     pub fn command(&mut self, ctx: &egui::Context, name: &str) {
         let mut requests = UiRequests::default();
-        if let Some(command) = commands::named(name).filter(|command| (command.can)(&self.session))
+        if let Some(command) =
+            commands::find_command(name).filter(|command| (command.can)(&self.session))
         {
             (command.run)(&self.session, &mut requests);
         }

@@ -73,13 +73,13 @@ impl MainWindow {
         let name = format!("Opening {}", short(&file));
         self.jobs.start(name, JobKind::Working, move |_| {
             let opened = storage::open(&file);
-            JobResult::of(opened, |window: &mut Self, opened| window.opened(Some(file), opened))
+            JobResult::of(opened, |window: &mut Self, opened| window.add_opened(Some(file), opened))
                 .in_front()
         });
     }
 
     /// A document was opened, from a file if it has one.
-    pub(super) fn opened(&mut self, file: Option<PathBuf>, opened: OpenedFile) {
+    pub(super) fn add_opened(&mut self, file: Option<PathBuf>, opened: OpenedFile) {
         self.recent_is(opened.open.file.clone());
         let drawing = opened.drawing.filter(DrawingTraits::has_outline);
         self.session.adopt(opened);
@@ -98,11 +98,11 @@ impl MainWindow {
             let read = read_picture(&file);
             JobResult::of(read, move |window: &mut Self, (name, picture)| match use_of {
                 PictureUse::Pasted(place) => {
-                    window.pasted(PastedPicture { name, picture }, place);
+                    window.paste_picture(PastedPicture { name, picture }, place);
                     window.session.note_read(&file);
                 }
                 PictureUse::Placed(at) => {
-                    let at = window.pictured(&name, picture, at);
+                    let at = window.add_picture_layer(&name, picture, at);
                     window.session.note_read(&file);
                     window.did(|| Action::File(FileAction::Place { file, at }));
                 }
@@ -113,11 +113,12 @@ impl MainWindow {
     /// What the user chose in the system's dialog for files.
     fn answered(&mut self, purpose: FilePurpose, answer: FileAnswer) {
         match answer {
-            FileAnswer::File(file) => self.chosen(purpose, file),
+            FileAnswer::File(file) => self.use_chosen_file(purpose, file),
             FileAnswer::Canceled => {}
             FileAnswer::Nowhere => {
                 let folder = self.folder();
-                let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };
+                let name =
+                    if purpose.is_saving() { self.propose_name(purpose) } else { String::new() };
                 let dialog = path::PathDialog::new(purpose, folder, &name, self.export.extension);
                 self.dialogs.push(Dialog::Path(dialog));
             }
@@ -128,7 +129,7 @@ impl MainWindow {
     pub fn keep_brushes_in(&mut self, folder: PathBuf) {
         self.session.brush_folder = Some(folder.clone());
         self.jobs.start("Reading brushes".into(), JobKind::Working, move |_| {
-            let (presets, notes) = brushes::kept(&folder);
+            let (presets, notes) = brushes::load_brushes(&folder);
             JobResult::then(|window: &mut Self, _| {
                 brushes::adopt(&mut window.session, presets);
                 window.messages.extend(notes);
@@ -157,15 +158,25 @@ impl MainWindow {
 
     /// A picture becomes a layer. It goes to the pointer's place once it was read: the system does
     /// not report positions of dragged files. Returns the position.
-    pub(super) fn pictured(&mut self, name: &str, picture: Picture, at: PinPosition) -> Vec2 {
-        let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
+    pub(super) fn add_picture_layer(
+        &mut self,
+        name: &str,
+        picture: Picture,
+        at: PinPosition,
+    ) -> Vec2 {
+        let center =
+            self.session.shown_document().map_or(Vec2::ZERO, |document| document.size.center());
         let at = self.canvas.under.filter(|_| at == PinPosition::Pointer).unwrap_or(center);
         place(&mut self.session, name, picture, at);
         at
     }
 
     /// A picture of another program is pasted.
-    pub(super) fn pasted(&mut self, picture: PastedPicture, PastePlace { to, at }: PastePlace) {
+    pub(super) fn paste_picture(
+        &mut self,
+        picture: PastedPicture,
+        PastePlace { to, at }: PastePlace,
+    ) {
         self.apply(&Action::Clipboard(ClipboardAction::PastePicture { picture, to, at }));
     }
 
@@ -187,7 +198,7 @@ impl MainWindow {
     }
 
     /// A file was chosen in a dialog.
-    pub(super) fn chosen(&mut self, purpose: FilePurpose, file: PathBuf) {
+    pub(super) fn use_chosen_file(&mut self, purpose: FilePurpose, file: PathBuf) {
         match purpose {
             FilePurpose::Open => self.open_files(vec![file], None),
             FilePurpose::Place => {
@@ -224,7 +235,7 @@ impl MainWindow {
     }
 
     fn chosen_to_write(&mut self, purpose: FilePurpose, file: PathBuf) {
-        let named = purpose.named(file.clone(), self.export.extension);
+        let named = purpose.final_name(file.clone(), self.export.extension);
         let was_asked = named == file && named.exists();
         let over = if was_asked { Overwrite::Anything } else { Overwrite::Nothing };
         if purpose == FilePurpose::Save {
@@ -244,7 +255,7 @@ impl MainWindow {
     }
 
     pub(super) fn ask_where(&mut self, purpose: FilePurpose) {
-        let name = self.proposed(purpose);
+        let name = self.propose_name(purpose);
         self.ask_for(purpose, &name);
     }
 
@@ -254,7 +265,7 @@ impl MainWindow {
     }
 
     /// The proposed name of a file.
-    pub(super) fn proposed(&self, purpose: FilePurpose) -> String {
+    pub(super) fn propose_name(&self, purpose: FilePurpose) -> String {
         let title = self.session.active().map_or_else(String::new, |open| open.title());
         let stem = storage::without_ending(&title);
         if purpose == FilePurpose::ExportUnwrapped {

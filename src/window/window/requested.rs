@@ -51,7 +51,7 @@ impl MainWindow {
             | WindowRequest::ImageSizeDialog
             | WindowRequest::TurnDialog => {
                 let size = self.session.active().map(|open| open.document().size);
-                self.dialogs.extend(size.map(|size| canvas::asked(&ask, size)));
+                self.dialogs.extend(size.map(|size| canvas::dialog_for(&ask, size)));
             }
             WindowRequest::AdjustDialog(adjustment) => {
                 let dialog = adjust::AdjustDialog::new(*adjustment, &self.session);

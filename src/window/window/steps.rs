@@ -26,7 +26,7 @@ const STEPS: [HintStep; 3] = [
 
 fn has_any(session: &Session, is: impl Fn(&Content) -> bool) -> bool {
     session
-        .shown()
+        .shown_document()
         .is_some_and(|document| document.walk().iter().any(|(_, layer)| is(&layer.content)))
 }
 

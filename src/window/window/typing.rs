@@ -220,7 +220,7 @@ impl MainWindow {
     /// comes in front of it.
     pub(super) fn results(&mut self, ctx: &Context) -> Vec<JobResult<Self>> {
         let mut results = std::mem::take(&mut self.busy.results);
-        results.extend(self.jobs.finished());
+        results.extend(self.jobs.take_results());
         if ctx.text_edit_focused() && self.dialogs.is_empty() {
             let (later, now) = results.into_iter().partition(|result| result.comes_in_front);
             self.busy.results = later;

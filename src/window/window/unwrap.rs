@@ -31,20 +31,20 @@ impl MainWindow {
         let settings = self.session.unwrap_settings();
         let Some(open) = self.session.active() else { return };
         let (key, Some(surface)) = (open.key, open.document().surface.clone()) else { return };
-        if surface.known_plane_layout(settings).is_some() {
-            return self.unwrapped(key);
+        if surface.cached_plane_layout(settings).is_some() {
+            return self.show_unwrapped(key);
         }
         self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
-            let unwrapped = surface.unwrapped_with_progress(settings, &|| is_to_go_on(progress));
+            let unwrapped = surface.unwrapping_with_progress(settings, &|| is_to_go_on(progress));
             match unwrapped.and_then(|_| surface.plane_layout(settings)) {
-                Some(_) => JobResult::then(move |window: &mut Self, _| window.unwrapped(key)),
+                Some(_) => JobResult::then(move |window: &mut Self, _| window.show_unwrapped(key)),
                 None => JobResult::nothing(),
             }
         });
     }
 
     /// A surface was laid flat; if its document is still in front, it is shown so.
-    pub(super) fn unwrapped(&mut self, key: usize) {
+    pub(super) fn show_unwrapped(&mut self, key: usize) {
         if self.session.active().is_some_and(|front| front.key == key) {
             self.apply(&Action::View(ViewAction::Unwrapped { on: true }));
         }
@@ -56,8 +56,9 @@ impl MainWindow {
     pub(super) fn unwrap_ahead(&mut self) {
         let Some(open) = self.session.active() else { return };
         let Some(surface) = open.document().surface.clone() else { return };
-        let shown =
-            open.unwrapped().filter(|settings| surface.known_plane_layout(*settings).is_none());
+        let shown = open
+            .unwrap_settings()
+            .filter(|settings| surface.cached_plane_layout(*settings).is_none());
         let is_shown = shown.is_some();
         let printed = || {
             self.session
@@ -82,7 +83,7 @@ impl MainWindow {
         }
         self.unwrapping = Some((surface.clone(), settings));
         self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
-            let unwrapped = surface.unwrapped_with_progress(settings, &|| is_to_go_on(progress));
+            let unwrapped = surface.unwrapping_with_progress(settings, &|| is_to_go_on(progress));
             if is_shown && unwrapped.is_some() {
                 surface.plane_layout(settings);
             }

@@ -126,7 +126,7 @@ impl MainWindow {
     /// `over`: what may be replaced. `is_flat`: as on the unwrapped surface.
     pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite, is_flat: bool) {
         let Some(open) = self.session.active() else { return };
-        let document = if is_flat { open.drawn() } else { open.document().clone() };
+        let document = if is_flat { open.drawn_document() } else { open.document().clone() };
         let unwrapped = is_flat.then(|| self.unwrapped.options(self.session.unwrap_settings()));
         let options = ExportOptions {
             background: self.export.background,
@@ -194,7 +194,7 @@ impl MainWindow {
                 JobResult::then(paste_own)
             }
             (Ok(PastedContent::Picture(picture)), _) => {
-                JobResult::then(move |window: &mut Self, _| window.pasted(picture, place))
+                JobResult::then(move |window: &mut Self, _| window.paste_picture(picture, place))
             }
             (Ok(PastedContent::Files(files)), _) => {
                 JobResult::then(move |window: &mut Self, _| match place.to {
@@ -244,7 +244,7 @@ impl MainWindow {
         self.jobs.start(name.into(), JobKind::Editing, move |progress| {
             let edit = match &action {
                 Action::Layer(action) => match action.no_room(&from, &Budget::of_this_machine()) {
-                    None => action.flattened(&from, progress).map(Ok),
+                    None => action.perform_long(&from, progress).map(Ok),
                     no_room => no_room.map(Err),
                 },
                 Action::Canvas(action) => action.long_step(&from, progress),
@@ -295,7 +295,7 @@ impl MainWindow {
         open.forget_preview();
         let (key, from, action) = (open.key, open.document().clone(), action.clone());
         self.jobs.start(name.into(), JobKind::Editing, move |progress| {
-            match action.shaped(&from, progress) {
+            match action.perform_long(&from, progress) {
                 Ok(Some(shape)) => JobResult::then(move |window: &mut Self, _| {
                     window.shaped(key, action, &from, shape);
                 }),

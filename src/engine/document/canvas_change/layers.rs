@@ -88,7 +88,7 @@ impl Carrier<'_> {
         let mesh =
             layer.transform.as_ref().filter(|_| layer.is_warped()).and_then(|own| own.mesh());
         let transform = if let Some(mesh) = mesh {
-            let carried = mesh.carried(map).map(|mesh| TransformShape::Mesh(Arc::new(mesh)));
+            let carried = mesh.transformed(map).map(|mesh| TransformShape::Mesh(Arc::new(mesh)));
             let why = || {
                 format!(
                     "“{}” is warped by a mesh, which cannot be turned like this. Apply it first.",
@@ -114,7 +114,7 @@ impl Carrier<'_> {
             content: self.content(&layer.content, frame)?,
             mask: layer.mask.as_ref().map(|mask| self.mask(mask, frame)),
             transform,
-            liquify: layer.carried_liquify(map, *to),
+            liquify: layer.transformed_liquify(map, *to),
             cache: Default::default(),
             ..layer.clone()
         })

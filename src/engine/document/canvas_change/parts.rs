@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// Every part of a list where the change takes it.
 ///
 /// * `maps`: the surface of the document's maps before and after; objects get new numbers.
-pub fn carried(
+pub fn transform_parts(
     list: &[Arc<Part>],
     change: &CanvasChange,
     maps: Option<[&Arc<Surface>; 2]>,

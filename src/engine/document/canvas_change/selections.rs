@@ -36,7 +36,7 @@ impl<'c> CarriedSelections<'c> {
                 .map(|region| SurfaceRegion { at: self.change.point(region.at), ..region });
             (
                 selection.clone(),
-                Arc::new(Selection::carried(self.coverage(&selection.coverage), made)),
+                Arc::new(Selection::provisional(self.coverage(&selection.coverage), made)),
             )
         });
         carried.clone()
@@ -50,7 +50,7 @@ impl<'c> CarriedSelections<'c> {
     }
 
     fn coverage(&self, grid: &CoverageGrid) -> CoverageGrid {
-        let rect = grid.covered();
+        let rect = grid.covered_rect();
         if rect.is_empty() {
             return CoverageGrid::default();
         }

@@ -52,7 +52,7 @@ impl Document {
             .ok_or("A shape cannot be put in perspective: its depth would not fit.")?;
         self.surface.as_ref().ok_or("There is no shape to move.")?;
         // What lies on parts is carried as it shows, and put on them again at their new places.
-        let lifted = self.lifted_off(|_| true);
+        let lifted = self.detach(|_| true);
         let around = LayerMap::none(self.size);
         let layers = carried(&lifted.layers, &around, map)
             .ok_or("A layer cannot follow the shape there.")?;
@@ -73,7 +73,7 @@ impl Document {
         let found = |selection: &Arc<Selection>| match selection.made {
             Some(region) => {
                 let made = Some(SurfaceRegion { at: affine.transform_point2(region.at), ..region });
-                Arc::new(Selection::carried(selection.coverage.clone(), made))
+                Arc::new(Selection::provisional(selection.coverage.clone(), made))
             }
             None => selection.clone(),
         };
@@ -184,7 +184,7 @@ fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<V
             }
             None => transform_of(&own.plane.then(&around.plane.inverse()).then(&outer), &own)?,
         };
-        let liquify = layer.carried_liquify(&outer, own.canvas());
+        let liquify = layer.transformed_liquify(&outer, own.canvas());
         Some(Arc::new(Layer { transform, liquify, ..Layer::clone(&next) }))
     };
     layers.iter().map(one).collect()

@@ -235,7 +235,7 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
         0,
     );
     assert!(fine(&one.with_cleared(id, &half).unwrap()) > 1000);
-    let copy = one.copied_from(id, &half).unwrap();
+    let copy = one.copy_covered(id, &half).unwrap();
     assert!(fine(&document(vec![copy])) > 1000);
     let merged = flatten_to_paint(
         &document(vec![paint(soft.clone()), paint(soft.clone())]),

@@ -243,7 +243,7 @@ fn textures_of_floats_are_held_while_tiles_are_composed() {
     let picture = Picture::srgb8(size, vec![[50; 4]; 64 * 64]).unwrap();
     let document = document(size, vec![image(picture, size, Operator::None), strokes(1)]);
     let prepared = PreparedDocument::new(&document, &Progress::default()).unwrap();
-    assert_eq!(DeepTiles::new(&prepared, Highlights::Kept).held(), 1);
+    assert_eq!(DeepTiles::new(&prepared, Highlights::Kept).texture_count(), 1);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! Floor 4.
 
 use super::Fit;
-use crate::math::range::{STOPS, at_most, within};
+use crate::math::range::{STOPS, at_most, check_range};
 use crate::math::{COORDINATE, TURNS};
 use crate::shading::{
     BallStrokes, Environment, FeatureScale, Features, Light, LightKind, NumberSetting, Painter,
@@ -17,7 +17,7 @@ pub fn shading(shading: &Shading) -> Fit {
     at_most("lights", shading.lights.len(), Shading::MOST_LIGHTS)?;
     shading.lights.iter().try_for_each(light)?;
     [shading.ambient, shading.diffuse, shading.specular].iter().try_for_each(term)?;
-    within("the shininess", shading.shininess, &Shading::SHININESS)?;
+    check_range("the shininess", shading.shininess, &Shading::SHININESS)?;
     features(&shading.features)?;
     reference(shading.reference)?;
     if !Shading::BANDS.contains(&shading.bands) {
@@ -27,10 +27,10 @@ pub fn shading(shading: &Shading) -> Fit {
             Shading::BANDS.end()
         ));
     }
-    within("the flatness", shading.exponent, &Shading::EXPONENT)?;
-    within("the highlight along x", shading.nu, &Shading::SHININESS)?;
-    within("the highlight along y", shading.nv, &Shading::SHININESS)?;
-    within("the refractive index", shading.index, &Shading::INDEX)?;
+    check_range("the flatness", shading.exponent, &Shading::EXPONENT)?;
+    check_range("the highlight along x", shading.nu, &Shading::SHININESS)?;
+    check_range("the highlight along y", shading.nv, &Shading::SHININESS)?;
+    check_range("the refractive index", shading.index, &Shading::INDEX)?;
     settings(&shading.painter, Painter::SETTINGS)?;
     settings(&shading.shadows, Shadows::SETTINGS)?;
     settings(&shading.strokes, BallStrokes::SETTINGS)?;
@@ -38,7 +38,11 @@ pub fn shading(shading: &Shading) -> Fit {
         let (rays, most) = (shading.shadows.rays, Shadows::RAYS.end());
         return Err(format!("the rays to a lamp are {rays}; there may be 1 to {most}"));
     }
-    within("the reach of occlusion", shading.occlusion_radius_px, &Shading::OCCLUSION_RADIUS_PX)?;
+    check_range(
+        "the reach of occlusion",
+        shading.occlusion_radius_px,
+        &Shading::OCCLUSION_RADIUS_PX,
+    )?;
     if !Shading::BOUNCES.contains(&shading.bounces) {
         return Err(format!(
             "the bounces are {}; there may be 0 to {}",
@@ -50,12 +54,14 @@ pub fn shading(shading: &Shading) -> Fit {
 }
 
 fn settings<T>(all: &T, table: &'static [NumberSetting<T>]) -> Fit {
-    table.iter().try_for_each(|setting| within(setting.label, (setting.get)(all), &setting.range))
+    table
+        .iter()
+        .try_for_each(|setting| check_range(setting.label, (setting.get)(all), &setting.range))
 }
 
 fn environment(environment: &Environment) -> Fit {
-    within("the turn of the environment", environment.rotation, &TURNS)?;
-    within("the exposure of the environment", environment.exposure, &STOPS)
+    check_range("the turn of the environment", environment.rotation, &TURNS)?;
+    check_range("the exposure of the environment", environment.exposure, &STOPS)
 }
 
 pub fn radiance_scaling(radiance: &RadianceScaling) -> Fit {
@@ -70,44 +76,48 @@ pub fn radiance_scaling(radiance: &RadianceScaling) -> Fit {
 }
 
 fn scaling(scaling: &Scaling) -> Fit {
-    within("the still tone", scaling.alpha, &Scaling::INVARIANT)?;
-    within("the strength", scaling.gamma_convex, &Scaling::GAMMA)?;
-    within("the strength in hollows", scaling.gamma_concave, &Scaling::GAMMA)
+    check_range("the still tone", scaling.alpha, &Scaling::INVARIANT)?;
+    check_range("the strength", scaling.gamma_convex, &Scaling::GAMMA)?;
+    check_range("the strength in hollows", scaling.gamma_concave, &Scaling::GAMMA)
 }
 
 fn features(features: &Features) -> Fit {
-    within("λ", features.lambda, &Features::LAMBDA)?;
+    check_range("λ", features.lambda, &Features::LAMBDA)?;
     at_most("scales", features.scales.len(), Features::MOST_SCALES)?;
     if features.scales.is_empty() {
         return Err("at least one scale is needed".into());
     }
     features.scales.iter().try_for_each(|scale| {
-        within("the width of features", scale.curvature_scale_px, &FeatureScale::CURVATURE_PX)?;
-        within("the blur of features", scale.blur_px, &FeatureScale::BLUR_PX)?;
-        within("the weight of a scale", scale.weight, &FeatureScale::WEIGHT)
+        check_range(
+            "the width of features",
+            scale.curvature_scale_px,
+            &FeatureScale::CURVATURE_PX,
+        )?;
+        check_range("the blur of features", scale.blur_px, &FeatureScale::BLUR_PX)?;
+        check_range("the weight of a scale", scale.weight, &FeatureScale::WEIGHT)
     })
 }
 
 fn reference(reference: Reference) -> Fit {
     match reference {
         Reference::Auto => Ok(()),
-        Reference::Value(value) => within("the full reflectance", value, &Reference::VALUE),
+        Reference::Value(value) => check_range("the full reflectance", value, &Reference::VALUE),
     }
 }
 
 fn term(term: &Term) -> Fit {
-    within("the weight of a term", term.weight, &Term::WEIGHT)?;
+    check_range("the weight of a term", term.weight, &Term::WEIGHT)?;
     scaling(&term.scaling)
 }
 
 fn light(light: &Light) -> Fit {
-    within("the intensity of a light", light.intensity, &Light::INTENSITY)?;
+    check_range("the intensity of a light", light.intensity, &Light::INTENSITY)?;
     match light.kind {
         LightKind::Directional { direction } if Light::has_direction(direction) => Ok(()),
         LightKind::Directional { .. } => Err("the direction of a light has no length".into()),
         LightKind::Point { position } => position
             .to_array()
             .iter()
-            .try_for_each(|v| within("the place of a light", *v, &COORDINATE)),
+            .try_for_each(|v| check_range("the place of a light", *v, &COORDINATE)),
     }
 }

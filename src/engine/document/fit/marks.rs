@@ -2,7 +2,7 @@
 //! Floor 4.
 
 use super::Fit;
-use crate::math::range::{STOPS, at_most, within};
+use crate::math::range::{STOPS, at_most, check_range};
 use crate::math::{COORDINATE, NumberSetting, TURNS, UNIT, Vec2};
 use crate::paint::adjustment::ToneCurve;
 use crate::paint::grain::{BrushGrain, GrainSpace};
@@ -34,7 +34,7 @@ pub fn adjustment_values(adjustment: &ColorAdjustment) -> usize {
 }
 
 /// The samples of strokes, and the values that they take.
-pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
+pub fn count_values(strokes: &[Arc<Stroke>]) -> (usize, usize) {
     let (mut samples, mut values) = (0, 0);
     let mut before: Option<&Stroke> = None;
     for stroke in strokes {
@@ -73,7 +73,7 @@ pub fn form_drawing(drawing: &FormDrawing) -> Fit {
         FormPattern::Lines(lines) => {
             numbers(lines, LineSettings::SETTINGS)?;
             let reach = -1e6..=1e6;
-            lines.light.to_array().iter().try_for_each(|v| within("the light", *v, &reach))?;
+            lines.light.to_array().iter().try_for_each(|v| check_range("the light", *v, &reach))?;
         }
     }
     numbers(&drawing.hand, DrawingHand::SETTINGS)?;
@@ -81,7 +81,9 @@ pub fn form_drawing(drawing: &FormDrawing) -> Fit {
 }
 
 fn numbers<T>(all: &T, table: &'static [NumberSetting<T>]) -> Fit {
-    table.iter().try_for_each(|setting| within(setting.label, (setting.get)(all), &setting.range))
+    table
+        .iter()
+        .try_for_each(|setting| check_range(setting.label, (setting.get)(all), &setting.range))
 }
 
 /// The new strokes that are not among the old ones, by pointer.
@@ -104,50 +106,56 @@ fn stroke(stroke: &Stroke) -> Fit {
     operator(stroke.operator())?;
     if let Some(own) = stroke.selection() {
         let range = &StrokeSelection::MOVED_PX;
-        within("how far its selection moved", own.moved.x, range)?;
-        within("how far its selection moved", own.moved.y, range)?;
+        check_range("how far its selection moved", own.moved.x, range)?;
+        check_range("how far its selection moved", own.moved.y, range)?;
     }
     stroke.samples().iter().try_for_each(|sample| {
         point("a reading of the pen", sample.at)?;
-        within("the pressure", sample.pressure, &Sample::PRESSURE)?;
-        within("the tilt", sample.tilt.x, &Sample::TILT).and(within(
+        check_range("the pressure", sample.pressure, &Sample::PRESSURE)?;
+        check_range("the tilt", sample.tilt.x, &Sample::TILT).and(check_range(
             "the tilt",
             sample.tilt.y,
             &Sample::TILT,
         ))?;
-        within("the time", sample.time_secs, &Sample::TIME_SECS)
+        check_range("the time", sample.time_secs, &Sample::TIME_SECS)
     })
 }
 
 /// Whether a file can hold a brush.
 pub fn brush(brush: &Brush) -> Fit {
-    within("the size of the brush", brush.size, &Brush::SIZE)?;
-    within("the hardness", brush.hardness, &UNIT)?;
-    within("the opacity of the brush", brush.opacity, &UNIT)?;
-    within("the flow", brush.flow, &UNIT)?;
-    within("the spacing", brush.spacing, &Brush::SPACING)?;
-    within("the rotation of the brush", brush.rotation, &TURNS)?;
-    within("the turn of the stroke", brush.facing.turn, &TURNS)?;
-    within("the softness", brush.softness, &UNIT)?;
-    within("the scatter", brush.scatter, &Brush::SCATTER)?;
-    within("the reach", brush.reach, &Brush::REACHES)?;
+    check_range("the size of the brush", brush.size, &Brush::SIZE)?;
+    check_range("the hardness", brush.hardness, &UNIT)?;
+    check_range("the opacity of the brush", brush.opacity, &UNIT)?;
+    check_range("the flow", brush.flow, &UNIT)?;
+    check_range("the spacing", brush.spacing, &Brush::SPACING)?;
+    check_range("the rotation of the brush", brush.rotation, &TURNS)?;
+    check_range("the turn of the stroke", brush.facing.turn, &TURNS)?;
+    check_range("the softness", brush.softness, &UNIT)?;
+    check_range("the scatter", brush.scatter, &Brush::SCATTER)?;
+    check_range("the reach", brush.reach, &Brush::REACHES)?;
     let ColorJitter { hue_degrees, saturation, value } = brush.jitter;
-    within("the jitter of the hue", hue_degrees, &ColorJitter::HUE_DEGREES)?;
-    within("the jitter of the saturation", saturation, &UNIT)?;
-    within("the jitter of the value", value, &UNIT)?;
+    check_range("the jitter of the hue", hue_degrees, &ColorJitter::HUE_DEGREES)?;
+    check_range("the jitter of the saturation", saturation, &UNIT)?;
+    check_range("the jitter of the value", value, &UNIT)?;
     mode(brush.mode)?;
     match brush.stabilizer {
         Stabilizer::None => Ok(()),
         Stabilizer::Average { weight } => {
-            within("the weight of the stabilizer", weight, &Stabilizer::WEIGHT)
+            check_range("the weight of the stabilizer", weight, &Stabilizer::WEIGHT)
         }
         Stabilizer::String { length_px } => {
-            within("the string of the stabilizer", length_px, &Stabilizer::LENGTH_PX)
+            check_range("the string of the stabilizer", length_px, &Stabilizer::LENGTH_PX)
         }
-        Stabilizer::Lag { secs } => within("the lag of the stabilizer", secs, &Stabilizer::SECS),
+        Stabilizer::Lag { secs } => {
+            check_range("the lag of the stabilizer", secs, &Stabilizer::SECS)
+        }
     }?;
     for setting in &SETTINGS {
-        within(&format!("“{}” of the brush", setting.label), setting.of(brush), &setting.range)?;
+        check_range(
+            &format!("“{}” of the brush", setting.label),
+            setting.of(brush),
+            &setting.range,
+        )?;
     }
     tip(&brush.tip)?;
     brush.grain.as_ref().map_or(Ok(()), grain)
@@ -157,25 +165,25 @@ fn mode(mode: BrushMode) -> Fit {
     match mode {
         BrushMode::Paint | BrushMode::Clone { .. } => Ok(()),
         BrushMode::Smudge { length } => {
-            within("the length of the smudge", length, &BrushMode::SHARE)
+            check_range("the length of the smudge", length, &BrushMode::SHARE)
         }
-        BrushMode::Blur { width } => within("the width of the blur", width, &BrushMode::SHARE),
+        BrushMode::Blur { width } => check_range("the width of the blur", width, &BrushMode::SHARE),
     }
 }
 
 fn tip(tip: &Tip) -> Fit {
     let whole = |what: &str, n: u32, range: &std::ops::RangeInclusive<u32>| {
-        within(what, n as f32, &(*range.start() as f32..=*range.end() as f32))
+        check_range(what, n as f32, &(*range.start() as f32..=*range.end() as f32))
     };
     match tip {
         Tip::Round | Tip::Picture(_) => Ok(()),
         Tip::Ellipse { ratio } | Tip::Square { ratio } => {
-            within("the ratio of the tip", *ratio, &Tip::RATIO)
+            check_range("the ratio of the tip", *ratio, &Tip::RATIO)
         }
         Tip::Bristles(bristles) => whole("the number of hairs", bristles.count, &Bristles::COUNT),
         Tip::Noise(noise) => {
             whole("the number of specks", noise.cells, &Noise::CELLS)?;
-            within("the density of the tip", noise.density, &UNIT)
+            check_range("the density of the tip", noise.density, &UNIT)
         }
         Tip::Hose(hose) => {
             let (pictures, ranks) = (hose.pictures().len(), hose.ranks());
@@ -191,11 +199,11 @@ fn tip(tip: &Tip) -> Fit {
 }
 
 fn grain(grain: &BrushGrain) -> Fit {
-    within("the size of the grain", grain.size_px, &BrushGrain::SIZE_PX)?;
-    within("the rotation of the grain", grain.rotation, &TURNS)?;
-    within("the strength of the grain", grain.strength, &UNIT)?;
+    check_range("the size of the grain", grain.size_px, &BrushGrain::SIZE_PX)?;
+    check_range("the rotation of the grain", grain.rotation, &TURNS)?;
+    check_range("the strength of the grain", grain.strength, &UNIT)?;
     let [low, high] = grain.levels;
-    within("a level of the grain", low, &BrushGrain::LEVEL).and(within(
+    check_range("a level of the grain", low, &BrushGrain::LEVEL).and(check_range(
         "a level of the grain",
         high,
         &BrushGrain::LEVEL,
@@ -205,7 +213,7 @@ fn grain(grain: &BrushGrain) -> Fit {
     }
     match grain.lies {
         GrainSpace::Canvas => Ok(()),
-        GrainSpace::Surface { gamma } => within("γ of the grain", gamma, &BrushGrain::GAMMA),
+        GrainSpace::Surface { gamma } => check_range("γ of the grain", gamma, &BrushGrain::GAMMA),
         GrainSpace::Unwrapped => Ok(()),
     }
 }
@@ -215,7 +223,7 @@ pub fn operator(operator: Operator) -> Fit {
     operator
         .numbers()
         .into_iter()
-        .try_for_each(|(number, value)| within(number.label, value, &number.range))
+        .try_for_each(|(number, value)| check_range(number.label, value, &number.range))
 }
 
 /// Whether a file can hold a placed picture.
@@ -230,7 +238,7 @@ pub fn image(image: &PlacedImage) -> Fit {
     pieces(&image.bend.pieces)?;
     match image.bend.weights {
         Weights::Shepard { power } => {
-            within("the sharpness of the anchors", power, &Weights::POWER)
+            check_range("the sharpness of the anchors", power, &Weights::POWER)
         }
         Weights::Segment => Err("the anchors of an image are weighted by distance".into()),
     }
@@ -246,9 +254,9 @@ fn piece(piece: &PlanePiece) -> Fit {
     let moved = [piece.moved.x, piece.moved.y];
     moved
         .into_iter()
-        .try_for_each(|v| within("how far a piece is moved", v, &PlanePiece::MOVED))?;
-    within("the size of a piece", piece.scale, &PlanePiece::SCALE)?;
-    within("the turn of a piece", piece.rotation, &PlanePiece::ROTATION)
+        .try_for_each(|v| check_range("how far a piece is moved", v, &PlanePiece::MOVED))?;
+    check_range("the size of a piece", piece.scale, &PlanePiece::SCALE)?;
+    check_range("the turn of a piece", piece.rotation, &PlanePiece::ROTATION)
 }
 
 /// Whether a file can hold a gradient.
@@ -258,7 +266,10 @@ pub fn gradient(gradient: &Gradient) -> Fit {
     operator(gradient.operator)?;
     pieces(&gradient.pieces)?;
     at_most("stops of the gradient", gradient.stops.len(), Gradient::MOST_STOPS)?;
-    gradient.stops.iter().try_for_each(|stop| within("a stop of the gradient", stop.t, &UNIT))?;
+    gradient
+        .stops
+        .iter()
+        .try_for_each(|stop| check_range("a stop of the gradient", stop.t, &UNIT))?;
     if gradient.stops.is_empty() || !gradient.stops.is_sorted_by(|a, b| a.t <= b.t) {
         return Err("the stops of the gradient must go from 0 to 1, at least one".into());
     }
@@ -267,26 +278,26 @@ pub fn gradient(gradient: &Gradient) -> Fit {
 
 pub fn placement(placement: &Placement) -> Fit {
     point("the center", placement.center)?;
-    within("the scale", placement.scale, &Placement::SCALE)?;
-    within("the rotation", placement.rotation, &TURNS)
+    check_range("the scale", placement.scale, &Placement::SCALE)?;
+    check_range("the rotation", placement.rotation, &TURNS)
 }
 
 /// Whether a file can hold what is adjusted of a picture.
 pub fn adjust(adjust: &Adjust) -> Fit {
-    within("the blur", adjust.blur, &Adjust::BLUR)?;
-    within("the exposure", adjust.exposure, &STOPS)?;
-    within("the hue", adjust.hue, &TURNS)?;
-    within("the saturation", adjust.saturation, &Adjust::FACTOR)?;
-    within("the brightness", adjust.brightness, &Adjust::FACTOR)?;
-    within("the contrast", adjust.contrast, &Adjust::FACTOR)
+    check_range("the blur", adjust.blur, &Adjust::BLUR)?;
+    check_range("the exposure", adjust.exposure, &STOPS)?;
+    check_range("the hue", adjust.hue, &TURNS)?;
+    check_range("the saturation", adjust.saturation, &Adjust::FACTOR)?;
+    check_range("the brightness", adjust.brightness, &Adjust::FACTOR)?;
+    check_range("the contrast", adjust.contrast, &Adjust::FACTOR)
 }
 
 /// For a normal layer without a map.
 pub fn relief(grain: &crate::surface::NoiseRelief) -> Fit {
     use crate::surface::NoiseRelief;
-    within("the size of the bumps", grain.size_px, &NoiseRelief::SIZE_PX)?;
-    within("the roughness", grain.roughness, &NoiseRelief::ROUGHNESS)?;
-    within("the stretch", grain.stretch, &NoiseRelief::STRETCH)?;
+    check_range("the size of the bumps", grain.size_px, &NoiseRelief::SIZE_PX)?;
+    check_range("the roughness", grain.roughness, &NoiseRelief::ROUGHNESS)?;
+    check_range("the stretch", grain.stretch, &NoiseRelief::STRETCH)?;
     if !NoiseRelief::OCTAVES.contains(&grain.octaves) {
         return Err(format!(
             "the octaves are {}; there may be {}",
@@ -298,5 +309,5 @@ pub fn relief(grain: &crate::surface::NoiseRelief) -> Fit {
 }
 
 fn point(what: &str, at: Vec2) -> Fit {
-    within(what, at.x, &COORDINATE).and(within(what, at.y, &COORDINATE))
+    check_range(what, at.x, &COORDINATE).and(check_range(what, at.y, &COORDINATE))
 }

@@ -2,7 +2,7 @@
 
 use super::Fit;
 use crate::document::{Document, NamedSelection, SelectionList};
-use crate::math::range::{at_most, within};
+use crate::math::range::{at_most, check_range};
 use crate::math::{COORDINATE, Size};
 use crate::paint::Selection;
 use crate::raster::Picture;
@@ -34,7 +34,7 @@ pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
         known.extend(SelectionList::of(before).all().map(Arc::as_ptr));
     }
     let mut names = HashSet::new();
-    for (name, selection) in list.named() {
+    for (name, selection) in list.iter_with_names() {
         if let Some(name) = name {
             let letters = at_most(
                 "letters of a selection's name",
@@ -59,10 +59,10 @@ fn selected(selection: &Selection, canvas: Size) -> Fit {
     if let Some(told) = &selection.made {
         return region(told);
     }
-    let rect = selection.coverage.covered();
+    let rect = selection.coverage.covered_rect();
     [rect.x0, rect.y0, rect.x1, rect.y1]
         .iter()
-        .try_for_each(|v| within("its place", *v as f32, &COORDINATE))?;
+        .try_for_each(|v| check_range("its place", *v as f32, &COORDINATE))?;
     let side = Picture::LONGEST_SIDE_PX.max(canvas.width).max(canvas.height) as usize;
     let (width, height) = (rect.width(), rect.height());
     if width.max(height) > side || width * height > Picture::MOST_PX.max(canvas.area()) {
@@ -72,8 +72,8 @@ fn selected(selection: &Selection, canvas: Size) -> Fit {
 }
 
 pub fn region(region: &SurfaceRegion) -> Fit {
-    within("the point of a region", region.at.x, &COORDINATE)?;
-    within("the point of a region", region.at.y, &COORDINATE)?;
-    within("the tolerance of a region", region.tolerance, &region.kind.tolerances())?;
-    within("the softness of a region", region.softness, &SurfaceRegion::SOFTNESS)
+    check_range("the point of a region", region.at.x, &COORDINATE)?;
+    check_range("the point of a region", region.at.y, &COORDINATE)?;
+    check_range("the tolerance of a region", region.tolerance, &region.kind.tolerances())?;
+    check_range("the softness of a region", region.softness, &SurfaceRegion::SOFTNESS)
 }

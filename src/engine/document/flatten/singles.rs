@@ -53,7 +53,7 @@ impl<'d> SingleLayers<'d> {
     /// of the whole one; `None` if there is no such layer.
     ///
     /// * `change`: made to the layer before.
-    pub fn around(&self, id: LayerId, change: impl FnOnce(&mut Layer)) -> Option<Document> {
+    pub fn isolate_layer(&self, id: LayerId, change: impl FnOnce(&mut Layer)) -> Option<Document> {
         let mut slot = *self.places.get(&id)?;
         let mut own = Layer::clone(self.layer_at(slot)?);
         change(&mut own);
@@ -101,8 +101,8 @@ mod tests {
         let layers = (0..3000).map(fill).collect();
         let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
         let singles = SingleLayers::of(&document);
-        let around = singles.around(document.layers[1500].id, |_| {}).unwrap();
+        let around = singles.isolate_layer(document.layers[1500].id, |_| {}).unwrap();
         assert!(around.walk().len() <= 2, "{}", around.walk().len());
-        assert!(singles.around(LayerId::fresh(), |_| {}).is_none());
+        assert!(singles.isolate_layer(LayerId::fresh(), |_| {}).is_none());
     }
 }

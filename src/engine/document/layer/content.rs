@@ -100,12 +100,12 @@ trait LayerKind {
     }
 
     /// Renders one tile, or finds it rendered.
-    fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
+    fn render_tile(&self, _scene: &Scene, _at: TileAt) -> TileContent {
         TileContent::Nothing
     }
 
     /// What the other sides of a tile's contour pixels see of it.
-    fn painted_far_side(&self, _scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, _scene: &FarScene) -> TileContent {
         TileContent::Nothing
     }
 
@@ -165,7 +165,7 @@ trait LayerKind {
     }
 
     /// Without what was painted; `None` for what is not painted on.
-    fn emptied(&self) -> Option<Content> {
+    fn without_paint(&self) -> Option<Content> {
         None
     }
 
@@ -325,8 +325,8 @@ impl Content {
     }
 
     /// The same kind without what was painted; `None` for what is not painted on.
-    pub fn emptied(&self) -> Option<Content> {
-        self.kind().emptied()
+    pub fn without_paint(&self) -> Option<Content> {
+        self.kind().without_paint()
     }
 
     /// Operator, anchors and weights, if it is bent as a whole.
@@ -349,12 +349,12 @@ impl Content {
         self.kind().lacks()
     }
 
-    pub(in crate::document) fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
-        self.kind().painted(scene, at)
+    pub(in crate::document) fn render_tile(&self, scene: &Scene, at: TileAt) -> TileContent {
+        self.kind().render_tile(scene, at)
     }
 
-    pub(in crate::document) fn painted_far_side(&self, scene: &FarScene) -> TileContent {
-        self.kind().painted_far_side(scene)
+    pub(in crate::document) fn render_far_side_tile(&self, scene: &FarScene) -> TileContent {
+        self.kind().render_far_side_tile(scene)
     }
 
     /// What it is rendered from without rounding to bytes; `None` for what is not live.

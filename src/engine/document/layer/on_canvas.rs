@@ -47,8 +47,10 @@ fn without_ink(layer: &Arc<Layer>) -> Arc<Layer> {
     let (Some(lifted), Content::Pixels(pixels)) = (&layer.lifted, &layer.content) else {
         return layer.clone();
     };
-    let content =
-        Content::Pixels(PixelLayer { tiles: lifted.shown(&pixels.tiles), ..pixels.clone() });
+    let content = Content::Pixels(PixelLayer {
+        tiles: lifted.visible_paint(&pixels.tiles),
+        ..pixels.clone()
+    });
     Arc::new(Layer { content, lifted: None, ..Layer::clone(layer) })
 }
 

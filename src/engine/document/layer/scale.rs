@@ -150,7 +150,7 @@ impl CanvasScale {
         let transform = layer.transform.as_ref().map(|transform| transform.scaled(self.per_axis));
         next.transform =
             transform.map(|transform| if self.is_draft { transform.drafted() } else { transform });
-        next.liquify = layer.carried_liquify(&self.map(), self.to);
+        next.liquify = layer.transformed_liquify(&self.map(), self.to);
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
             Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
             Some(MaskKind::Derived(DerivedMask::Curvature { scale, blur, .. })) => {
@@ -222,7 +222,7 @@ impl CanvasScale {
     fn tile(&self, grid: &TileGrid, at: TileAt) -> Option<Tile> {
         let rect = at.rect();
         let columns = resample::AxisTaps::new(rect.x0..rect.x1, self.per_axis.x);
-        let rows: Vec<_> = (rect.y0..rect.y1).map(|y| covered(y, self.per_axis.y)).collect();
+        let rows: Vec<_> = (rect.y0..rect.y1).map(|y| source_weights(y, self.per_axis.y)).collect();
         let (first, last) = (rows.first()?.first()?.0, rows.last()?.last()?.0);
         let source = Rect::new(columns.first(), first, columns.end(), last + 1);
         // Most layers lack most tiles.
@@ -265,8 +265,10 @@ impl CanvasScale {
         if let Some(sampler) = self.sampler() {
             return warped_plane_onto(plane, &sampler, sampler.filter, to);
         }
-        let columns: Vec<_> = (0..to.width as i32).map(|x| covered(x, self.per_axis.x)).collect();
-        let rows: Vec<_> = (0..to.height as i32).map(|y| covered(y, self.per_axis.y)).collect();
+        let columns: Vec<_> =
+            (0..to.width as i32).map(|x| source_weights(x, self.per_axis.x)).collect();
+        let rows: Vec<_> =
+            (0..to.height as i32).map(|y| source_weights(y, self.per_axis.y)).collect();
         Plane::from_fn(to, |x, y| {
             let of_row = |&(py, wy): &(i32, f32)| {
                 columns[x]
@@ -281,7 +283,7 @@ impl CanvasScale {
 
 /// The old pixels under a new one along one axis, and their weights, which add up to 1: the mean
 /// over what it covers, at least one old pixel wide, which is linear interpolation when scaling up.
-pub(in crate::document) fn covered(i: i32, scale: f32) -> Vec<(i32, f32)> {
+pub(in crate::document) fn source_weights(i: i32, scale: f32) -> Vec<(i32, f32)> {
     let center = (f64::from(i) + 0.5) / f64::from(scale);
     let half = (0.5 / f64::from(scale)).max(0.5);
     let (low, high) = (center - half, center + half);

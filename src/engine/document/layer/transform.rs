@@ -51,11 +51,11 @@ impl LayerTransform {
 
     /// Refuses numbers that files cannot hold, and what is no map.
     pub fn fits(&self) -> Result<(), String> {
-        let place = |v: f64| range::within("a place of the transform", v as f32, &COORDINATE);
+        let place = |v: f64| range::check_range("a place of the transform", v as f32, &COORDINATE);
         match &self.shape {
             TransformShape::Matrix([a, b, c, d, e, f]) => {
                 [a, b, c, d].into_iter().try_for_each(|v| {
-                    range::within("a factor of the transform", *v as f32, &Self::FACTOR)
+                    range::check_range("a factor of the transform", *v as f32, &Self::FACTOR)
                 })?;
                 [*e, *f].into_iter().try_for_each(place)?;
                 self.map(Size::new(1, 1))

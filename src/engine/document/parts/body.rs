@@ -53,7 +53,7 @@ pub struct PlacedOutline {
 }
 
 /// The parts, by their ids, whose outlines are not of the area that was meant.
-pub fn lost<'a>(
+pub fn parts_with_lost_outlines<'a>(
     outlines: impl Iterator<Item = (&'a Arc<Part>, &'a Option<PlacedOutline>)>,
 ) -> Vec<String> {
     let of_lost = |(part, outline): (&Arc<Part>, &Option<PlacedOutline>)| {
@@ -81,7 +81,7 @@ impl PlacedOutline {
     }
 
     /// Those of some outlines whose planes overlap this one's, relative to this one.
-    pub fn met_by(&self, others: &[Option<PlacedOutline>]) -> Vec<PlacedOutline> {
+    pub fn overlapping(&self, others: &[Option<PlacedOutline>]) -> Vec<PlacedOutline> {
         let met =
             others.iter().flatten().filter(|other| !other.rect().intersect(self.rect()).is_empty());
         let beside = |other: &PlacedOutline| {
@@ -98,7 +98,7 @@ impl PlacedOutline {
 /// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins.
 /// `None` where there are none. A rim hidden under such a part stays a silhouette: what is inside
 /// it is covered as well.
-pub fn joined(own: &Outline, met: &[PlacedOutline]) -> Option<Plane<bool>> {
+pub fn joined_rim(own: &Outline, met: &[PlacedOutline]) -> Option<Plane<bool>> {
     if met.is_empty() {
         return None;
     }

@@ -2,7 +2,7 @@
 //! again. Floor 4. Not here: how one kind of part is made (`make`), what is kept (`made`), how
 //! forms are combined (`whole`).
 
-use super::body::{PlacedOutline, SolvedOutline, joined, lost};
+use super::body::{PlacedOutline, SolvedOutline, joined_rim, parts_with_lost_outlines};
 use super::form_cache::{MadePart, NewForm, Stages};
 use super::modifiers::{ResumePoint, with_lines, with_modifier};
 use super::outlines::OutlineKey;
@@ -40,8 +40,8 @@ impl Document {
             progress.step();
         }
         self.parts.cache.keep_only(|id| self.parts.part(id).is_some());
-        let surface = whole.done();
-        let lost = lost(shown().zip(&outlines));
+        let surface = whole.finish();
+        let lost = parts_with_lost_outlines(shown().zip(&outlines));
         let next = Document { surface, ..self.clone() }.with_selections_found();
         let made_of = Some(Arc::new(next.surface_inputs()));
         let parts = Arc::new(Parts { is_ahead: false, lost, made_of, ..Parts::clone(&self.parts) });
@@ -92,8 +92,8 @@ impl Document {
         let known = known.filter(|made| same_source(made) && same_place(made));
         // Only what is inflated has a rim that can be free.
         let own = standing.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
-        let met = own.map(|own| own.met_by(in_front)).unwrap_or_default();
-        let found = || own.and_then(|own| joined(&own.outline, &met)).map(Arc::new);
+        let met = own.map(|own| own.overlapping(in_front)).unwrap_or_default();
+        let found = || own.and_then(|own| joined_rim(&own.outline, &met)).map(Arc::new);
         // Where it is free follows from what it met: then as it was, though it may not be kept.
         let (known, free) = match known {
             Some(made) if made.met == met => {
@@ -185,7 +185,7 @@ impl Document {
     pub(super) fn remade(&self, made: &MadePart) -> Option<Arc<Form>> {
         let (part, (still, moved)) = (&made.part, split_whole_px(made.part.matrix));
         let own = made.outline.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
-        let free = own.and_then(|own| joined(own, &made.met)).map(Arc::new);
+        let free = own.and_then(|own| joined_rim(own, &made.met)).map(Arc::new);
         let (body, plain) =
             self.solve_form(part, (made.outline.clone(), made.source.as_ref()), free, still, None)?;
         let form = self.with_modifiers(Arc::new(plain), &body, &made.modifiers, still);

@@ -133,7 +133,7 @@ fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
 pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> TileGrid {
     let color = bytes(background);
     let side = canvas.width as usize;
-    let open = border::joined_to_border(canvas, |i| {
+    let open = border::connected_to_border(canvas, |i| {
         is_near(tiles.pixel((i % side) as i32, (i / side) as i32), color)
     });
     let pixel = |x: usize, y: usize| {

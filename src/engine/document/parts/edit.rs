@@ -33,7 +33,7 @@ impl Document {
         let stays = |id: &str| list.iter().any(|part| part.id == id);
         let goes = |part: &Arc<Part>| !stays(&part.id);
         let mut next = match self.parts.list.iter().any(goes) {
-            true => self.lifted_off(|id| !stays(id)),
+            true => self.detach(|id| !stays(id)),
             false => self.clone(),
         };
         if list.is_empty() {
@@ -106,7 +106,7 @@ impl Document {
     pub fn off_parts(&self, list: Vec<Arc<Part>>) -> Document {
         let parts = Arc::new(Parts { list, ..Parts::default() });
         let placed = Document { parts, ..self.clone() }.with_homes_placed();
-        Document { parts: Arc::default(), ..placed.lifted_off(|_| true) }
+        Document { parts: Arc::default(), ..placed.detach(|_| true) }
     }
 
     /// With the outlines that follow a kept selection keeping it as a picture.

@@ -3,7 +3,7 @@
 
 use super::{Inflation, OutlineSource, Part, PartKind, Parts, ProfilePicture};
 use crate::document::{Document, NamedSelection};
-use crate::math::range::{at_most, within};
+use crate::math::range::{at_most, check_range};
 use crate::math::{COORDINATE, PlaneMap, UNIT, Vec2, Vec3};
 use crate::paint::HomeFrame;
 use crate::shading::Light;
@@ -76,7 +76,7 @@ impl Parts {
 
 impl Part {
     /// Its readings of the pen, and the values that it takes in a description.
-    pub(in crate::document) fn measured(&self) -> (usize, usize) {
+    pub(in crate::document) fn count_values(&self) -> (usize, usize) {
         /// More than any part takes without its lists.
         const A_PART: usize = 300;
         const A_STROKE: usize = 24;
@@ -115,15 +115,15 @@ impl Part {
             return Err(format!("a part cannot have the id “{}”", HomeFrame::CANVAS));
         }
         if let Combine::Union { smooth } = self.combine {
-            within("the union's smoothness", smooth, &Combine::SMOOTH)?;
+            check_range("the union's smoothness", smooth, &Combine::SMOOTH)?;
         }
-        within("the tilt", self.tilt_deg.x, &Self::TILT)?;
-        within("the tilt", self.tilt_deg.y, &Self::TILT)?;
-        within("how far it is raised", self.raise, &Self::RAISE)?;
+        check_range("the tilt", self.tilt_deg.x, &Self::TILT)?;
+        check_range("the tilt", self.tilt_deg.y, &Self::TILT)?;
+        check_range("how far it is raised", self.raise, &Self::RAISE)?;
         self.matrix
             .to_cols_array()
             .iter()
-            .try_for_each(|v| within("the matrix", *v, &Self::MATRIX))?;
+            .try_for_each(|v| check_range("the matrix", *v, &Self::MATRIX))?;
         if PlaneMap::affine(self.matrix.to_cols_array().map(f64::from)).is_none() {
             return Err("the matrix cannot be inverted: it has no area".into());
         }
@@ -158,81 +158,89 @@ impl OutlineSource {
 }
 
 fn place(what: &str, p: Vec2) -> Result<(), String> {
-    within(what, p.x, &COORDINATE)?;
-    within(what, p.y, &COORDINATE)
+    check_range(what, p.x, &COORDINATE)?;
+    check_range(what, p.y, &COORDINATE)
 }
 
 impl PartKind {
     fn fits(&self) -> Result<(), String> {
         match self {
             PartKind::Inflate { inflation, .. } => {
-                within("the puff", inflation.puff, &Inflation::PUFF)?;
-                within("the profile", inflation.profile, &Inflation::PROFILE)?;
-                within("the rim", inflation.rim_deg, &Inflation::RIM)
+                check_range("the puff", inflation.puff, &Inflation::PUFF)?;
+                check_range("the profile", inflation.profile, &Inflation::PROFILE)?;
+                check_range("the rim", inflation.rim_deg, &Inflation::RIM)
             }
             PartKind::Bevel { bevel, .. } => {
-                within("the bevel's width", bevel.width, &Bevel::WIDTH)?;
-                within("the bevel's height", bevel.height, &Bevel::HEIGHT)?;
+                check_range("the bevel's width", bevel.width, &Bevel::WIDTH)?;
+                check_range("the bevel's height", bevel.height, &Bevel::HEIGHT)?;
                 let BevelCurve::Points(points) = &bevel.curve else { return Ok(()) };
                 at_most("points of the bevel's curve", points.len(), BevelCurve::MOST_POINTS)?;
                 points.iter().try_for_each(|p| {
-                    within("a point of the bevel's curve", p.x, &UNIT)?;
-                    within("a point of the bevel's curve", p.y, &UNIT)
+                    check_range("a point of the bevel's curve", p.x, &UNIT)?;
+                    check_range("a point of the bevel's curve", p.y, &UNIT)
                 })
             }
             PartKind::Primitive(body) => {
                 place("the middle", body.center)?;
                 let Vec3 { x, y, z } = body.half;
-                [body.radius, body.length, body.tube, x, y, z]
-                    .iter()
-                    .try_for_each(|side| within("a side of the body", *side, &Primitive::LENGTH))?;
-                within("the radius of its edges", body.round, &Primitive::ROUND)?;
+                [body.radius, body.length, body.tube, x, y, z].iter().try_for_each(|side| {
+                    check_range("a side of the body", *side, &Primitive::LENGTH)
+                })?;
+                check_range("the radius of its edges", body.round, &Primitive::ROUND)?;
                 body.turn_deg
                     .to_array()
                     .iter()
-                    .try_for_each(|turn| within("its turn", *turn, &Primitive::TURN))
+                    .try_for_each(|turn| check_range("its turn", *turn, &Primitive::TURN))
             }
             PartKind::Lathe { axis, puff, .. } => {
-                within("the puff", *puff, &Inflation::PUFF)?;
+                check_range("the puff", *puff, &Inflation::PUFF)?;
                 axis.iter().flatten().try_for_each(|p| place("the axis", *p))
             }
             PartKind::Sweep { balls, puff } => {
-                within("the puff", *puff, &Inflation::PUFF)?;
+                check_range("the puff", *puff, &Inflation::PUFF)?;
                 at_most("balls of a sweep", balls.len(), Ball::MOST)?;
                 balls.iter().try_for_each(|ball| {
                     place("a ball", ball.at)?;
-                    within("the radius of a ball", ball.radius, &Ball::RADIUS)
+                    check_range("the radius of a ball", ball.radius, &Ball::RADIUS)
                 })
             }
             PartKind::Touches { touches, .. } => {
                 at_most("touches", touches.len(), Touch::MOST)?;
                 touches.iter().try_for_each(|touch| {
                     place("a touch", touch.at)?;
-                    within("the radius of a touch", touch.radius, &Touch::RADIUS)?;
-                    within("the reach of a touch", touch.reach, &Touch::REACH)?;
+                    check_range("the radius of a touch", touch.radius, &Touch::RADIUS)?;
+                    check_range("the reach of a touch", touch.reach, &Touch::REACH)?;
                     touch
                         .normal
                         .to_array()
                         .iter()
-                        .try_for_each(|v| within("a touch's normal", *v, &(-1.0..=1.0)))
+                        .try_for_each(|v| check_range("a touch's normal", *v, &(-1.0..=1.0)))
                 })
             }
             PartKind::Sculpt { strokes, .. } => {
                 let samples: usize = strokes.iter().map(|stroke| stroke.samples.len()).sum();
                 at_most("samples of sculpting", samples + strokes.len(), SculptStroke::MOST)?;
                 strokes.iter().try_for_each(|stroke| {
-                    within("the size of a stroke", stroke.size, &SculptStroke::SIZE)?;
-                    within("the hardness of a stroke", stroke.hardness, &SculptStroke::HARDNESS)?;
-                    within("the strength of a stroke", stroke.strength, &SculptStroke::STRENGTH)?;
+                    check_range("the size of a stroke", stroke.size, &SculptStroke::SIZE)?;
+                    check_range(
+                        "the hardness of a stroke",
+                        stroke.hardness,
+                        &SculptStroke::HARDNESS,
+                    )?;
+                    check_range(
+                        "the strength of a stroke",
+                        stroke.strength,
+                        &SculptStroke::STRENGTH,
+                    )?;
                     stroke.samples.iter().try_for_each(|(at, pressure)| {
                         place("a sample", *at)?;
-                        within("the pressure of a sample", *pressure, &SculptStroke::PRESSURE)
+                        check_range("the pressure of a sample", *pressure, &SculptStroke::PRESSURE)
                     })
                 })
             }
             PartKind::Lines { lines, .. } => {
-                within("how far the form turns at lines", lines.angle_deg, &Lines::ANGLE)?;
-                within("the reach of lines", lines.reach, &Lines::REACH)
+                check_range("how far the form turns at lines", lines.angle_deg, &Lines::ANGLE)?;
+                check_range("the reach of lines", lines.reach, &Lines::REACH)
             }
             PartKind::Profiles { shadings, .. } => {
                 if !(2..=MOST_PROFILES).contains(&shadings.len()) {
@@ -246,7 +254,7 @@ impl PartKind {
                     light
                         .to_array()
                         .iter()
-                        .try_for_each(|v| within("a light", *v, &ProfilePicture::LIGHT))?;
+                        .try_for_each(|v| check_range("a light", *v, &ProfilePicture::LIGHT))?;
                     if Light::has_direction(light) {
                         Ok(())
                     } else {
@@ -256,10 +264,10 @@ impl PartKind {
             }
             PartKind::Maps(maps) => maps.source.fits(),
             PartKind::Relief { detail, .. } => {
-                within("the coarse detail", detail.coarse, &Detail::HEIGHT)?;
-                within("the fine detail", detail.fine, &Detail::HEIGHT)?;
-                within("the detail's radius", detail.radius, &Detail::RADIUS)?;
-                within("the detail's edge", detail.edge, &Detail::EDGE)
+                check_range("the coarse detail", detail.coarse, &Detail::HEIGHT)?;
+                check_range("the fine detail", detail.fine, &Detail::HEIGHT)?;
+                check_range("the detail's radius", detail.radius, &Detail::RADIUS)?;
+                check_range("the detail's edge", detail.edge, &Detail::EDGE)
             }
         }
     }

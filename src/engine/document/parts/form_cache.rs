@@ -72,7 +72,7 @@ impl FormArea {
     }
 
     /// The corners of the box around what is covered, canvas px.
-    pub fn covered(&self) -> (Vec2, Vec2) {
+    pub fn covered_box(&self) -> (Vec2, Vec2) {
         let side = |v: i32, from: i32| v.saturating_add(from) as f32;
         let corner = |x: i32, y: i32| Vec2::new(side(x, self.corner.0), side(y, self.corner.1));
         (corner(self.covered.x0, self.covered.y0), corner(self.covered.x1, self.covered.y1))
@@ -233,7 +233,7 @@ impl PartCache {
 impl Document {
     /// The outline of a part that was found last, as far as that was not moved, and whether its
     /// place was lost; `None` if what it is made of has changed.
-    pub(super) fn known_outline(
+    pub(super) fn cached_outline(
         &self,
         part: &Part,
         source: &OutlineKey,
@@ -257,7 +257,7 @@ impl Document {
 
     /// Where the form of a part lies that was made last, if neither the part nor what lies on it
     /// was changed since.
-    pub(super) fn made_area(&self, part: &Arc<Part>) -> Option<Arc<FormArea>> {
+    pub(super) fn cached_area(&self, part: &Arc<Part>) -> Option<Arc<FormArea>> {
         let made = self.parts.cache.get(&part.id)?;
         (Arc::ptr_eq(&made.part, part) && are_same_parts(&made.modifiers, &self.modifiers_of(part)))
             .then_some(made.area)

@@ -23,12 +23,12 @@ impl Document {
                 .collect();
         }
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
-        let is_missing = shown().any(|part| self.made_area(part).is_none());
+        let is_missing = shown().any(|part| self.cached_area(part).is_none());
         // What was made last may be of another version of the document.
         if is_missing && (self.has_its_surface() || self.shape_fits_in(free_bytes()).is_ok()) {
             drop(self.derived(&Progress::default()));
         }
-        shown().filter_map(|part| Some((part.clone(), self.made_area(part)?))).collect()
+        shown().filter_map(|part| Some((part.clone(), self.cached_area(part)?))).collect()
     }
 
     /// Where the forms lie that were made last, with their parts as they are now, and the map of

@@ -291,7 +291,7 @@ impl OutlineKey {
 
 /// The outline of coverage in tiles.
 fn covered(coverage: &CoverageGrid, most_px: usize) -> Option<Outline> {
-    let rect = coverage.covered();
+    let rect = coverage.covered_rect();
     if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
         return None;
     }

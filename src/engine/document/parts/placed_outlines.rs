@@ -55,7 +55,7 @@ impl Document {
     pub(super) fn own_outline(&self, part: &Part) -> Option<Arc<Outline>> {
         let source = OutlineKey::of_part(self, part)??;
         let known = self
-            .known_outline(part, &source)
+            .cached_outline(part, &source)
             .filter(|_| split_whole_px(part.matrix).0 == Affine2::IDENTITY);
         match known {
             Some((outline, _)) => Some(outline),
@@ -67,7 +67,7 @@ impl Document {
     fn placed_outline(&self, part: &Arc<Part>) -> Option<PlacedOutline> {
         let source = OutlineKey::of_part(self, part)??;
         let (still, moved) = split_whole_px(part.matrix);
-        let (outline, is_lost) = match self.known_outline(part, &source) {
+        let (outline, is_lost) = match self.cached_outline(part, &source) {
             Some(known) => known,
             None => {
                 let (outline, is_lost) = source.placed_outline(self, self.most_px())?;

@@ -36,7 +36,7 @@ impl Document {
             }
             PartKind::Bevel { bevel, .. } => {
                 let outline = own?;
-                let form = bevel::beveled(&outline, bevel);
+                let form = bevel::bevel_outline(&outline, bevel);
                 (bare(outline), form)
             }
             PartKind::Lathe { axis, puff, .. } => {

@@ -182,7 +182,7 @@ impl Document {
             OutlineSource::File(file) => sides_of(file.coverage.size()),
             OutlineSource::Selection(name) => {
                 let kept = &self.selections.iter().find(|kept| kept.name == *name)?.selection;
-                if kept.made.is_some() { canvas } else { sides(kept.coverage.covered()) }
+                if kept.made.is_some() { canvas } else { sides(kept.coverage.covered_rect()) }
             }
             OutlineSource::Path(points) => around(points.iter().map(|p| (*p, 1.0))),
             OutlineSource::Object(_) => canvas,

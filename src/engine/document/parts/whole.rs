@@ -77,7 +77,7 @@ impl<'d> Whole<'d> {
     }
 
     /// The surface; the last one if it is the same.
-    pub fn done(mut self) -> Option<Arc<Surface>> {
+    pub fn finish(mut self) -> Option<Arc<Surface>> {
         if let (None, Some((forms, surface))) = (&self.relief, &self.last)
             && forms.len() == self.added.len()
         {

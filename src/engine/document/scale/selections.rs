@@ -1,7 +1,7 @@
 //! Selections on a canvas of another size. Floor 4.
 
 use super::CanvasScale;
-use crate::document::layer::scale::covered;
+use crate::document::layer::scale::source_weights;
 use crate::document::{Document, NamedSelection};
 use crate::math::{Rect, srgb::quantize};
 use crate::paint::Selection;
@@ -38,14 +38,14 @@ impl CanvasScale {
         // Without the lock: other threads take part in resampling.
         let made =
             selection.made.map(|region| SurfaceRegion { at: region.at * self.per_axis, ..region });
-        let scaled = Arc::new(Selection::carried(self.coverage(&selection.coverage), made));
+        let scaled = Arc::new(Selection::provisional(self.coverage(&selection.coverage), made));
         // The old one is kept too, so that no other gets its address.
         lock().entry(key).or_insert((selection.clone(), scaled)).1.clone()
     }
 
     /// Coverage resampled; the uncovered part continues beyond the canvas.
     fn coverage(&self, grid: &CoverageGrid) -> CoverageGrid {
-        let Rect { x0, y0, x1, y1 } = grid.covered();
+        let Rect { x0, y0, x1, y1 } = grid.covered_rect();
         let low = |v: i32, s: f32| (f64::from(v) * f64::from(s)).floor() as i32;
         let high = |v: i32, s: f32| (f64::from(v) * f64::from(s)).ceil() as i32;
         let bounds = Rect::new(
@@ -63,9 +63,9 @@ impl CanvasScale {
             |at, bytes| {
                 let rect = at.rect();
                 let columns: Vec<_> =
-                    (rect.x0..rect.x1).map(|x| covered(x, self.per_axis.x)).collect();
+                    (rect.x0..rect.x1).map(|x| source_weights(x, self.per_axis.x)).collect();
                 for (y, row) in (rect.y0..).zip(bytes.as_chunks_mut::<TILE>().0) {
-                    let rows = covered(y, self.per_axis.y);
+                    let rows = source_weights(y, self.per_axis.y);
                     for (to, columns) in row.iter_mut().zip(&columns) {
                         let of_row = |&(y, wy): &(i32, f32)| {
                             let at = |x: i32| {

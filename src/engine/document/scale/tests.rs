@@ -1,7 +1,7 @@
 //! A document at another size must look like its picture at that size.
 
 use super::*;
-use crate::document::layer::scale::covered;
+use crate::document::layer::scale::source_weights;
 use crate::document::{
     Content, Group, Layer, LayerMask, Live, MaskKind, PixelLayer, Progress, StrokeList, flatten,
 };
@@ -198,12 +198,12 @@ fn layers_keep_their_ids_and_a_factor_of_one_keeps_everything() {
 fn weights_of_the_covered_pixels_add_up_to_one() {
     for scale in [0.3, 0.5, 0.999, 1.0, 1.7, 4.0] {
         for i in -5..50 {
-            let sum: f32 = covered(i, scale).iter().map(|&(_, weight)| weight).sum();
+            let sum: f32 = source_weights(i, scale).iter().map(|&(_, weight)| weight).sum();
             assert!((sum - 1.0).abs() < 1e-5, "{scale} {i}: {sum}");
         }
     }
-    assert_eq!(covered(3, 0.5), [(6, 0.5), (7, 0.5)]);
-    assert_eq!(covered(1, 2.0), [(0, 0.75), (1, 0.25)]);
+    assert_eq!(source_weights(3, 0.5), [(6, 0.5), (7, 0.5)]);
+    assert_eq!(source_weights(1, 2.0), [(0, 0.75), (1, 0.25)]);
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn a_stroke_paints_in_its_selection_alone_and_takes_it_along() {
 fn selections_meet_by_every_rule() {
     let old = Document::empty(SIZE).with_selection(Some(square(40, 80)));
     let covered =
-        |how| old.with_combined(square(60, 120), how).selected().map(CoverageGrid::covered);
+        |how| old.with_combined(square(60, 120), how).selected().map(CoverageGrid::covered_rect);
     let columns = |x0, x1| Some(Rect::new(x0, 20, x1, 90));
     assert_eq!(covered(SelectionMode::Replace), columns(60, 120));
     assert_eq!(covered(SelectionMode::Add), columns(40, 120));
@@ -110,7 +110,7 @@ fn selections_are_kept_by_name_each_once() {
     let two = one.with_kept_selection("a").unwrap().with_selection(Some(square(10, 20)));
     let again = two.with_kept_selection("a").unwrap();
     assert_eq!(again.selections.len(), 1);
-    assert_eq!(again.selections[0].selection.coverage.covered(), Rect::new(10, 20, 20, 90));
+    assert_eq!(again.selections[0].selection.coverage.covered_rect(), Rect::new(10, 20, 20, 90));
     assert!(again.without_kept_selection("b").is_none());
     assert!(again.without_kept_selection("a").unwrap().selections.is_empty());
 }

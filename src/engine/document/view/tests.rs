@@ -168,7 +168,7 @@ fn differences(a: &Document, b: &Document) -> (f64, u8) {
 fn a_picture_of_the_unwrapped_plane_lies_on_the_surface_as_what_it_was_taken_from() {
     let document = ball();
     for scale in [1, 2, 4] {
-        let seen = unwrapped(
+        let seen = render_unwrapped(
             &document,
             None,
             UnwrapOptions { scale, ..Default::default() },

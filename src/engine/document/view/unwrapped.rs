@@ -70,7 +70,7 @@ const BLEED_PX: u32 = 6;
 ///
 /// `layer`: shows that layer alone; if it is bent by D_s, in the plane as its own operator and
 /// anchors lay it.
-pub fn unwrapped(
+pub fn render_unwrapped(
     document: &Document,
     layer: Option<&Layer>,
     options: UnwrapOptions,
@@ -185,7 +185,7 @@ fn pulled(painting: &Painting, view: &PlaneView, scale: u32) -> (Size, Vec<[f32;
     pixels.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
         for (x, pixel) in row.iter_mut().enumerate() {
             let p = corner + (vec2(x as f32, y as f32) + 0.5) / scale as f32;
-            if let Some(point) = view.between(p) {
+            if let Some(point) = view.sample(p) {
                 *pixel = painting.between(point);
             }
         }

@@ -51,7 +51,7 @@ impl WobbleScene {
 
     /// Premultiplied pixels, row by row, as seen from an angle to the right (positive) or to the
     /// left, radians.
-    pub fn seen_from(&self, angle_rad: f32) -> Vec<[u8; 4]> {
+    pub fn render_from(&self, angle_rad: f32) -> Vec<[u8; 4]> {
         let lean = -angle_rad.max(-1.0).min(1.0).tan();
         let width = self.size.width as usize;
         let mut out = vec![[0u8; 4]; self.size.area()];
@@ -125,9 +125,9 @@ mod tests {
     #[test]
     fn from_the_front_the_picture_is_what_it_is_and_without_gaps_from_aside() {
         let scene = scene();
-        assert_eq!(scene.seen_from(0.0), scene.pixels.values());
+        assert_eq!(scene.render_from(0.0), scene.pixels.values());
         for angle in [-0.17f32, 0.17, f32::NAN] {
-            assert!(scene.seen_from(angle).iter().all(|pixel| pixel[3] == 255), "{angle}");
+            assert!(scene.render_from(angle).iter().all(|pixel| pixel[3] == 255), "{angle}");
         }
     }
 
@@ -135,7 +135,7 @@ mod tests {
     fn from_the_right_what_is_near_goes_to_the_left() {
         let scene = scene();
         let pole = |angle: f32| {
-            let row = &scene.seen_from(angle)[40 * 96..41 * 96];
+            let row = &scene.render_from(angle)[40 * 96..41 * 96];
             let lit: Vec<usize> = (0..96).filter(|&x| row[x][1] > 100).collect();
             lit.iter().sum::<usize>() as f32 / lit.len().max(1) as f32
         };

@@ -4,7 +4,7 @@
 use super::curve::ToneCurve;
 use super::table::ColorTable;
 use crate::math::srgb::Color;
-use crate::math::{Range, range::held};
+use crate::math::{Range, range::clamp_to_range};
 use crate::paint::GradientStop;
 
 /// What a parameter is called.
@@ -98,7 +98,7 @@ pub(super) struct Holder;
 
 impl ParameterVisitor for Holder {
     fn number(&mut self, parameter: NumberParameter, value: &mut f32) {
-        *value = held(*value, &parameter.range());
+        *value = clamp_to_range(*value, &parameter.range());
     }
 
     fn flag(&mut self, _: ParameterName, _: bool, _: &mut bool) {}
@@ -110,7 +110,7 @@ impl ParameterVisitor for Holder {
     }
 
     fn stops(&mut self, _: ParameterName, value: &mut Vec<GradientStop>) {
-        value.iter_mut().for_each(|stop| stop.t = held(stop.t, &crate::math::UNIT));
+        value.iter_mut().for_each(|stop| stop.t = clamp_to_range(stop.t, &crate::math::UNIT));
         value.sort_by(|a, b| a.t.total_cmp(&b.t));
         value.truncate(crate::paint::Gradient::MOST_STOPS);
         if value.is_empty() {

@@ -28,7 +28,7 @@ impl PartialEq for LiveAdjustment {
 impl LiveAdjustment {
     /// With the nearest numbers that a document may hold.
     pub fn new(adjustment: ColorAdjustment) -> Self {
-        Self { params: Arc::new(adjustment.held()), prepared: Arc::default() }
+        Self { params: Arc::new(adjustment.clamp_to_ranges()), prepared: Arc::default() }
     }
 
     /// What it was made of.

@@ -110,7 +110,7 @@ impl RoundTip {
     }
 
     /// The same footprint elsewhere.
-    pub(super) fn about(self, at: Vec2) -> Self {
+    pub(super) fn with_center(self, at: Vec2) -> Self {
         Self { at, ..self }
     }
 

@@ -91,7 +91,7 @@ impl Speeds {
             self.px_per_sec =
                 Some(self.px_per_sec.map_or(now, |before| before + (now - before) * share));
             for (pace, over_secs) in self.paces.iter_mut().zip(self.over_secs) {
-                *pace += (now - *pace) * settled(elapsed, over_secs);
+                *pace += (now - *pace) * smoothing_share(elapsed, over_secs);
             }
             (self.at_secs, self.since_px) = (secs, 0.0);
         }
@@ -103,7 +103,7 @@ impl Speeds {
 }
 
 /// How far an average over `time` has moved to a new value after `elapsed`, `[0, 1]`.
-pub(super) fn settled(elapsed: f32, time: f32) -> f32 {
+pub(super) fn smoothing_share(elapsed: f32, time: f32) -> f32 {
     if time > 0.0 { 1.0 - (-elapsed / time).exp() } else { 1.0 }
 }
 

@@ -441,7 +441,7 @@ fn sizes_that_stray_make_large_dabs_fainter() {
 fn a_stroke_moved_by_whole_pixels_gives_its_dabs_moved_to_the_bit() {
     let samples = |by: Vec2| -> Vec<Sample> {
         let at = |i: u32| vec2(30.0 + 3.7 * i as f32, 60.0 + 20.0 * (i as f32 * 0.4).sin());
-        (0..40).map(|i| Sample { at: at(i) + by, ..Sample::at(Vec2::ZERO) }.settled()).collect()
+        (0..40).map(|i| Sample { at: at(i) + by, ..Sample::at(Vec2::ZERO) }.normalized()).collect()
     };
     let by = vec2(1037.0, 222.0);
     let (here, there) =

@@ -2,7 +2,7 @@
 //! (`rules`).
 
 use super::rules::{DabRules, Due, Moment};
-use super::stylus::{CurvePoint, settled};
+use super::stylus::{CurvePoint, smoothing_share};
 use super::{CurveSegment, Dab};
 use crate::math::Vec2;
 use crate::paint::brush_options::Cycle;
@@ -62,7 +62,7 @@ impl Walk {
 
     /// A dab at a point; the next one is due a step farther.
     fn stand(&mut self, place: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
-        let lag = settled(1.0, rules.brush.stylus.lag_dabs);
+        let lag = smoothing_share(1.0, rules.brush.stylus.lag_dabs);
         let at = self.lagging.map_or(place.at, |last| last.lerp(place.at, lag));
         let at = if lag < 1.0 { at } else { place.at };
         self.lagging = Some(at);
@@ -77,7 +77,7 @@ impl Walk {
         let inputs = rules.inputs(&moment);
         dabs.extend(rules.dab(&moment, inputs));
         let custom = rules.custom(&inputs);
-        let share = settled(1.0, rules.brush.stylus.custom_dabs);
+        let share = smoothing_share(1.0, rules.brush.stylus.custom_dabs);
         self.custom = Some(self.custom.map_or(custom, |before| before + (custom - before) * share));
         self.due = rules.due(&inputs);
         self.left = 1.0;
@@ -199,7 +199,7 @@ impl Walk {
     fn go(&mut self, place: &CurvePoint, way: Vec2, [px, measured_px]: [f64; 2], rules: &DabRules) {
         let ahead = way.normalize_or_zero();
         self.direction +=
-            (ahead - self.direction) * settled(px as f32, rules.brush.stylus.direction_px);
+            (ahead - self.direction) * smoothing_share(px as f32, rules.brush.stylus.direction_px);
         self.traveled_px += measured_px;
         self.turn_cycle(place, measured_px as f32, rules);
     }

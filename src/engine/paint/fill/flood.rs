@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Everything that is joined to a pixel of the canvas; `None` if that pixel may not be touched.
 /// `tolerance` in bytes.
-pub(super) fn joined(
+pub(super) fn connected_area(
     (x, y): (i32, i32),
     canvas: Size,
     part: &CanvasPart,

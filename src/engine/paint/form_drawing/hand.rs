@@ -94,7 +94,7 @@ impl DrawingHand {
                 * tapered(end, taper);
             let at = at + self.strayed(at);
             let (pressure, time_secs) = (pressure.max(LEAST), along[i] / SPEED);
-            Sample { pressure, time_secs, ..Sample::at(at) }.settled()
+            Sample { pressure, time_secs, ..Sample::at(at) }.normalized()
         };
         let samples: Vec<Sample> = (0..points.len()).map(sample).collect();
         let mut brush = drawing.brush.clone();

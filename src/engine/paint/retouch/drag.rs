@@ -54,7 +54,7 @@ pub(super) fn smudged(
         let here = vec2(x as f32 + 0.5, y as f32 + 0.5);
         let gap = (there - before.at) - (now[colors.len()] - dab.at);
         let dragged = here - solved(jacobian, gap).clamp_length_max(FARTHEST_STEPS * step.length());
-        let (old, new) = (own.pixel(x, y), reader.between(canvas.clamped(dragged)));
+        let (old, new) = (own.pixel(x, y), reader.sample(canvas.clamped(dragged)));
         colors.push(std::array::from_fn(|c| old[c] + (new[c] - old[c]) * kept));
     });
     Some(colors)
@@ -84,7 +84,7 @@ pub(super) fn cloned(
         let mut sum = [0.0; 4];
         for (i, j) in (0..count).flat_map(|j| (0..count).map(move |i| (i, j))) {
             let share = |i: i32| (i as f32 + 0.5) / count as f32 - 0.5;
-            let point = reader.between(there + offset + jacobian * vec2(share(i), share(j)));
+            let point = reader.sample(there + offset + jacobian * vec2(share(i), share(j)));
             sum = std::array::from_fn(|c| sum[c] + point[c]);
         }
         colors.push(sum.map(|v| v / (count * count) as f32));

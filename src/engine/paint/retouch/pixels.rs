@@ -98,7 +98,7 @@ impl<'p> PixelReader<'p> {
     }
 
     /// The color at a canvas point, interpolated from the four pixels around it.
-    pub fn between(&mut self, at: Vec2) -> [f32; 4] {
+    pub fn sample(&mut self, at: Vec2) -> [f32; 4] {
         let corner = (at - 0.5).floor();
         let t = at - 0.5 - corner;
         let (x, y) = (corner.x as i32, corner.y as i32);

@@ -88,7 +88,7 @@ fn blurred(
 /// The covered rectangle with this margin, within the canvas, and its coverage; `None` if it is
 /// empty.
 fn around(grid: &CoverageGrid, reach: i32, canvas: Rect) -> Option<(Rect, Plane<u8>)> {
-    let rect = grid.covered().grown(reach).intersect(canvas);
+    let rect = grid.covered_rect().grown(reach).intersect(canvas);
     (!rect.is_empty()).then(|| (rect, grid.to_plane(rect)))
 }
 

@@ -39,7 +39,7 @@ fn the_whole_canvas_takes_no_memory_but_at_its_border() {
     let whole = CoverageGrid::filled(Rect::new(0, 0, 4096, 4096));
     assert_eq!((whole.bytes(), whole.area_px()), (0, 4096.0 * 4096.0));
     let odd = CoverageGrid::filled(Rect::new(0, 0, 1920, 1080));
-    assert_eq!((odd.covered(), odd.area_px()), (Rect::new(0, 0, 1920, 1080), 1920.0 * 1080.0));
+    assert_eq!((odd.covered_rect(), odd.area_px()), (Rect::new(0, 0, 1920, 1080), 1920.0 * 1080.0));
     assert_eq!(odd.bytes(), 30 * (TILE_AREA + 64));
 }
 
@@ -52,6 +52,6 @@ fn a_map_cut_into_tiles_comes_back_and_its_bounds_are_tight() {
         );
     let grid = CoverageGrid::from_plane(&plane, -5, 3);
     assert_eq!(grid.to_plane(Rect::new(-5, 3, 145, 93)), plane);
-    assert_eq!(grid.covered(), Rect::new(65, 44, 75, 93));
+    assert_eq!(grid.covered_rect(), Rect::new(65, 44, 75, 93));
     assert!(CoverageGrid::from_plane(&plane.map(|_| 0), 0, 0).is_empty());
 }

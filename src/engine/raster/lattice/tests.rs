@@ -54,13 +54,13 @@ fn what_displaces_nothing_is_not_held_and_no_number_is_none() {
 fn a_displacement_moved_by_whole_cells_is_the_same_one_there() {
     let lattice = bump(vec2(60.0, 70.0), 50.0, vec2(12.0, -7.0));
     let all = Rect::new(-999, -999, 999, 999);
-    let there = lattice.carried(&PlaneMap::translation(vec2(24.0, -8.0)), all);
+    let there = lattice.transformed(&PlaneMap::translation(vec2(24.0, -8.0)), all);
     assert_eq!(there.node(10, 7), lattice.node(7, 8));
     assert!(there.node(10, 7) != Vec2::ZERO);
-    assert_eq!(there.carried(&PlaneMap::translation(vec2(-24.0, 8.0)), all), lattice);
+    assert_eq!(there.transformed(&PlaneMap::translation(vec2(-24.0, 8.0)), all), lattice);
     // Turned by a quarter, its vectors turn.
     let turn = PlaneMap::rotation(90.0, vec2(0.0, 0.0));
-    let (turned, p) = (lattice.carried(&turn, all), vec2(56.0, 64.0));
+    let (turned, p) = (lattice.transformed(&turn, all), vec2(56.0, 64.0));
     let expected = turn.to_canvas(lattice.at(p).by).unwrap();
     assert!((turned.at(turn.to_canvas(p).unwrap()).by - expected).length() < 0.05);
 }

@@ -170,7 +170,7 @@ impl SourceWindow {
         sum
     }
 
-    /// Like [`SourceWindow::reduced`], with known weights if there are any.
+    /// Like [`SourceWindow::area_mean`], with known weights if there are any.
     fn patch(
         &self,
         points: &PointRow,

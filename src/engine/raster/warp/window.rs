@@ -36,7 +36,7 @@ impl SourceWindow {
                 self.linear(p)
             }
             _ if !right.reduces && !down.reduces => self.cubic(p, filter),
-            _ => self.reduced(p, [right, down]),
+            _ => self.area_mean(p, [right, down]),
         }
     }
 
@@ -68,7 +68,7 @@ impl SourceWindow {
     }
 
     /// The pixels under a parallelogram, weighted along its two sides.
-    pub fn reduced(&self, p: Vec2, axes: [PatchSide; 2]) -> [f32; 4] {
+    pub fn area_mean(&self, p: Vec2, axes: [PatchSide; 2]) -> [f32; 4] {
         let sides = Mat2::from_cols(axes[0].side, axes[1].side);
         let determinant = sides.determinant();
         // Two collinear sides: treated as a square with the longer one's length.

@@ -168,7 +168,7 @@ impl EnvironmentMap {
     }
 
     /// The mean light over a cone of about `width_rad` across.
-    pub fn around(&self, e: Vec3, width_rad: f32) -> Vec3 {
+    pub fn mean_over_cone(&self, e: Vec3, width_rad: f32) -> Vec3 {
         self.at_layer(e, lat_long_place(e.x, e.y, e.z), self.layers().layer(width_rad)).into()
     }
 
@@ -177,7 +177,7 @@ impl EnvironmentMap {
     ///
     /// The footprint is the ellipse with J = [dx, dy]: taps along its major axis, each as wide as
     /// the minor one.
-    pub fn over(&self, e: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
+    pub fn mean_over_pixel(&self, e: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
         let layers = self.layers();
         let line = TapLine::of(dx, dy, layers);
         let tap = |i: usize| {
@@ -225,7 +225,7 @@ impl EnvironmentMap {
     #[inline(always)]
     fn at_place(&self, place: Vec2) -> Vec3A {
         let Size { width, height } = self.picture.size;
-        Spot::around(place, width as i32, height as i32).mean(|i| self.picture_texel(i))
+        Spot::wrapped(place, width as i32, height as i32).mean(|i| self.picture_texel(i))
     }
 
     /// A texel of the picture by its number.

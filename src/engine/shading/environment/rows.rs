@@ -1,5 +1,5 @@
 //! Reads an environment for a row of pixels: the taps of many footprints side by side. Floor 3. The
-//! readable twin is `EnvironmentMap::over`; both compute the same bits.
+//! readable twin is `EnvironmentMap::mean_over_pixel`; both compute the same bits.
 
 use super::level::{SphereLevel, Spot};
 use super::map::{EnvironmentMap, Layers, TapLine};
@@ -28,8 +28,8 @@ struct LightTaps {
 }
 
 impl EnvironmentMap {
-    /// [`EnvironmentMap::over`] at the covered pixels of a row.
-    pub fn over_row(
+    /// [`EnvironmentMap::mean_over_pixel`] at the covered pixels of a row.
+    pub fn mean_over_pixel_row(
         &self,
         e: &Directions,
         dx: &Directions,
@@ -59,8 +59,8 @@ impl EnvironmentMap {
         }
     }
 
-    /// [`EnvironmentMap::around`] at the pixels of a row that `wanted` is not 0 at.
-    pub fn around_row(
+    /// [`EnvironmentMap::mean_over_cone`] at the pixels of a row that `wanted` is not 0 at.
+    pub fn mean_over_cone_row(
         &self,
         e: &Directions,
         width_rad: &RowValues,
@@ -173,7 +173,7 @@ impl SpotRow {
             let is_picture = self.layer[k] < 0;
             let columns = if is_picture { picture.width as i32 } else { 2 * rows };
             let rows = if is_picture { picture.height as i32 } else { rows };
-            let spot = Spot::around(vec2(u[k], v[k]), columns, rows);
+            let spot = Spot::wrapped(vec2(u[k], v[k]), columns, rows);
             for i in 0..4 {
                 self.index[i][k] = spot.index[i];
                 self.weight[i][k] = spot.weight[i];

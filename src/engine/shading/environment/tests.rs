@@ -33,14 +33,14 @@ fn light_comes_from_where_it_stands_turned_and_exposed() {
     let mut environment = lat_long(256, 128, sky);
     for d in directions() {
         assert!(
-            (environment.environment_light().along(d) - sky(d)).abs().max_element() < 0.02,
+            (environment.environment_light().radiance(d) - sky(d)).abs().max_element() < 0.02,
             "{d}"
         );
     }
     environment.rotation = 90.0;
     environment.exposure = 1.0;
     // R_y(90°) takes +z to +x.
-    let found = environment.environment_light().along(Vec3::Z);
+    let found = environment.environment_light().radiance(Vec3::Z);
     assert!((found - 2.0 * sky(Vec3::X)).abs().max_element() < 0.02, "{found}");
 }
 
@@ -74,11 +74,11 @@ fn the_same_light_is_found_whatever_the_projection() {
         for d in directions().chain([Vec3::NEG_Z]) {
             let tolerance = if d.z < -0.97 { 0.2 } else { 0.04 };
             assert!(
-                (seen.along(d) - sky(d)).abs().max_element() < tolerance,
+                (seen.radiance(d) - sky(d)).abs().max_element() < tolerance,
                 "{projection:?} {d} {}",
-                seen.along(d)
+                seen.radiance(d)
             );
-            let blurred = seen.around(d, 0.1);
+            let blurred = seen.mean_over_cone(d, 0.1);
             assert!(
                 (blurred - sky(d)).abs().max_element() < tolerance,
                 "{projection:?} {d} {blurred}"
@@ -97,10 +97,10 @@ fn wide_footprints_see_the_mean() {
     for i in 0..300 {
         let d = random_direction(i);
         let (a, b) = d.any_orthonormal_pair();
-        let found = seen.over(d, a * 0.6, b * 0.6).x;
+        let found = seen.mean_over_pixel(d, a * 0.6, b * 0.6).x;
         assert!((found - 0.5).abs() < 0.1, "{d}: {found}");
     }
-    assert_eq!(seen.over(Vec3::X, Vec3::ZERO, Vec3::ZERO), seen.along(Vec3::X));
+    assert_eq!(seen.mean_over_pixel(Vec3::X, Vec3::ZERO, Vec3::ZERO), seen.radiance(Vec3::X));
     assert_eq!(seen.brightest(), 1.0);
 }
 
@@ -116,7 +116,8 @@ fn neither_the_wrap_nor_the_poles_can_be_seen() {
         // The steepest change of the blurred light, in units of the blur: the same everywhere.
         let steepest = |at: &dyn Fn(f32) -> Vec3| {
             (0..2000).map(|i| i as f32 * step).fold(0.0f32, |most, t| {
-                let change = seen.around(at(t), width).x - seen.around(at(t + step), width).x;
+                let change = seen.mean_over_cone(at(t), width).x
+                    - seen.mean_over_cone(at(t + step), width).x;
                 most.max(change.abs() * width / step)
             })
         };
@@ -190,17 +191,25 @@ fn rows_read_the_same_bits_as_single_pixels() {
         };
         let covered: Vec<u8> = (0..60).map(|x| if x == 20 { 0 } else { 255 }).collect();
         let [mut over, mut around, mut matt] = [[[1.0; TILE]; 3]; 3];
-        seen.over_row(&row(&e), &row(&dx), &row(&dy), &covered, &mut over);
+        seen.mean_over_pixel_row(&row(&e), &row(&dx), &row(&dy), &covered, &mut over);
         let widths = std::array::from_fn(|x| size(x as u32, 3));
-        seen.around_row(&row(&e), &widths, &std::array::from_fn(|x| (x % 5) as f32), &mut around);
+        seen.mean_over_cone_row(
+            &row(&e),
+            &widths,
+            &std::array::from_fn(|x| (x % 5) as f32),
+            &mut around,
+        );
         seen.matt_row(&row(&e), &mut matt);
         for x in 0..TILE {
             let at = |light: &Light3| vec3(light[0][x], light[1][x], light[2][x]);
             let (d, is_covered) = (e(x as u32), covered.get(x).is_some_and(|c| *c > 0));
-            let expected =
-                if is_covered { seen.over(d, dx(x as u32), dy(x as u32)) } else { Vec3::ZERO };
+            let expected = if is_covered {
+                seen.mean_over_pixel(d, dx(x as u32), dy(x as u32))
+            } else {
+                Vec3::ZERO
+            };
             assert_eq!(at(&over), expected, "{projection:?} {x}");
-            let expected = if x % 5 > 0 { seen.around(d, widths[x]) } else { Vec3::ZERO };
+            let expected = if x % 5 > 0 { seen.mean_over_cone(d, widths[x]) } else { Vec3::ZERO };
             assert_eq!(at(&around), expected, "{projection:?} {x}");
             assert_eq!(at(&matt), seen.matt(d), "{x}");
         }
@@ -236,9 +245,11 @@ fn senseless_directions_and_tiny_pictures_find_some_light() {
             let seen = Environment { projection, ..Environment::new(String::new(), picture) }
                 .environment_light();
             for d in [Vec3::ZERO, Vec3::NAN, Vec3::NEG_Z, Vec3::Y] {
-                for found in
-                    [seen.over(d, Vec3::NAN, Vec3::X), seen.over(d, Vec3::X, Vec3::Y), seen.matt(d)]
-                {
+                for found in [
+                    seen.mean_over_pixel(d, Vec3::NAN, Vec3::X),
+                    seen.mean_over_pixel(d, Vec3::X, Vec3::Y),
+                    seen.matt(d),
+                ] {
                     assert!((found - 0.5).abs().max_element() < 1e-4, "{projection:?} {d} {found}");
                 }
             }

@@ -47,7 +47,12 @@ pub fn add_matt(
     let (rd, rs) = (diffuse.linear(), mirrored_color(shading));
     let kept: [f32; 3] = std::array::from_fn(|c| rd[c] * (1.0 - rs[c]));
     let (mut rho, mut delta) = ([0.0; TILE], [0.0; TILE]);
-    matt_row(surface_row.seen_normal(), &surface_row.seen(&lit.direction), &mut rho, &mut delta);
+    matt_row(
+        surface_row.seen_normal(),
+        &surface_row.in_pixel_frames(&lit.direction),
+        &mut rho,
+        &mut delta,
+    );
     if diffuse.is_scaled() {
         relief.turn(surface_row, lit.toward());
         lobes::scale(&mut rho, diffuse.scaling, relief.exponentials(diffuse.scaling), &delta);
@@ -63,7 +68,8 @@ fn add_glossy(
     light: &mut Light3,
 ) {
     let mut row = GlossyRow { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
-    let (normal, direction) = (surface_row.seen_normal(), surface_row.seen(&lit.direction));
+    let (normal, direction) =
+        (surface_row.seen_normal(), surface_row.in_pixel_frames(&lit.direction));
     glossy_row(normal, &direction, shading.nu, shading.nv, &mut row);
     let specular = &shading.specular;
     if specular.is_scaled() {
@@ -136,20 +142,20 @@ fn mirrored_color(shading: &Shading) -> [f32; 3] {
 /// Shirley 2000, eq. 5).
 #[inline(always)]
 pub fn matt(n_l: f32, n_e: f32) -> f32 {
-    lit(n_l) * lifted(fast::max(n_e, 0.0))
+    lit(n_l) * matt_share(fast::max(n_e, 0.0))
 }
 
 /// The share of [`matt`] that depends on the light.
 #[inline(always)]
 fn lit(n_l: f32) -> f32 {
     let n_l = fast::max(n_l, 0.0);
-    28.0 / 23.0 * lifted(n_l) * n_l
+    28.0 / 23.0 * matt_share(n_l) * n_l
 }
 
 /// 1 − (1 − cos/2)⁵: the matt term's part of either direction. Under even light of 1 the whole term
 /// is that of the view, times R_d (1 − R_s): the integral over the other one is 23/28.
 #[inline(always)]
-pub fn lifted(cosine: f32) -> f32 {
+pub fn matt_share(cosine: f32) -> f32 {
     1.0 - power_5(1.0 - 0.5 * cosine)
 }
 
@@ -225,7 +231,7 @@ crate::widest! {
     fn add_seen(n_e: &RowValues, tint: [f32; 3], sums: &Light3, light: &mut Light3) {
         for c in 0..3 {
             for x in 0..TILE {
-                light[c][x] += tint[c] * lifted(fast::max(n_e[x], 0.0)) * sums[c][x];
+                light[c][x] += tint[c] * matt_share(fast::max(n_e[x], 0.0)) * sums[c][x];
             }
         }
     }

@@ -114,9 +114,12 @@ impl EnvironmentSamples {
                     (&toward, &width_rad, &weight),
                     &mut incoming,
                 ),
-                None => {
-                    self.environment_light.around_row(&toward, &width_rad, &weight, &mut incoming)
-                }
+                None => self.environment_light.mean_over_cone_row(
+                    &toward,
+                    &width_rad,
+                    &weight,
+                    &mut incoming,
+                ),
             }
             add_row(&weight, &mut weights);
             if shading.specular.is_scaled() {

@@ -21,7 +21,7 @@ pub fn mirrored(n: Vec3, v: Vec3) -> Vec3 {
 ///
 /// Total internal reflection (`index` < 1 at a grazing angle) mirrors it.
 #[inline(always)]
-pub fn refracted(n: Vec3, v: Vec3, index: f32) -> Vec3 {
+pub fn refract(n: Vec3, v: Vec3, index: f32) -> Vec3 {
     let eta = 1.0 / index;
     let cos = n.dot(v).max(0.0);
     let under_root = 1.0 - eta * eta * (1.0 - cos * cos);
@@ -41,7 +41,7 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let rays = RayRow::new(surface_row, index);
     let toward = [rays.ray[0], rays.ray[1]];
     let mut incoming: Light3 = [[0.0; TILE]; 3];
-    environment_light.over_row(
+    environment_light.mean_over_pixel_row(
         &rays.ray,
         &rays.dx,
         &rays.dy,
@@ -128,7 +128,7 @@ impl RayRow {
         incoming: &mut Light3,
     ) {
         let bend =
-            |n: Vec3, v: Vec3| index.map_or_else(|| mirrored(n, v), |index| refracted(n, v, index));
+            |n: Vec3, v: Vec3| index.map_or_else(|| mirrored(n, v), |index| refract(n, v, index));
         let of = |row: &Directions, x: usize| vec3(row[0][x], row[1][x], row[2][x]);
         for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
             let start = second.start(
@@ -154,7 +154,7 @@ impl RayRow {
             }
             let seen =
                 |(PixelRay { direction, changes: [dx, dy] }, kept, _): (PixelRay, Vec3, bool)| {
-                    kept * environment_light.over(direction, dx, dy)
+                    kept * environment_light.mean_over_pixel(direction, dx, dy)
                 };
             let mean = (first.into_iter().chain([follow(PARTS[1]), follow(PARTS[3])]))
                 .map(seen)
@@ -206,7 +206,7 @@ crate::widest! {
 
     fn refract_span(normal: &Span, view: &Span, index: f32, rays: &mut Span) {
         for i in 0..SPAN {
-            let r = refracted(at(normal, i), at(view, i), index);
+            let r = refract(at(normal, i), at(view, i), index);
             put(rays, i, r);
         }
     }
@@ -266,13 +266,13 @@ mod tests {
 
     #[test]
     fn refracted_rays_obey_snell() {
-        assert_eq!(refracted(Vec3::Z, Vec3::Z, 1.5), Vec3::NEG_Z);
+        assert_eq!(refract(Vec3::Z, Vec3::Z, 1.5), Vec3::NEG_Z);
         for (n, index) in
             [(vec3(0.3, -0.5, 0.7), 1.5), (vec3(-0.2, 0.1, 0.9), 0.8), (vec3(0.9, 0.0, 0.1), 2.4)]
         {
             let n = n.normalize();
             for v in [Vec3::Z, vec3(0.1, -0.2, 0.9).normalize()] {
-                let r = refracted(n, v, index);
+                let r = refract(n, v, index);
                 assert!((r.length() - 1.0).abs() < 1e-5);
                 // sin θ = index · sin θ′, both on the same plane, on the far side.
                 assert!((n.cross(r).length() * index - n.cross(v).length()).abs() < 1e-5);
@@ -281,15 +281,15 @@ mod tests {
         }
         let n = vec3(0.6, 0.0, 0.8);
         assert!(
-            (refracted(n, Vec3::Z, 1.0) - Vec3::NEG_Z).length() < 1e-6,
+            (refract(n, Vec3::Z, 1.0) - Vec3::NEG_Z).length() < 1e-6,
             "nothing bends without another matter"
         );
         assert_eq!(
-            refracted(n, Vec3::Z, 0.5),
+            refract(n, Vec3::Z, 0.5),
             mirrored(n, Vec3::Z),
             "past the critical angle it is a mirror"
         );
-        assert!(refracted(vec3(0.999, 0.0, -0.04), Vec3::Z, 1.5).is_finite());
+        assert!(refract(vec3(0.999, 0.0, -0.04), Vec3::Z, 1.5).is_finite());
     }
 
     /// Bright above, dim below, and red at the right.
@@ -324,9 +324,9 @@ mod tests {
             };
             assert_shows(&shading, 2.0, |surface, x, y| {
                 let (n, v) = (surface.normal(x, y), surface.view(x, y));
-                let r = if model == Model::Mirror { mirrored(n, v) } else { refracted(n, v, 1.5) };
+                let r = if model == Model::Mirror { mirrored(n, v) } else { refract(n, v, 1.5) };
                 let incoming = environment_light().environment_light();
-                let radiance = incoming.along(r);
+                let radiance = incoming.radiance(r);
                 let delta =
                     srgb::luminance(radiance.x, radiance.y, radiance.z) / incoming.brightest();
                 let sigma =

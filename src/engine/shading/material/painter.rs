@@ -96,7 +96,7 @@ impl PainterTerms {
         }
         for (lamp, light) in self.lamps.iter_mut().zip(lights) {
             put(&mut lamp.toward, &light.direction);
-            put(&mut lamp.toward_seen, &row.seen(&light.direction));
+            put(&mut lamp.toward_seen, &row.in_pixel_frames(&light.direction));
             if let Some(shadow) = &light.shadow {
                 lamp.seen[to..to + width].copy_from_slice(&shadow.seen[..width]);
             }

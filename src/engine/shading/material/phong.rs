@@ -89,7 +89,7 @@ impl PhongTerms {
                     (&shading.diffuse, lights[i].toward())
                 }
                 Lobe::Glossy(i) => {
-                    let direction = surface_row.seen(&lights[i].direction);
+                    let direction = surface_row.in_pixel_frames(&lights[i].direction);
                     lobes::glossy(surface_row.seen_normal(), &direction, shading.shininess, rho);
                     (&shading.specular, lights[i].toward())
                 }

@@ -92,7 +92,7 @@ impl<'s> SecondLook<'s> {
         let mut moved = [vec3(pixel, 0.0, 0.0), vec3(0.0, -pixel, 0.0)]
             .map(|step| onto_plane(step, normal, view, GRAZING));
         for _ in 0..self.bounces {
-            let Some(hit) = self.front.met_by(&self.map, &leaving) else { break };
+            let Some(hit) = self.front.trace(&self.map, &leaving) else { break };
             let r = leaving.direction;
             meet(&hit, r);
             let next = bend(hit.normal, -r);

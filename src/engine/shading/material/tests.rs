@@ -27,7 +27,7 @@ pub(super) fn ball() -> Scene {
 /// The same ball seen from nearby, through a lens of 60°.
 pub(super) fn near_ball() -> Scene {
     let surface = ball().surface.and_then(Arc::into_inner).unwrap();
-    Scene { size: SIZE, surface: Some(Arc::new(surface.seen_by(Eye::of_fov(Some(60.0), SIZE)))) }
+    Scene { size: SIZE, surface: Some(Arc::new(surface.with_eye(Eye::of_fov(Some(60.0), SIZE)))) }
 }
 
 /// Every fifth pixel of the ball, from afar and from nearby, as the layer shows it and as

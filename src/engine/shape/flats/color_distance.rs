@@ -34,7 +34,7 @@ const ROUNDING: i32 = 1;
 
 /// What has to lie with some alpha over an opaque color, so that a given one is seen. `None` if
 /// nothing can.
-pub fn added(seen: [u8; 4], alpha: u8, over: [u8; 4]) -> Option<[u8; 4]> {
+pub fn uncomposite(seen: [u8; 4], alpha: u8, over: [u8; 4]) -> Option<[u8; 4]> {
     let left = |c: usize| (i32::from(over[c]) * (255 - i32::from(alpha)) + 127) / 255;
     let own = |c: usize| i32::from(seen[c]) - left(c);
     let alpha_range = -ROUNDING..=i32::from(alpha) + ROUNDING;

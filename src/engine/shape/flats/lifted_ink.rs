@@ -6,7 +6,7 @@
 //! ink L, which covers c of it. c is the projection of d on the way from f to the tone of the line.
 
 use super::areas::{pixels, spread};
-use super::color_distance::{added, color_distance, share_on_the_way};
+use super::color_distance::{color_distance, share_on_the_way, uncomposite};
 use super::palette::NONE;
 use super::picture::{FlatReading, Pixel, REACH};
 use super::shares::WithoutLines;
@@ -65,7 +65,7 @@ impl LiftedInk {
 
     /// What is shown of paint of which this is the ink: tiles that were painted on since show all
     /// that is on them.
-    pub fn shown(&self, tiles: &TileGrid) -> TileGrid {
+    pub fn visible_paint(&self, tiles: &TileGrid) -> TileGrid {
         let mut shown = self.flats.clone();
         if !self.source.ptr_eq(tiles) {
             for at in self.source.changed_tiles(tiles) {
@@ -180,7 +180,7 @@ impl<'a> Lifting<'a> {
             return None;
         }
         let least = if is_line && ink == 0 { 255 } else { ink };
-        let line = (least..=255).find_map(|alpha| added(drawn, alpha, flat));
+        let line = (least..=255).find_map(|alpha| uncomposite(drawn, alpha, flat));
         Some([flat, line.unwrap_or(drawn)])
     }
 

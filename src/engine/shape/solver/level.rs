@@ -139,14 +139,14 @@ impl Level {
     }
 
     /// Three rows of a field around a row.
-    pub(super) fn around<'a>(&self, v: &'a [f32], y: usize) -> [&'a [f32]; 3] {
+    pub(super) fn rows_around<'a>(&self, v: &'a [f32], y: usize) -> [&'a [f32]; 3] {
         [self.row(v, y - 1), self.row(v, y), self.row(v, y + 1)]
     }
 
     /// One damped sweep of Jacobi from `v` into `out`.
     pub(super) fn relax(&self, v: &[f32], b: &[f32], step: f32, out: &mut [f32]) {
         self.fill(out, |y, out| {
-            relaxed(self.couplings(y), self.around(v, y), self.row(b, y), step, out)
+            relaxed(self.couplings(y), self.rows_around(v, y), self.row(b, y), step, out)
         });
     }
 }
@@ -185,7 +185,7 @@ crate::widest! {
     }
 
     /// A v.
-    pub(super) fn applied(couplings: Couplings, v: [&[f32]; 3], out: &mut [f32]) {
+    pub(super) fn multiply(couplings: Couplings, v: [&[f32]; 3], out: &mut [f32]) {
         let n = out.len();
         let Couplings { right, up, down, diagonal, .. } = couplings;
         let [above, here, below] = v;
@@ -198,8 +198,8 @@ crate::widest! {
     }
 
     /// b − A v.
-    pub(super) fn left_over(couplings: Couplings, v: [&[f32]; 3], b: &[f32], out: &mut [f32]) {
-        applied_into(couplings, v, out);
+    pub(super) fn compute_residual(couplings: Couplings, v: [&[f32]; 3], b: &[f32], out: &mut [f32]) {
+        multiply_into(couplings, v, out);
         for (o, b) in out.iter_mut().zip(b) {
             *o = b - *o;
         }
@@ -230,9 +230,9 @@ crate::widest! {
     }
 }
 
-/// The body of [`applied`] for callers that are already inside `widest!`.
+/// The body of [`multiply`] for callers that are already inside `widest!`.
 #[inline(always)]
-pub(super) fn applied_into(couplings: Couplings, v: [&[f32]; 3], out: &mut [f32]) {
+pub(super) fn multiply_into(couplings: Couplings, v: [&[f32]; 3], out: &mut [f32]) {
     let n = out.len();
     let [above, here, below] = v;
     for x in 1..n - 1 {

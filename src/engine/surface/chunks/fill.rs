@@ -28,7 +28,7 @@ pub(super) fn places(maps: &ChunkMaps) -> BallPlaces {
             }
         }
     });
-    seams::joined(maps, places)
+    seams::find_seams(maps, places)
 }
 
 /// A tile's row with room for the last lanes.

@@ -10,7 +10,7 @@ pub const SEAM_STEPS: [(i32, i32); 8] =
     [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 /// Finds the seams of places.
-pub(super) fn joined(maps: &ChunkMaps, places: Plane<BallPlace>) -> BallPlaces {
+pub(super) fn find_seams(maps: &ChunkMaps, places: Plane<BallPlace>) -> BallPlaces {
     let at = Plane::from_fn(places.size(), |x, y| places.at(x, y).at);
     let mut joined = BallPlaces::without_seams(at, &maps.settings);
     let seam_px = maps.settings.seam_px.round();

@@ -72,11 +72,11 @@ impl LaidPlanes {
     ///
     /// Then the picture is turned, moved and scaled on the bend's pieces.
     pub fn pinned(surface: &Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
-        let unwrapping = surface.unwrapped(settings);
+        let unwrapping = surface.unwrapping(settings);
         // Anchors are on the surface in front, also for a far side.
         let front = surface.front();
         let pinned = front.as_deref().unwrap_or(surface);
-        let laid = pinned.unwrapped(settings);
+        let laid = pinned.unwrapping(settings);
         let mut groups: Vec<(u32, Vec<PlanePin>)> = Vec::new();
         for anchor in &bend.anchors {
             let PlanePlace { object, at, .. } = laid.place(pinned, anchor.at);
@@ -118,7 +118,7 @@ impl LaidPlanes {
         if piece.is_still() || !piece.at.is_finite() {
             return;
         }
-        let PlanePlace { object, at, .. } = surface.unwrapped(settings).place(surface, piece.at);
+        let PlanePlace { object, at, .. } = surface.unwrapping(settings).place(surface, piece.at);
         let fit = match self.fits.iter().position(|fit| fit.object == object) {
             Some(known) => &mut self.fits[known],
             None => {
@@ -136,16 +136,16 @@ impl LaidPlanes {
             surface.blended(piece.at, |x, y| displacement.at(x, y))
         });
         let shown = fit.at(at, displaced);
-        let Affine2 { matrix2, .. } = fit.looked_up(piece.looked_up(shown));
+        let Affine2 { matrix2, .. } = fit.looked_up(piece.picture_from_plane(shown));
         fit.pulled = fit.pulled.map(|pulled| matrix2 * pulled);
     }
 
     /// `D(q) − q_0 = R(q_0)ᵀ (U(q) − U(q_0))`: a decal, upright where it is put down.
     pub fn of_dab(surface: &Surface, settings: UnwrapSettings, at: Vec2) -> Self {
-        let unwrapping = surface.unwrapped(settings);
+        let unwrapping = surface.unwrapping(settings);
         let front = surface.front();
         let pinned = front.as_deref().unwrap_or(surface);
-        let PlanePlace { object, at: there, turn } = pinned.unwrapped(settings).place(pinned, at);
+        let PlanePlace { object, at: there, turn } = pinned.unwrapping(settings).place(pinned, at);
         let linear = turn.transpose();
         let fit = PlaneFit { object, linear, shift: at - linear * there, pulled: None };
         Self {

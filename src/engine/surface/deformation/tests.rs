@@ -264,7 +264,7 @@ fn counted_from_another_corner_a_moved_surface_gives_the_same_bits() {
     let (here, there) = (surface((0, 0)), surface(by));
     let (mut a, mut b) = (DeformedRect::default(), DeformedRect::default());
     Deformation::new(Some(&here), size, &bend((0, 0))).fill(Rect::new(5, 5, 60, 50), &mut a);
-    let moved = Deformation::new(Some(&there), size, &bend(by)).about(by);
+    let moved = Deformation::new(Some(&there), size, &bend(by)).with_origin(by);
     moved.fill(Rect::new(5 + by.0, 5 + by.1, 60 + by.0, 50 + by.1), &mut b);
     assert!(a.x == b.x && a.y == b.y);
     assert!(

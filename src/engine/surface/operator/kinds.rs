@@ -2,7 +2,7 @@
 //! Floor 2. Readers, writers, panels and replay use it; a new operator is a row, its numbers a line each.
 
 use super::Operator;
-use crate::math::{Range, range::held};
+use crate::math::{Range, range::clamp_to_range};
 
 /// A number of an operator.
 #[derive(Debug, PartialEq)]
@@ -91,8 +91,8 @@ impl Operator {
     }
 
     /// With the nearest numbers that a document may hold.
-    pub fn held(self) -> Self {
-        self.map(|number, value| held(value, &number.range))
+    pub fn clamp_to_ranges(self) -> Self {
+        self.map(|number, value| clamp_to_range(value, &number.range))
     }
 
     /// The operator with parameters that are finite and not absurd: what is not a number counts as
@@ -110,7 +110,7 @@ mod tests {
     fn every_kind_has_a_row_whose_numbers_are_in_range() {
         for (operator, name) in Operator::KINDS {
             assert_eq!(operator.row(), (operator, name));
-            assert_eq!(operator.held(), operator);
+            assert_eq!(operator.clamp_to_ranges(), operator);
             for (number, value) in operator.numbers() {
                 assert!(
                     number.range.contains(&value) && number.useful.contains(&value),
@@ -132,7 +132,10 @@ mod tests {
         assert_eq!(doubled, Operator::Normal { alpha: 1.0, beta: 1.0, detail: 4.0 });
         let nan = Operator::Surface { amount: f32::NAN, smooth: f32::INFINITY };
         assert_eq!(nan.finite(), Operator::Surface { amount: 0.0, smooth: 0.0 });
-        assert_eq!(Operator::Depth { gamma: 99.0 }.held(), Operator::Depth { gamma: 20.0 });
+        assert_eq!(
+            Operator::Depth { gamma: 99.0 }.clamp_to_ranges(),
+            Operator::Depth { gamma: 20.0 }
+        );
         let refused = Operator::Depth { gamma: 1.0 }.try_map(|n, _| Err::<f32, _>(n.key));
         assert_eq!(refused, Err("gamma"));
     }

@@ -14,7 +14,7 @@ pub struct UnwrapSettings {
 
 impl UnwrapSettings {
     /// Within what a surface can be unwrapped with; what is no number counts as 0.
-    pub(in crate::surface) fn held(self, size: Size) -> Self {
+    pub(in crate::surface) fn clamp_to_ranges(self, size: Size) -> Self {
         Self {
             amount: self.amount.max(0.0).min(2.0),
             smooth_px: self.smooth_px.max(0.0).min(size.longer_side()),

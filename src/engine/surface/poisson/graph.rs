@@ -3,7 +3,7 @@
 //! become one (`merge`), the grid itself (`poisson`).
 
 use super::PoissonGrid;
-use super::merge::{children, couplings_at, in_series, is_strong, number_rows, numbered};
+use super::merge::{children, couplings_at, in_series, is_strong, number_rows, number_trees};
 use crate::math::union_find;
 use crate::memory::filled_or_unwind;
 use rayon::prelude::*;
@@ -186,7 +186,7 @@ impl PoissonGraph {
                 }
             }
         }
-        let (parent, roots) = numbered(&mut first);
+        let (parent, roots) = number_trees(&mut first);
         // Merging ends when only pieces of one unknown each are left.
         if roots.len() * 10 > self.len() * 9 {
             return None;
@@ -215,7 +215,7 @@ impl PoissonGraph {
                 union_find::join(&mut first, i as u32, j);
             });
         }
-        let (labels, roots) = numbered(&mut first);
+        let (labels, roots) = number_trees(&mut first);
         (labels, roots.len())
     }
 

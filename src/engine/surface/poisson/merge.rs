@@ -70,7 +70,7 @@ pub(super) fn number_rows(grid: &PoissonGrid, y: usize, rows: &mut [u32]) -> Vec
 
 /// Numbers the trees of a forest in the order of their roots: the number of each node's tree, and
 /// the roots.
-pub(super) fn numbered(first: &mut [u32]) -> (Vec<u32>, Vec<u32>) {
+pub(super) fn number_trees(first: &mut [u32]) -> (Vec<u32>, Vec<u32>) {
     let (mut labels, mut roots) = (vec![0; first.len()], Vec::new());
     for i in 0..first.len() as u32 {
         let root = first_of(first, i);

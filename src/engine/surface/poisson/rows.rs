@@ -67,7 +67,7 @@ crate::widest! {
     }
 
     /// One sweep of Jacobi: `v + step ((b + Σ w v) / Σ w − v)`.
-    pub(super) fn relaxed_row(row: GridRow, v: [&[f32]; 3], b: &[f32], step: f32, out: &mut [f32]) {
+    pub(super) fn relax_row(row: GridRow, v: [&[f32]; 3], b: &[f32], step: f32, out: &mut [f32]) {
         let (b, out) = (&b[..v[1].len()], &mut out[..v[1].len()]);
         each(row, v, |x, sum, v, pull| out[x] = v + step * ((b[x] + pull) / sum.max(LEAST) - v));
     }

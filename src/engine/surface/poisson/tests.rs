@@ -69,7 +69,7 @@ fn rows_do_as_the_equation_says() {
         for (x, (i, out)) in at.clone().zip(&out).enumerate() {
             assert!((b[i] - force[i] - out).abs() < 1e-5, "residual at {x}, {y}");
         }
-        rows::relaxed_row(grid.row(y), around(&v, 70, y), &b[at.clone()], 0.7, &mut out);
+        rows::relax_row(grid.row(y), around(&v, 70, y), &b[at.clone()], 0.7, &mut out);
         for (i, out) in at.clone().zip(&out) {
             let (sum, pull) = grid.pull(&v, i);
             let told = if sum > 0.0 { v[i] + 0.7 * ((b[i] + pull) / sum - v[i]) } else { *out };

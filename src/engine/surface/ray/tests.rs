@@ -50,7 +50,7 @@ fn surface(balls: &[Ball], eye: Eye) -> Surface {
         }),
         coverage: Plane::from_fn(SIZE, |x, y| if at(x, y).is_some() { 255 } else { 0 }),
     };
-    Surface::new(maps).unwrap().seen_by(eye)
+    Surface::new(maps).unwrap().with_eye(eye)
 }
 
 /// The ray that a pixel mirrors.
@@ -78,7 +78,7 @@ fn rays_between_balls_meet_where_geometry_says() {
             let exact = cast(&balls, from + n * 0.05, ray.direction);
             let Some((t, n)) = exact else {
                 // Only beside a rim, where a picture of pixels cannot tell.
-                missed += usize::from(surface.met_by(&map, &ray).is_some());
+                missed += usize::from(surface.trace(&map, &ray).is_some());
                 continue;
             };
             let place = from + ray.direction * t;
@@ -90,7 +90,7 @@ fn rays_between_balls_meet_where_geometry_says() {
                 continue;
             }
             let hit = surface
-                .met_by(&map, &ray)
+                .trace(&map, &ray)
                 .unwrap_or_else(|| panic!("{eye:?} ({x}, {y}) meets nothing"));
             let seen = match eye {
                 Eye::Afar => place.truncate(),
@@ -128,7 +128,7 @@ fn jumping_over_blocks_changes_no_ray() {
     let coverage = Plane::from_fn(SIZE, |x, y| if (x / 30 + y / 40) % 4 == 0 { 0 } else { 255 });
     for eye in [Eye::Afar, Eye::of_fov(Some(FOV), SIZE)] {
         let (normals, depth, coverage) = (normals.clone(), depth.clone(), coverage.clone());
-        let surface = Surface::new(Maps { normals, depth, coverage }).unwrap().seen_by(eye);
+        let surface = Surface::new(Maps { normals, depth, coverage }).unwrap().with_eye(eye);
         let map = surface.ray_map();
         let mut every_pixel = RayMap::of(&surface);
         every_pixel.blocks = BLOCKS.map(|side| Plane::filled(blocks_of(SIZE, side), -NOWHERE));
@@ -146,7 +146,7 @@ fn jumping_over_blocks_changes_no_ray() {
                 ray.direction = ray.direction.normalize_or(Vec3::Z);
                 ray.inward = turn == 2;
                 let [a, b] = [&*map, &every_pixel]
-                    .map(|map| surface.met_by(map, &ray).map(|hit| (hit.at, hit.normal)));
+                    .map(|map| surface.trace(map, &ray).map(|hit| (hit.at, hit.normal)));
                 assert_eq!(a, b, "({x}, {y}) turn {turn}");
                 met += usize::from(a.is_some());
                 let line = RayLine::of(&map, &ray);
@@ -173,7 +173,7 @@ fn planes_and_single_balls_are_never_met() {
         let map = surface.ray_map();
         for (x, y) in covered(&surface) {
             let ray = mirrored(&surface, &map, x, y);
-            assert!(surface.met_by(&map, &ray).is_none(), "({x}, {y})");
+            assert!(surface.trace(&map, &ray).is_none(), "({x}, {y})");
         }
     }
 }
@@ -196,7 +196,7 @@ fn a_ray_passes_behind_what_floats_in_front_and_meets_what_lies_beyond() {
     let leaving = |direction: Vec3, inward: bool| {
         let ray =
             SurfaceRay { at: vec2(20.5, 70.5), nearness, direction: direction.normalize(), inward };
-        surface.met_by(&map, &ray)
+        surface.trace(&map, &ray)
     };
     let hit = leaving(vec3(1.0, 0.0, 0.1), false).unwrap();
     // ¹⁄₁₀ (x − 20.5) = x − 120.5.

@@ -61,7 +61,9 @@ pub fn of(surface: &Surface, kind: RegionKind, at: Vec2) -> Plane<f32> {
             let Some(u0) = along(surface.blended(at, tensor)) else {
                 return on_surface(&|_, _| f32::INFINITY);
             };
-            on_surface(&|x, y| along(tensor(x, y)).map_or(f32::INFINITY, |u| between_lines(u, u0)))
+            on_surface(&|x, y| {
+                along(tensor(x, y)).map_or(f32::INFINITY, |u| angle_between_lines(u, u0))
+            })
         }
     }
 }
@@ -78,6 +80,6 @@ pub fn mirrored(n: Vec3) -> Vec3 {
 }
 
 /// The angle between two lines of unit directions, degrees, at most 90.
-pub fn between_lines(a: Vec2, b: Vec2) -> f32 {
+pub fn angle_between_lines(a: Vec2, b: Vec2) -> f32 {
     a.perp_dot(b).abs().atan2(a.dot(b).abs()).to_degrees()
 }

@@ -1,4 +1,4 @@
-use super::deviation::{angle, between_lines, mirrored};
+use super::deviation::{angle, angle_between_lines, mirrored};
 use super::*;
 use crate::math::{Size, Vec3, vec2, vec3};
 use crate::surface::Maps;
@@ -110,8 +110,8 @@ fn flows_are_lines_and_a_cylinders_is_its_own_everywhere() {
     );
     let all = region(RegionKind::Flow, vec2(60.5, 60.5), 5.0).on(&cylinder);
     near(all.area_px(), 220.0 * 200.0, 0.0);
-    near(f64::from(between_lines(Vec2::X, -Vec2::X)), 0.0, 1e-6);
-    near(f64::from(between_lines(Vec2::X, Vec2::Y)), 90.0, 1e-6);
+    near(f64::from(angle_between_lines(Vec2::X, -Vec2::X)), 0.0, 1e-6);
+    near(f64::from(angle_between_lines(Vec2::X, Vec2::Y)), 90.0, 1e-6);
 }
 
 #[test]

@@ -59,7 +59,7 @@ impl HiddenCounts {
     }
 
     /// What each pixel sees of the lamp that so many rays go to.
-    pub fn seen(self, rays: u32) -> ShareMap {
+    pub fn visible_shares(self, rays: u32) -> ShareMap {
         let per_count = 1.0 / (WHOLE * rays as f32);
         let turned = self.turned.map(|plane| turned(&plane));
         let mut counts = match (self.upright, turned) {

@@ -193,7 +193,7 @@ impl<'s> OperatorBounds<'s> {
             }
             Operator::Surface { .. } => match operator.unwrapping() {
                 Some(settings) => {
-                    let unwrapping = surface.unwrapped(settings);
+                    let unwrapping = surface.unwrapping(settings);
                     let at = unwrapping.place(surface, at).at;
                     OperatorBounds::Unwrapped { surface, unwrapping, at }
                 }

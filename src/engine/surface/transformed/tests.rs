@@ -154,7 +154,7 @@ fn fitted_maps_lie_where_their_map_says() {
 #[test]
 fn the_eye_stays_before_what_it_was_before() {
     let seen =
-        Arc::new(Arc::try_unwrap(egg()).ok().unwrap().seen_by(Eye::of_fov(Some(60.0), SIZE)));
+        Arc::new(Arc::try_unwrap(egg()).ok().unwrap().with_eye(Eye::of_fov(Some(60.0), SIZE)));
     let cut =
         seen.transformed(Size::new(50, 60), &PlaneMap::translation(vec2(-20.0, -10.0))).unwrap();
     assert!((cut.view(10, 10) - seen.view(30, 20)).length() < 1e-6);

@@ -224,7 +224,7 @@ impl Surface {
         settings: UnwrapSettings,
         constraints: &[PlaneConstraint],
     ) -> Arc<PlaneDisplacement> {
-        let settings = settings.held(self.size());
+        let settings = settings.clamp_to_ranges(self.size());
         let bits = |constraint: &PlaneConstraint| {
             [constraint.at.x, constraint.at.y, constraint.displacement.x, constraint.displacement.y]
                 .map(f32::to_bits)

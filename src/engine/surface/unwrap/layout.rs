@@ -57,7 +57,7 @@ const BESIDE_PX: i32 = GAP_PX / 2;
 impl PlaneLayout {
     /// `None` where no two neighboring pixels of the surface lie in a plane.
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Option<Self> {
-        let unwrapping = surface.unwrapped(settings);
+        let unwrapping = surface.unwrapping(settings);
         let mut pieces = extents(surface, &unwrapping);
         let size = shelved(&mut pieces)?;
         let (w, objects) = (surface.size().width as usize, surface.objects());
@@ -106,7 +106,7 @@ impl PlaneLayout {
     /// that would be on another object, or is too far away.
     pub fn canvas_at(&self, surface: &Surface, p: Vec2) -> Option<CanvasPlace> {
         let piece = self.piece_at(p)?;
-        if let Some(at) = self.sheet.between(p) {
+        if let Some(at) = self.sheet.sample(p) {
             return Some(CanvasPlace {
                 at,
                 object: piece.object,
@@ -145,7 +145,7 @@ impl PlaneLayout {
         let Rect { x0, y0, x1, y1 } = piece.rect;
         let middle = vec2(0.5 * (x0 + x1) as f32, 0.5 * (y0 + y1) as f32);
         let shown =
-            self.sheet.between(middle).filter(|at| self.object_at(surface, *at) == piece.object);
+            self.sheet.sample(middle).filter(|at| self.object_at(surface, *at) == piece.object);
         shown.unwrap_or(piece.at)
     }
 
@@ -243,7 +243,7 @@ fn shelved(pieces: &mut [LaidPiece]) -> Option<Size> {
 impl Surface {
     /// The sheet of its unwrapped planes, cached like them; `None` where it has none.
     pub fn plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
-        let settings = settings.held(self.size());
+        let settings = settings.clamp_to_ranges(self.size());
         let laid = self
             .derived
             .plane_layouts
@@ -252,10 +252,10 @@ impl Surface {
     }
 
     /// The same if it is there already.
-    pub fn known_plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
+    pub fn cached_plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
         self.derived
             .plane_layouts
-            .get(&settings.held(self.size()).key())
+            .get(&settings.clamp_to_ranges(self.size()).key())
             .and_then(|laid| Option::clone(&laid))
     }
 }

@@ -85,7 +85,7 @@ impl PlaneView {
     }
 
     /// The canvas point between pixels; `None` where none of the four around it shows the surface.
-    pub fn between(&self, p: Vec2) -> Option<Vec2> {
+    pub fn sample(&self, p: Vec2) -> Option<Vec2> {
         if !p.is_finite() {
             return None;
         }

@@ -82,7 +82,7 @@ fn a_plane_seen_from_near_is_isometric_in_space() {
     let (low, high) = (far(f32::min), far(f32::max));
     let depth = Plane::from_fn(size, |x, y| (point(x, y).z - low) / (high - low));
     let maps = Maps { normals: Plane::filled(size, n), depth, coverage: Plane::filled(size, 255) };
-    let surface = Surface::new(maps).unwrap().seen_by(eye);
+    let surface = Surface::new(maps).unwrap().with_eye(eye);
     let d = Unwrapping::new(&surface, WHOLE);
     let ratio = |a: (usize, usize), b: (usize, usize)| {
         d.at(a.0, a.1).distance(d.at(b.0, b.1)) / point(a.0, a.1).distance(point(b.0, b.1))
@@ -202,15 +202,15 @@ fn what_is_given_up_ends_at_once_and_what_is_told_of_is_all_of_it() {
         told.get() < 3
     };
     assert!(
-        surface.unwrapped_with_progress(WHOLE, &count).is_none() && !surface.is_unwrapped(WHOLE)
+        surface.unwrapping_with_progress(WHOLE, &count).is_none() && !surface.is_unwrapped(WHOLE)
     );
     assert_eq!(told.get(), 3);
     told.set(-100);
     assert!(
-        surface.unwrapped_with_progress(WHOLE, &count).is_some() && surface.is_unwrapped(WHOLE)
+        surface.unwrapping_with_progress(WHOLE, &count).is_some() && surface.is_unwrapped(WHOLE)
     );
     assert_eq!(told.get(), SOLVES as i32 - 100);
-    assert!(surface.unwrapped_with_progress(WHOLE, &|| false).is_some(), "it is there");
+    assert!(surface.unwrapping_with_progress(WHOLE, &|| false).is_some(), "it is there");
 }
 
 #[test]

@@ -58,7 +58,7 @@ pub struct AbrConversion<'a> {
 
 /// A brush with all dynamics of a description. Nothing follows the pressure unless the description
 /// says so.
-pub fn carried<'a>(
+pub fn with_dynamics<'a>(
     preset: &'a DescriptorObject,
     brush: Brush,
     notes: Vec<String>,

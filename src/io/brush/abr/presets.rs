@@ -2,7 +2,7 @@
 //! they are of.
 //! Floor 5. Not here: what drives them (`dynamics`).
 
-use super::dynamics::carried;
+use super::dynamics::with_dynamics;
 use super::{MOST, SPACING};
 use crate::brush::ImportedBrush;
 use crate::brush::TipNames;
@@ -79,7 +79,7 @@ impl AbrPreset<'_> {
         } else {
             self.name
         };
-        let mut carried = carried(self.description, brush, notes);
+        let mut carried = with_dynamics(self.description, brush, notes);
         carried.textured(pictures.file, pictures.patterns, pictures.tips);
         ImportedBrush { name, brush: carried.brush, notes: carried.notes }
     }

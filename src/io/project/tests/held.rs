@@ -46,7 +46,7 @@ fn drawn(count: usize) -> Arc<Stroke> {
         let t = i as f32 / 240.0;
         let at = vec2(24.0 + 18.0 * (0.7 * t).sin(), 20.0 + 15.0 * (0.3 * t).cos());
         let (pressure, tilt) = (0.5 + 0.4 * t.sin(), vec2(30.0 * (0.2 * t).cos(), 12.0));
-        Sample { at, pressure, tilt, time_secs: t }.settled()
+        Sample { at, pressure, tilt, time_secs: t }.normalized()
     };
     let brush = Brush { size: 3.0, ..Brush::default() };
     Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, (0..count).map(one).collect()))

@@ -4,7 +4,7 @@ use crate::Budget;
 use crate::document::{Document, Progress, flatten};
 use crate::psd::merged::Merged;
 use crate::psd::parse::parse;
-use crate::psd::tree::built;
+use crate::psd::tree::build_document;
 use std::path::Path;
 
 /// Differences of the channels of two pictures on white, of 255: mean, at the 99th hundredth, most.
@@ -43,7 +43,7 @@ fn layers_beside_the_pictures_in_the_files() {
         let budget = Budget::default();
         let mut parsed = parse(Path::new(&name), &bytes, &budget).unwrap();
         let mut notes = Vec::new();
-        let (document, is_less) = built(&mut parsed, &budget, &mut notes);
+        let (document, is_less) = build_document(&mut parsed, &budget, &mut notes);
         let Some(merged) = parsed.merged.take() else { continue };
         let (mean, p99, most) = differences(&document, &merged);
         let left = if is_less { notes.join("; ") } else { String::new() };

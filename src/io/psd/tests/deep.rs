@@ -4,7 +4,7 @@
 use super::foreign::attack;
 use super::made::*;
 use super::read_back;
-use crate::deep_paint::fitted;
+use crate::deep_paint::read_within_budget;
 use crate::document::{Content, Document};
 use crate::math::{Rect, srgb};
 use crate::project::ProjectContents;
@@ -132,7 +132,7 @@ fn short_of_memory_a_file_of_16_bits_is_read_with_8() {
     let area = u64::from(SIDE * SIDE);
     let read = |free: u64| {
         let budget = Budget { memory_bytes: free, ..Budget::default() };
-        fitted(
+        read_within_budget(
             file,
             &budget,
             |budget| super::super::read(file, &bytes, budget),

@@ -49,7 +49,7 @@ fn written(part: &Part, canvas: Option<Size>, selection: impl Fn(&str) -> Option
     if part.matrix != Affine2::IDENTITY {
         out.set("matrix", part.matrix.to_cols_array().into_iter().map(object::number).collect());
     }
-    out.done()
+    out.into_value()
 }
 
 fn write_outline(outline: &OutlineSource, selection: impl Fn(&str) -> Option<String>) -> Value {
@@ -67,7 +67,7 @@ fn write_outline(outline: &OutlineSource, selection: impl Fn(&str) -> Option<Str
         OutlineSource::Selection(name) => out.set_some("selection", selection(name), Value::from),
         OutlineSource::Object(object) => out.set("object", (*object).into()),
     }
-    out.done()
+    out.into_value()
 }
 
 fn write_kind(out: &mut JsonObject, kind: &PartKind, canvas: Option<Size>) {
@@ -115,7 +115,7 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind, canvas: Option<Size>) {
                 out.number("radius", touch.radius, TOUCH_RADIUS);
                 out.set("normal", object::vector(touch.normal));
                 out.number("reach", touch.reach, 0.0);
-                out.done()
+                out.into_value()
             };
             out.set("touches", touches.iter().map(touch).collect());
         }
@@ -161,7 +161,7 @@ pub fn write_maps(out: &mut JsonObject, maps: &PartMaps, canvas: Option<Size>) {
         frame.set("width", size.width.into());
         frame.set("height", size.height.into());
         frame.set_some("matrix", maps.source.matrix, |matrix| json!(matrix));
-        out.set("frame", frame.done());
+        out.set("frame", frame.into_value());
     }
 }
 
@@ -172,7 +172,7 @@ fn write_stroke(stroke: &SculptStroke) -> Value {
     out.number("hardness", stroke.hardness, DAB_HARDNESS);
     out.number("strength", stroke.strength, DAB_STRENGTH);
     out.set("samples", samples::write_pressed(&stroke.samples));
-    out.done()
+    out.into_value()
 }
 
 fn write_primitive(out: &mut JsonObject, body: &Primitive) {

@@ -12,7 +12,7 @@
 //! | 32 more | differences of those differences, for even motion |
 //! | 255 | one value for all: its four bytes, the lowest first |
 //!
-//! Each restores every f32 bit by bit. Readings of a pen are on a grid (`Sample::settled`), so that
+//! Each restores every f32 bit by bit. Readings of a pen are on a grid (`Sample::normalized`), so that
 //! a step costs a byte or two; what was turned or calculated is not, and costs three or four.
 
 use super::{COLUMNS, numbers, of_numbers};

@@ -20,7 +20,7 @@ fn drawn(count: usize, raw: bool) -> Vec<Sample> {
             tilt: vec2(20.0 * (0.3 * t).sin(), 31.0) + 0.5 * vec2(noise(i, 3), noise(i, 4)),
             time_secs: t + 0.0004 * (noise(i, 5) + 0.5),
         };
-        if raw { sample } else { sample.settled() }
+        if raw { sample } else { sample.normalized() }
     };
     (0..count).map(one).collect()
 }
@@ -91,8 +91,8 @@ fn what_the_hand_draws_takes_few_bytes() {
 #[test]
 fn what_the_hand_settles_on_stays_there() {
     for sample in drawn(1_000, true) {
-        let settled = sample.settled();
-        assert!(bits(&[settled]) == bits(&[settled.settled()]));
+        let settled = sample.normalized();
+        assert!(bits(&[settled]) == bits(&[settled.normalized()]));
         assert!(
             (settled.at - sample.at).abs().max_element() <= 1.0 / 512.0
                 && (settled.tilt - sample.tilt).length() < 0.02
@@ -108,7 +108,7 @@ fn what_the_hand_settles_on_stays_there() {
         tilt: vec2(500.0, f32::NAN),
         time_secs: -1.0,
     };
-    assert!(trouble(&wild).is_some() && trouble(&wild.settled()).is_none());
+    assert!(trouble(&wild).is_some() && trouble(&wild.normalized()).is_none());
 }
 
 #[test]

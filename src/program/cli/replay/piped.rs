@@ -89,12 +89,12 @@ fn answer(session: &mut Session, number: usize, line: &str) -> Option<(bool, Map
     let file = Path::new("standard input");
     let done = match replay::line(line) {
         Ok(None) => return None,
-        Ok(Some(Request::Describe)) => Ok(session.shown().map(description)),
+        Ok(Some(Request::Describe)) => Ok(session.shown_document().map(description)),
         Ok(Some(Request::Act(action, named))) => match missing_layer(session, named) {
-            Some(reason) => Err(replay::refused(file, number, reason)),
+            Some(reason) => Err(replay::line_error(file, number, reason)),
             None => action.apply(session).map(|()| None),
         },
-        Err(reason) => Err(replay::refused(file, number, reason)),
+        Err(reason) => Err(replay::line_error(file, number, reason)),
     };
     let mut reply = Map::new();
     reply.insert("line".into(), number.into());

@@ -100,13 +100,14 @@ impl CanvasAction {
         let (label, change) = match self {
             CanvasAction::Crop { to } => ("Crop", cropped(size, *to)?),
             CanvasAction::CropToSelection {} => {
-                let selected = document.selected().ok_or("Nothing is selected.")?.covered();
+                let selected = document.selected().ok_or("Nothing is selected.")?.covered_rect();
                 ("Crop to selection", cropped(size, selected.intersect(size.rect()))?)
             }
             CanvasAction::Trim {} => {
                 let nothing = || "There is no paint to trim to.".to_owned();
                 let painted = flatten(document, progress).ok_or_else(nothing)?;
-                let painted = CoverageGrid::of_alpha(&painted).covered().intersect(size.rect());
+                let painted =
+                    CoverageGrid::of_alpha(&painted).covered_rect().intersect(size.rect());
                 if painted.is_empty() {
                     return Err(nothing());
                 }

@@ -135,7 +135,7 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
             tiles,
         )
     } else if let [id] = *ids {
-        let copied = document.copied_from(id, &covered).ok_or(NOTHING_THERE)?;
+        let copied = document.copy_covered(id, &covered).ok_or(NOTHING_THERE)?;
         let look = document.with_layer(id, |layer| {
             (layer.opacity, layer.visible, layer.clip_below) = (1.0, true, false);
         });
@@ -145,7 +145,7 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
         (vec![copied], multiply(&painted, &covered))
     } else {
         let copies: Vec<Layer> =
-            ids.iter().filter_map(|id| document.copied_from(*id, &covered)).collect();
+            ids.iter().filter_map(|id| document.copy_covered(*id, &covered)).collect();
         if copies.is_empty() {
             return Err(if ids.is_empty() {
                 NO_LAYER
@@ -157,7 +157,7 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
         let alone = Document { layers, ..document.clone() };
         (copies, multiply(&flatten_to_paint(&alone, &progress).ok_or(NOTHING_THERE)?, &covered))
     };
-    let rect = CoverageGrid::of_alpha(&tiles).covered().intersect(document.size.rect());
+    let rect = CoverageGrid::of_alpha(&tiles).covered_rect().intersect(document.size.rect());
     if rect.is_empty() && merged {
         return Err("Nothing is visible where you selected.");
     }
@@ -210,7 +210,7 @@ fn pasted(copied: &Copied, document: &Document) -> Vec<Layer> {
         return vec![Layer::new(copied.name(), content)];
     }
     // Pasted twice, they are other layers.
-    copied.layers.iter().map(|layer| super::layers::copied(layer, &layer.name)).collect()
+    copied.layers.iter().map(|layer| super::layers::copy_layer(layer, &layer.name)).collect()
 }
 
 fn paste_new(session: &mut Session) {
@@ -260,7 +260,7 @@ fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
         LayerAction::Duplicate { layer }.step_on(open);
         return Ok(());
     };
-    let mut layer = document.copied_from(id, selected).ok_or(NOTHING_THERE)?;
+    let mut layer = document.copy_covered(id, selected).ok_or(NOTHING_THERE)?;
     layer.name = document.free_layer_name(&format!("{} copy", old.name));
     let left = match cut {
         true => document.with_cleared(id, selected).ok_or(LOCKED)?,

@@ -127,7 +127,13 @@ impl FileAction {
                 let deep = deep.then_some(Highlights::Clipped);
                 let options = UnwrapOptions { scale: *scale, settings, deep };
                 let terms = Terms::export(unless_forced(session), session.reads());
-                unwrapped::export(&open.drawn(), file, options, terms, &Progress::default())?;
+                unwrapped::export(
+                    &open.drawn_document(),
+                    file,
+                    options,
+                    terms,
+                    &Progress::default(),
+                )?;
             }
             FileAction::ImportUnwrapped { file } => {
                 let (name, picture) = read_picture(file)?;

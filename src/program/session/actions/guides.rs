@@ -3,7 +3,7 @@
 
 use crate::document::{Assistant, AssistantKind, Document, Guides};
 use crate::math::UNIT;
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::session::Session;
 use crate::session::replay::{actions, names, record};
 use crate::tools::PenSample;
@@ -51,8 +51,8 @@ impl GuideAction {
         match self {
             GuideAction::Aids { aids } => {
                 session.tools.aids = ViewAids {
-                    grid: aids.grid.held(),
-                    magnetism: held(aids.magnetism, &UNIT),
+                    grid: aids.grid.clamp_to_ranges(),
+                    magnetism: clamp_to_range(aids.magnetism, &UNIT),
                     ..*aids
                 };
             }

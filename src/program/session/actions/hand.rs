@@ -2,7 +2,7 @@
 //! Floor 6.
 
 use crate::io::recipe::read_brush;
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::settings::BrushNumber;
 use crate::paint::{BrushMode, Fill, LiquifySettings, LiquifyTool, Property};
@@ -99,7 +99,7 @@ impl HandAction {
             HandAction::Tool { tool } => {
                 session.drop_gesture();
                 let is_first = session.tools.shape == ShapeSettings::default();
-                if let Some(document) = session.shown().filter(|_| is_first) {
+                if let Some(document) = session.shown_document().filter(|_| is_first) {
                     session.tools.shape = ShapeSettings::for_canvas(document.size);
                 }
                 session.tools.lasso.clear();
@@ -113,12 +113,12 @@ impl HandAction {
                 Err(error) => session.notes.push(error.to_string()),
             },
             HandAction::Size { to } if session.tool == ToolKind::Sculpt => {
-                session.tools.shape.size = held(*to, &SculptStroke::SIZE);
+                session.tools.shape.size = clamp_to_range(*to, &SculptStroke::SIZE);
             }
             HandAction::Size { to } if session.tool == ToolKind::Liquify => {
-                session.tools.liquify.size = held(*to, &LiquifySettings::SIZE);
+                session.tools.liquify.size = clamp_to_range(*to, &LiquifySettings::SIZE);
             }
-            HandAction::Liquify { liquify } => session.tools.liquify = liquify.held(),
+            HandAction::Liquify { liquify } => session.tools.liquify = liquify.clamp_to_ranges(),
             HandAction::Size { to } => BrushNumber::Size.set(brush, *to),
             HandAction::Hardness { to } => BrushNumber::Hardness.set(brush, *to),
             HandAction::Opacity { to } => BrushNumber::Opacity.set(brush, *to),
@@ -138,14 +138,17 @@ impl HandAction {
             HandAction::DefaultColors {} => {
                 (session.tools.color, session.tools.second_color) = (Color::BLACK, Color::WHITE)
             }
-            HandAction::Operator { operator } => session.tools.operator = operator.held(),
+            HandAction::Operator { operator } => {
+                session.tools.operator = operator.clamp_to_ranges()
+            }
             HandAction::Symmetry { symmetry } => session.tools.symmetry.kind = *symmetry,
             HandAction::Axes { center, turn } => {
-                session.tools.symmetry.axes = SymmetryAxes { center: *center, turn: *turn }.held()
+                session.tools.symmetry.axes =
+                    SymmetryAxes { center: *center, turn: *turn }.clamp_to_ranges()
             }
             HandAction::Fill { fill } => session.tools.fill = *fill,
             HandAction::PressBySpeed { on } => session.tools.presses_by_speed = *on,
-            HandAction::Mark { mark: mode } => brush.mode = mode.held(),
+            HandAction::Mark { mark: mode } => brush.mode = mode.clamp_to_ranges(),
             HandAction::TransformTarget { carried } => session.tools.transform.target = *carried,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
             HandAction::AcrossParts { on } => session.tools.crosses_parts = *on,

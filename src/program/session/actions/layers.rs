@@ -9,7 +9,7 @@ mod steps;
 pub(super) mod texts;
 
 pub use new::NewLayer;
-pub(super) use steps::copied;
+pub(super) use steps::copy_layer;
 
 use crate::Result;
 use crate::document::{
@@ -27,10 +27,10 @@ use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::Model;
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{self, mapped};
-use flattening::undisplaced;
+use flattening::bake_displacement;
 use new::{lit_layer, make_layer, selecting};
 use std::sync::Arc;
-use steps::{EditStep, cleared, duplicated, homed, kept, moves, ungrouped};
+use steps::{EditStep, clear_layers, duplicate, homed, moves, selection_after_move, ungroup};
 
 actions! {
     /// `layer` is always the path before the action; if several are possible, the layers of a group
@@ -267,7 +267,7 @@ impl LayerAction {
                 ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }
             LayerAction::AddShading { model } => added(open, lit_layer(*model, document))?,
-            LayerAction::Look { name } => looks::dressed(document, name)?,
+            LayerAction::Look { name } => looks::apply_look(document, name)?,
             LayerAction::MakeStrokes { layer: path } => {
                 let id = layer(path)?.id;
                 ("Make strokes", document.with_made_strokes(id)?, vec![id])
@@ -304,7 +304,7 @@ impl LayerAction {
                 let label = if ids.len() > 1 { "Delete layers" } else { "Delete layer" };
                 (label, next, neighbor.into_iter().collect())
             }
-            LayerAction::Duplicate { layer } => duplicated(document, &chosen(layer)?)?,
+            LayerAction::Duplicate { layer } => duplicate(document, &chosen(layer)?)?,
             LayerAction::Move { layer: paths, group, index } => {
                 let group = group
                     .as_ref()
@@ -313,17 +313,21 @@ impl LayerAction {
                     .ok()?;
                 let ids = chosen(paths)?;
                 let next = document.with_moved_layers(&ids, LayerSlot { group, index: *index })?;
-                (moves(&ids), next, kept(open, ids))
+                (moves(&ids), next, selection_after_move(open, ids))
             }
             LayerAction::Nudge { layer, by } => {
                 let ids = chosen(layer)?;
-                (moves(&ids), document.with_nudged_layers(&ids, *by)?, kept(open, ids))
+                (
+                    moves(&ids),
+                    document.with_nudged_layers(&ids, *by)?,
+                    selection_after_move(open, ids),
+                )
             }
             LayerAction::Mirror { layer, upright } => {
                 let mirror = transform::mirror(*upright);
                 (
                     "Mirror layer",
-                    transform::about_middle(document, &chosen(layer)?, mirror)?,
+                    transform::transform_about_middle(document, &chosen(layer)?, mirror)?,
                     Vec::new(),
                 )
             }
@@ -331,12 +335,13 @@ impl LayerAction {
                 let turn: PlaneMap = transform::turn(f64::from(*degrees))?;
                 (
                     "Turn layer",
-                    transform::about_middle(document, &chosen(layer)?, turn)?,
+                    transform::transform_about_middle(document, &chosen(layer)?, turn)?,
                     Vec::new(),
                 )
             }
             LayerAction::ApplyTransform { layer } => {
-                let applied = |next: Document, id| undisplaced(&next, id, &Progress::default());
+                let applied =
+                    |next: Document, id| bake_displacement(&next, id, &Progress::default());
                 (
                     "Apply transform",
                     chosen(layer)?.into_iter().try_fold(document.clone(), applied)?,
@@ -350,7 +355,7 @@ impl LayerAction {
                 ("Mesh", ids.into_iter().try_fold(document.clone(), meshed)?, Vec::new())
             }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
-                return self.flattened(document, &Progress::default());
+                return self.perform_long(document, &Progress::default());
             }
             LayerAction::Group { layer } => {
                 let ids = chosen(layer)?;
@@ -361,11 +366,11 @@ impl LayerAction {
                 let label = if ids.len() > 1 { "Group layers" } else { "Group layer" };
                 (label, document.with_one_for(&ids, group)?, vec![id])
             }
-            LayerAction::Ungroup { layer } => ungrouped(document, &chosen(layer)?)?,
+            LayerAction::Ungroup { layer } => ungroup(document, &chosen(layer)?)?,
             LayerAction::Home { layer, part } => {
                 homed(document, &layer.find(document)?, part.as_deref()).ok()?
             }
-            LayerAction::Clear { layer } => cleared(document, &chosen(layer)?)?,
+            LayerAction::Clear { layer } => clear_layers(document, &chosen(layer)?)?,
             LayerAction::Select { .. }
             | LayerAction::Choose { .. }
             | LayerAction::Solo { .. }

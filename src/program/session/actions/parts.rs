@@ -113,7 +113,7 @@ impl PartAction {
     /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         if let PartAction::Settings { shape } = self {
-            session.tools.shape = shape.held();
+            session.tools.shape = shape.clamp_to_ranges();
             return;
         }
         session.drop_gesture();
@@ -142,14 +142,14 @@ impl PartAction {
     }
 
     /// Performs a long edit on a document, on any thread; `None` for any other.
-    pub fn shaped(
+    pub fn perform_long(
         &self,
         document: &Document,
         progress: &Progress,
     ) -> Result<Option<FirstShape>, PartRefusal> {
         let PartAction::Shape { layer, preset, flats } = self else { return Ok(None) };
         let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
-        first::shaped(document, layer, preset.0, *flats, progress).map(Some)
+        first::shape_layer(document, layer, preset.0, *flats, progress).map(Some)
     }
 
     fn step(&self, open: &mut OpenDocument) -> Result<(), PartRefusal> {
@@ -172,7 +172,7 @@ impl PartAction {
                 ("Add part", next, Some(id))
             }
             PartAction::Shape { .. } => {
-                if let Some(shaped) = self.shaped(document, &Progress::default())? {
+                if let Some(shaped) = self.perform_long(document, &Progress::default())? {
                     shaped.put(open);
                 }
                 return Ok(());
@@ -188,7 +188,7 @@ impl PartAction {
                 (if *on { "Show part" } else { "Hide part" }, document.with_part(next), None)
             }
             PartAction::Duplicate { part } => {
-                let (next, id) = list::duplicated(document, &*of(part)?);
+                let (next, id) = list::duplicate(document, &*of(part)?);
                 ("Duplicate part", next, Some(id))
             }
             PartAction::Split { part } => {

@@ -113,7 +113,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     let Some(open) = session.active() else { return };
     let paints =
         matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Fill | ToolKind::Liquify);
-    if let Some(why) = open.hidden_beside().filter(|_| paints && !open.quick_mask) {
+    if let Some(why) = open.why_hidden_beside().filter(|_| paints && !open.quick_mask) {
         return session.notes.push(why);
     }
     let (strokes, layers) = (open.chosen_strokes(), open.outermost_chosen());

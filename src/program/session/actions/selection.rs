@@ -2,7 +2,7 @@
 //! here: selections made by the pen (`tools::select`), cutting and copying (`clipboard`).
 
 use crate::document::Document;
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::math::{COORDINATE, Vec2, vec2};
 use crate::paint::Selection;
 use crate::raster::CoverageGrid;
@@ -39,7 +39,7 @@ impl EdgeChange {
     }
 
     fn of(self, grid: &CoverageGrid, px: f32, canvas: crate::math::Rect) -> CoverageGrid {
-        let px = held(px, &self.range());
+        let px = clamp_to_range(px, &self.range());
         match self {
             EdgeChange::Grow => edges::grown(grid, px, canvas),
             EdgeChange::Shrink => edges::grown(grid, -px, canvas),
@@ -156,7 +156,8 @@ impl SelectionAction {
                 (change.label(), with(change.of(selected()?, *px, canvas)))
             }
             SelectionAction::Move { by } => {
-                let by = vec2(held(by.x, &COORDINATE), held(by.y, &COORDINATE)).round();
+                let by = vec2(clamp_to_range(by.x, &COORDINATE), clamp_to_range(by.y, &COORDINATE))
+                    .round();
                 ("Move selection", with(selected()?.shifted(by.x as i32, by.y as i32)))
             }
             SelectionAction::Region { region, how } => {
@@ -232,8 +233,8 @@ impl SelectionAction {
 /// A region whose numbers are those that a document may hold.
 fn clamp_to_ranges(region: &SurfaceRegion) -> SurfaceRegion {
     SurfaceRegion {
-        tolerance: held(region.tolerance, &region.kind.tolerances()),
-        softness: held(region.softness, &SurfaceRegion::SOFTNESS),
+        tolerance: clamp_to_range(region.tolerance, &region.kind.tolerances()),
+        softness: clamp_to_range(region.softness, &SurfaceRegion::SOFTNESS),
         ..*region
     }
 }

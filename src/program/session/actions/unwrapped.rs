@@ -1,7 +1,7 @@
 //! Pictures of the unwrapped surface: written to a file, and put back on the surface. Floor 6. Not
 //! here: drawing them (`document::view`), the sheet (`surface::unwrap`).
 
-use crate::document::view::{UnwrapOptions, placed_over, unwrapped};
+use crate::document::view::{UnwrapOptions, placed_over, render_unwrapped};
 use crate::document::{Document, Highlights, Progress};
 use crate::io::Terms;
 use crate::io::export::deep::encode as encode_deep;
@@ -28,7 +28,7 @@ pub fn export(
     // A file of light keeps highlights.
     let deep = (format == ExportFormat::Exr).then_some(Highlights::Kept).or(options.deep);
     let options = UnwrapOptions { deep, ..options };
-    let seen = match unwrapped(document, None, options, progress) {
+    let seen = match render_unwrapped(document, None, options, progress) {
         _ if progress.is_canceled() => return Ok(()),
         seen => seen.map_err(|why| Error::unsupported(file, why))?,
     };

@@ -37,7 +37,7 @@ impl ChosenLayers {
 impl OpenDocument {
     /// The chosen layers in the order of the tree, bottom first, the primary one among them.
     pub fn chosen_layers(&self) -> Vec<LayerId> {
-        let document = self.shown();
+        let document = self.shown_document();
         let Some(primary) = self.selected.filter(|id| document.layer(*id).is_some()) else {
             return Vec::new();
         };
@@ -53,7 +53,7 @@ impl OpenDocument {
 
     /// Those of them that are in no other one: what is in a chosen group moves with it.
     pub fn outermost_chosen(&self) -> Vec<LayerId> {
-        self.shown().outermost(&self.chosen_layers())
+        self.shown_document().outermost(&self.chosen_layers())
     }
 
     /// Whether a layer is among the chosen ones.
@@ -66,7 +66,7 @@ impl OpenDocument {
 
     /// The gizmo of the transform tool around them, or around the shape, as they are shown.
     pub fn gizmo(&self, target: TransformTarget) -> Option<TransformGizmo> {
-        self.gizmo_in(self.shown(), target)
+        self.gizmo_in(self.shown_document(), target)
     }
 
     /// The same after the last step.
@@ -126,7 +126,7 @@ impl OpenDocument {
 
     /// With a layer added to those chosen, or removed from them, the primary one last. The last one
     /// stays.
-    pub fn toggled(&self, layer: LayerId) -> Vec<LayerId> {
+    pub fn toggle_selected(&self, layer: LayerId) -> Vec<LayerId> {
         let mut ids = self.chosen_layers();
         match ids.iter().position(|id| *id == layer) {
             Some(_) if ids.len() == 1 => {}
@@ -183,11 +183,11 @@ mod tests {
     fn a_click_with_ctrl_adds_a_layer_and_a_second_takes_it_away() {
         let (mut open, ids) = open();
         open.choose_layers(vec![ids[1]]);
-        open.choose_layers(open.toggled(ids[3]));
+        open.choose_layers(open.toggle_selected(ids[3]));
         assert_eq!((open.chosen_layers(), open.selected), (vec![ids[1], ids[3]], Some(ids[3])));
-        open.choose_layers(open.toggled(ids[1]));
+        open.choose_layers(open.toggle_selected(ids[1]));
         assert_eq!((open.chosen_layers(), open.selected), (vec![ids[3]], Some(ids[3])));
-        open.choose_layers(open.toggled(ids[3]));
+        open.choose_layers(open.toggle_selected(ids[3]));
         assert_eq!(open.chosen_layers(), [ids[3]], "one is always chosen");
     }
 

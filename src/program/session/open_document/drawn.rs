@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 impl OpenDocument {
     /// The document as drawn: a solo layer hides the others.
-    pub fn drawn(&self) -> Document {
-        let shown = self.shown();
+    pub fn drawn_document(&self) -> Document {
+        let shown = self.shown_document();
         if self.quick_mask {
             return under_red(shown);
         }
@@ -16,7 +16,7 @@ impl OpenDocument {
     }
 
     /// Why paint on the selected layer would not be seen: another layer is shown alone.
-    pub fn hidden_beside(&self) -> Option<String> {
+    pub fn why_hidden_beside(&self) -> Option<String> {
         let document = self.document();
         let (alone, selected) = (document.layer(self.solo?)?, document.layer(self.selected?)?);
         let is_seen =

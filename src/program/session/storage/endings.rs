@@ -30,7 +30,7 @@ pub fn is_whole_document(file: &Path) -> bool {
 }
 
 /// Extensions of the files that a picture is exported to, or the whole document for Photoshop.
-pub fn exported() -> impl Iterator<Item = &'static str> {
+pub fn export_extensions() -> impl Iterator<Item = &'static str> {
     ExportFormat::ALL.iter().map(|(_, extension)| *extension).chain([SAVED[1]])
 }
 
@@ -80,7 +80,7 @@ mod tests {
         ] {
             assert_eq!(named(name), file);
         }
-        let extensions: Vec<&str> = exported().collect();
+        let extensions: Vec<&str> = export_extensions().collect();
         let exported = |name: &str| {
             with_document_extension(name.into(), "png", &extensions).to_string_lossy().into_owned()
         };

@@ -17,7 +17,7 @@ const COLORS: [[u8; 4]; 3] =
     [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
 
 /// The document with the stroke; `None` if the stroke changed nothing.
-pub fn drawn(
+pub fn draw_stroke(
     preset: &BrushPreset,
     surface: Arc<Surface>,
     scale: f32,

@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 #[test]
 fn every_preset_leaves_a_mark_on_the_ball() {
     for preset in presets().map(current) {
-        let image = painted(&preset, 96).unwrap();
+        let image = render_swatch(&preset, 96).unwrap();
         // A retouching brush paints with its flow.
         let brush = Brush { opacity: 0.0, flow: 0.0, ..preset.brush.clone() };
-        let bare = painted(&BrushPreset { brush, ..preset.clone() }, 96).unwrap();
+        let bare = render_swatch(&BrushPreset { brush, ..preset.clone() }, 96).unwrap();
         let pairs = image.as_chunks::<4>().0.iter().zip(bare.as_chunks::<4>().0);
         let marked =
             pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 12)).count();
@@ -26,7 +26,7 @@ fn every_preset_leaves_a_mark_on_the_ball() {
 #[test]
 fn a_picture_of_no_size_or_of_far_too_much_is_none() {
     let preset = presets().next().unwrap();
-    assert!(painted(&preset, 0).is_none() && painted(&preset, 5000).is_none());
+    assert!(render_swatch(&preset, 0).is_none() && render_swatch(&preset, 5000).is_none());
 }
 
 /// Side of one picture of a sheet, px.
@@ -58,9 +58,10 @@ fn sheet(group: PresetGroup, samples: &[Arc<Surface>]) -> image::RgbImage {
     let mut sheet =
         image::RgbImage::new(CELL * presets.len() as u32, CELL * (1 + samples.len() as u32));
     for (column, preset) in (0..).zip(&presets) {
-        let on_samples = samples.iter().map(|surface| painted_on(preset, surface.clone()).unwrap());
+        let on_samples =
+            samples.iter().map(|surface| render_swatch_on(preset, surface.clone()).unwrap());
         for (row, pixels) in
-            (0..).zip(std::iter::once(painted(preset, CELL).unwrap()).chain(on_samples))
+            (0..).zip(std::iter::once(render_swatch(preset, CELL).unwrap()).chain(on_samples))
         {
             for (i, &[r, g, b, a]) in (0..).zip(pixels.as_chunks::<4>().0) {
                 // Off the surface there is paper.

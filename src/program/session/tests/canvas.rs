@@ -32,7 +32,7 @@ fn a_crop_to_the_selection_is_one_step_that_undo_takes_back_whole() {
         matches!(&strokes.content, Content::Strokes(_)) && strokes.transform.is_none(),
         "it stays live"
     );
-    assert_eq!(session.active().unwrap().history.done(), Some("Crop to selection"));
+    assert_eq!(session.active().unwrap().history.undo_label(), Some("Crop to selection"));
     story(&mut session, r#"{"in":"edit","do":"undo"}"#);
     assert_eq!(size(&session), Size::new(200, 150));
     assert!(is_red(&session, 100, 70) && session.active().unwrap().document().selected().is_some());
@@ -55,7 +55,7 @@ fn the_crop_tool_s_frame_is_dragged_beyond_the_canvas_and_applied_or_given_up() 
     let frame = session.tools.crop.area.unwrap();
     assert_eq!((frame.x0, frame.y0, frame.x1, frame.y1), (40, 30, 260, 200));
     assert_eq!(
-        session.active().unwrap().history.done(),
+        session.active().unwrap().history.undo_label(),
         Some("Brush stroke"),
         "a frame is no step"
     );
@@ -118,6 +118,6 @@ fn what_cannot_be_done_says_why() {
         story(&mut session, line);
         let said = session.said.join(" ");
         assert!(said.contains(why), "{line}: {said}");
-        assert_eq!(session.active().unwrap().history.done(), None, "{line}");
+        assert_eq!(session.active().unwrap().history.undo_label(), None, "{line}");
     }
 }

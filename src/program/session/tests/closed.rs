@@ -44,6 +44,6 @@ fn a_stroke_that_would_not_be_kept_or_seen_names_the_layer_and_what_to_do() {
     act(&mut session, &drawn_with("brush"));
     assert!(
         session.notes.is_empty()
-            && session.active().unwrap().history.done() == Some("Brush stroke")
+            && session.active().unwrap().history.undo_label() == Some("Brush stroke")
     );
 }

@@ -236,6 +236,6 @@ fn what_the_hand_draws_lies_on_the_grid_of_files() {
     let strokes = document.strokes(document.layers[3].id);
     let samples = strokes[0].samples();
     assert_eq!(samples.len(), 3);
-    assert!(samples.iter().all(|sample| *sample == sample.settled()));
+    assert!(samples.iter().all(|sample| *sample == sample.normalized()));
     assert_eq!(samples[1].at.x, (17.123f32 * 256.0).round() / 256.0);
 }

@@ -34,7 +34,7 @@ fn a_picture_is_pasted_as_flat_paint_at_its_own_size_with_its_middle_at_the_poin
     let straight = pixels.tiles.to_straight_rgba(Rect::new(x0, y0, x0 + 40, y0 + 30));
     let opaque = |(a, b): (&[u8; 4], &[u8; 4])| b[3] < 255 || a == b;
     assert!(straight.as_chunks::<4>().0.iter().zip(texels.iter()).all(opaque), "pixel for pixel");
-    assert_eq!(session.active().unwrap().history.done(), Some("Paste"));
+    assert_eq!(session.active().unwrap().history.undo_label(), Some("Paste"));
     session.replay(Path::new("story"), STROKE).unwrap();
     assert_eq!(names(&session), ["Background", "Pasted"], "it can be painted on");
     session.replay(Path::new("story"), r#"{"in":"edit","do":"walk","steps":-2}"#).unwrap();
@@ -50,14 +50,14 @@ fn without_a_pointer_it_goes_to_the_middle_of_the_view_and_what_lies_outside_the
     pasted(PasteTo::Paint, None, picture(300, 20)).apply(&mut session).unwrap();
     let covered = |session: &Session| {
         let Content::Pixels(pixels) = &session.layer().unwrap().content else { panic!("paint") };
-        crate::raster::CoverageGrid::of_alpha(&pixels.tiles).covered()
+        crate::raster::CoverageGrid::of_alpha(&pixels.tiles).covered_rect()
     };
     assert_eq!(covered(&session), Rect::new(-140, 130, 160, 150));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("wide.ora");
     storage::save(
         &file,
-        session.shown().unwrap(),
+        session.shown_document().unwrap(),
         crate::io::Overwrite::Nothing,
         &Progress::default(),
     )
@@ -73,7 +73,7 @@ fn it_becomes_an_image_layer_or_a_document_where_that_is_asked_for() {
     assert!(matches!(session.layer().unwrap().content, Content::Image(_)));
     pasted(PasteTo::Document, None, picture(40, 30)).apply(&mut session).unwrap();
     assert_eq!(
-        (session.open_documents.len(), session.shown().unwrap().size),
+        (session.open_documents.len(), session.shown_document().unwrap().size),
         (2, Size::new(40, 30))
     );
     assert!(
@@ -91,7 +91,7 @@ fn every_paste_replays_with_the_picture_in_its_line() {
         let mut second = replay(PAPER);
         second.replay(Path::new("story"), &action.written().to_string()).unwrap();
         let seen = |session: &Session| {
-            let document = session.shown().unwrap();
+            let document = session.shown_document().unwrap();
             flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
         };
         assert!(seen(&first) == seen(&second) && names(&first) == names(&second), "{}", to.name());
@@ -122,9 +122,10 @@ fn soft_paint_that_is_pasted_as_an_image_layer_is_saved_with_its_16_bits() {
     act(&mut session, r#"{"in":"clipboard","do":"copy","merged":false}"#);
     act(&mut session, r#"{"in":"clipboard","do":"paste image","at":[50,60]}"#);
     let folder = tempfile::tempdir().unwrap();
-    let (file, document) = (folder.path().join("soft.ora"), session.shown().unwrap().clone());
+    let (file, document) =
+        (folder.path().join("soft.ora"), session.shown_document().unwrap().clone());
     let overwrite = crate::io::Overwrite::Nothing;
     storage::save(&file, &document, overwrite, &Progress::default()).unwrap();
     session.adopt(storage::open(&file).unwrap());
-    assert_eq!(document.difference(session.shown().unwrap()), None);
+    assert_eq!(document.difference(session.shown_document().unwrap()), None);
 }

@@ -93,7 +93,7 @@ fn cutting_and_pasting_moves_paint_and_keeps_strokes_strokes() {
         &mut session,
         "{\"in\":\"clipboard\",\"do\":\"copy\",\"merged\":true}\n{\"in\":\"clipboard\",\"do\":\"paste new\"}",
     );
-    assert_eq!(session.shown().unwrap().size, crate::math::Size::new(60, 50));
+    assert_eq!(session.shown_document().unwrap().size, crate::math::Size::new(60, 50));
     assert_eq!(session.open_documents.len(), 2);
 }
 
@@ -174,7 +174,9 @@ fn the_brush_paints_on_the_selection_under_a_quick_mask() {
     let grown = area(&session) - 3000.0;
     assert!((grown - 314.0).abs() < 15.0, "{grown}");
     let shown = |x, y| {
-        flatten(&session.active().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y)
+        flatten(&session.active().unwrap().drawn_document(), &Progress::default())
+            .unwrap()
+            .pixel(x, y)
     };
     assert_eq!(shown(20, 20), [255; 4]);
     assert!(shown(150, 20)[1] < 200, "what is not selected is seen under red");

@@ -25,7 +25,7 @@ fn chosen(session: &Session) -> Vec<String> {
 }
 
 fn done(session: &Session) -> &str {
-    session.active().unwrap().history.done().unwrap_or_default()
+    session.active().unwrap().history.undo_label().unwrap_or_default()
 }
 
 fn steps(session: &Session) -> usize {

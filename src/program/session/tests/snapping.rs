@@ -28,7 +28,7 @@ fn drag(tool: &str, from: [f32; 2], to: [f32; 2], key: &str) -> String {
 }
 
 fn covered(session: &Session) -> Rect {
-    session.active().unwrap().document().selected().map(CoverageGrid::covered).unwrap()
+    session.active().unwrap().document().selected().map(CoverageGrid::covered_rect).unwrap()
 }
 
 fn document(session: &Session) -> &Document {

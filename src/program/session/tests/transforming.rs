@@ -26,7 +26,7 @@ fn carry(session: &mut Session, what: &str, from: [i32; 2], to: [i32; 2]) {
 }
 
 fn picture(session: &Session) -> Vec<u8> {
-    let document = session.active().unwrap().drawn();
+    let document = session.active().unwrap().drawn_document();
     flatten(&document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
 }
 
@@ -50,7 +50,7 @@ fn the_shape_is_moved_with_its_paint_and_comes_back_by_undo() {
     let at = |pixels: &[u8], x: usize, y: usize| pixels[(y * 200 + x) * 4..][..4].to_vec();
     carry(&mut session, "shape", [90, 60], [112, 69]);
     let new = surface(&session);
-    assert_eq!(session.active().unwrap().history.done(), Some("Move shape"));
+    assert_eq!(session.active().unwrap().history.undo_label(), Some("Move shape"));
     let after = picture(&session);
     for (x, y) in [(90, 60), (100, 70), (110, 90)] {
         assert_eq!(old.normal(x, y), new.normal(x + 22, y + 9));

@@ -83,7 +83,7 @@ fn a_stroke_drawn_on_the_sheet_is_one_step_on_the_form() {
             from.x, from.y, to.x, to.y
         ),
     );
-    assert_eq!(session.active().unwrap().history.done(), Some("Brush stroke"));
+    assert_eq!(session.active().unwrap().history.undo_label(), Some("Brush stroke"));
     for x in [45, 70, 100, 130, 155] {
         assert_eq!(pixel(&session, x, 60), [0xc0, 0x20, 0x10, 255], "at {x}");
     }
@@ -114,7 +114,7 @@ fn tools_that_hold_what_lies_in_the_picture_say_so() {
 fn without_a_surface_nothing_is_unwrapped_and_that_is_told() {
     let mut session = replay(PAPER);
     then(&mut session, FLAT);
-    assert!(session.active().unwrap().unwrapped().is_none());
+    assert!(session.active().unwrap().unwrap_settings().is_none());
     assert_eq!(session.notes.len(), 1, "{:?}", session.notes);
 }
 

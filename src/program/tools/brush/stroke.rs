@@ -42,7 +42,7 @@ impl StrokeGesture {
         samples.truncate(self.room.unwrap_or_default());
         self.room = self.room.map(|room| room - samples.len());
         let of_image = |image: &SymmetryImage| {
-            samples.iter().map(|sample| image.sample(sample).settled()).collect()
+            samples.iter().map(|sample| image.sample(sample).normalized()).collect()
         };
         let samples: Vec<Vec<Sample>> = self.images.iter().map(of_image).collect();
         let tiles = active.draw(&samples);

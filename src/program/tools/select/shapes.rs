@@ -122,9 +122,11 @@ impl MoveOutline {
 impl Gesture for MoveOutline {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        let by = |v: f32| crate::math::range::held(v, &crate::math::COORDINATE).round();
+        let by = |v: f32| crate::math::range::clamp_to_range(v, &crate::math::COORDINATE).round();
         let mut moved = pen.place() - self.from;
-        if let Some(Rect { x0, y0, x1, y1 }) = self.document.selected().map(CoverageGrid::covered) {
+        if let Some(Rect { x0, y0, x1, y1 }) =
+            self.document.selected().map(CoverageGrid::covered_rect)
+        {
             let corner = |x: i32, y: i32| Vec2::new(x as f32, y as f32) + moved;
             let shift = self.snap.shift(corner(x0, y0), corner(x1, y1));
             (moved, self.lines) = (moved + shift.at, shift.lines);

@@ -56,7 +56,7 @@ struct RegionGesture {
 
 impl RegionGesture {
     fn outcome(&self, is_done: bool) -> Outcome {
-        let selection = Selection::carried(self.field.region(&self.told), Some(self.told));
+        let selection = Selection::provisional(self.field.region(&self.told), Some(self.told));
         let document = combined(&self.document, selection, self.how);
         let select = SelectSettings { region: self.told, ..self.settings };
         tuned(document, select, is_done)

@@ -50,7 +50,7 @@ fn drawn(
 }
 
 fn covered(document: &Document) -> Rect {
-    document.selected().map_or(Rect::EMPTY, CoverageGrid::covered)
+    document.selected().map_or(Rect::EMPTY, CoverageGrid::covered_rect)
 }
 const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false };
 

@@ -4,7 +4,7 @@
 use super::map_about;
 use crate::document::Document;
 use crate::document::parts::{FormArea, Inflation, Part, PartKind};
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::math::{Affine2, Mat2, Vec2, vec2};
 use crate::shape::Bevel;
 use crate::tools::{
@@ -85,7 +85,7 @@ impl PartHandle {
 impl PartGizmo {
     /// For a part by what its form covers.
     pub fn of(part: &Part, area: &FormArea, px_per_pt: f32) -> Self {
-        let (low, high) = area.covered();
+        let (low, high) = area.covered_box();
         let is_inflated = matches!(part.kind, PartKind::Inflate { .. });
         Self { low, high, px_per_pt, has_puff: height_of(&part.kind).is_some(), is_inflated }
     }
@@ -179,11 +179,13 @@ fn height_of(kind: &PartKind) -> Option<(f32, f32)> {
 fn with_height(kind: &PartKind, to: f32) -> PartKind {
     let mut kind = kind.clone();
     match &mut kind {
-        PartKind::Inflate { inflation, .. } => inflation.puff = held(to, &Inflation::PUFF),
-        PartKind::Lathe { puff, .. } | PartKind::Sweep { puff, .. } => {
-            *puff = held(to, &Inflation::PUFF)
+        PartKind::Inflate { inflation, .. } => {
+            inflation.puff = clamp_to_range(to, &Inflation::PUFF)
         }
-        PartKind::Bevel { bevel, .. } => bevel.height = held(to, &Bevel::HEIGHT),
+        PartKind::Lathe { puff, .. } | PartKind::Sweep { puff, .. } => {
+            *puff = clamp_to_range(to, &Inflation::PUFF)
+        }
+        PartKind::Bevel { bevel, .. } => bevel.height = clamp_to_range(to, &Bevel::HEIGHT),
         _ => {}
     }
     kind
@@ -288,24 +290,25 @@ impl PartGesture {
             PartHandle::Profile => inflated(part, |now| {
                 let profile = now.profile + by.x / self.pt(PROFILE_PT);
                 Inflation {
-                    profile: (held(profile, &Inflation::PROFILE) * 100.0).round() / 100.0,
+                    profile: (clamp_to_range(profile, &Inflation::PROFILE) * 100.0).round() / 100.0,
                     ..now
                 }
             }),
             PartHandle::Rim => inflated(part, |now| {
                 let rim_deg = (now.rim_deg - by.y / self.pt(RIM_PT_A_DEGREE)).round();
-                Inflation { rim_deg: held(rim_deg, &Inflation::RIM), ..now }
+                Inflation { rim_deg: clamp_to_range(rim_deg, &Inflation::RIM), ..now }
             }),
             // As the pen moves: a px of height for a px of the canvas.
             PartHandle::Depth => Some(Part {
-                raise: held((part.raise - by.y).round(), &Part::RAISE),
+                raise: clamp_to_range((part.raise - by.y).round(), &Part::RAISE),
                 ..part.clone()
             }),
             PartHandle::Tilt => {
                 // The part faces where the ball goes, so it falls there.
                 let by = by / self.pt(TILT_PT_A_DEGREE);
                 let tilt = (part.tilt_deg - by).round();
-                let tilt_deg = vec2(held(tilt.x, &Part::TILT), held(tilt.y, &Part::TILT));
+                let tilt_deg =
+                    vec2(clamp_to_range(tilt.x, &Part::TILT), clamp_to_range(tilt.y, &Part::TILT));
                 Some(Part { tilt_deg, ..part.clone() })
             }
         }

@@ -128,7 +128,7 @@ fn taken(document: &Document, at: Vec2) -> Outcome {
         Some(MapValues { nbar, nz, .. }) => {
             let normal = vec3(nbar.x, -nbar.y, nz);
             Outcome::set(move |tools| {
-                tools.shape = ShapeSettings { normal, ..tools.shape }.held();
+                tools.shape = ShapeSettings { normal, ..tools.shape }.clamp_to_ranges();
             })
         }
     }

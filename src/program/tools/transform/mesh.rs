@@ -54,7 +54,7 @@ pub(super) fn press(
     context: &ToolContext,
     pen: PenSample,
 ) -> Option<(Option<Box<dyn Gesture>>, Outcome)> {
-    let [id] = context.chosen() else { return None };
+    let [id] = context.selected_layers() else { return None };
     let document = context.document;
     let layer = document.layer(*id)?;
     let (mesh, points) = points_of(document, layer)?;

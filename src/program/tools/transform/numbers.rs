@@ -69,7 +69,7 @@ impl GizmoNumbers {
 
     /// With a point, given as shares of the sides, where another gizmo has it: sides and angles
     /// change about it.
-    pub fn about(&self, pivot_share: Vec2, other: &Self) -> Self {
+    pub fn align_pivot(&self, pivot_share: Vec2, other: &Self) -> Self {
         Self { at: self.at + other.point(pivot_share) - self.point(pivot_share), ..*self }
     }
 
@@ -102,7 +102,7 @@ impl GizmoNumbers {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{about_middle, mirror};
+    use super::super::{mirror, transform_about_middle};
     use super::*;
     use crate::document::{Content, Layer, PixelLayer};
     use crate::math::Size;
@@ -159,7 +159,8 @@ mod tests {
         for (upright, sides) in [(false, [-40.0, 20.0]), (true, [40.0, -20.0])] {
             let document = document();
             let mirrored =
-                about_middle(&document, &[document.layers[0].id], mirror(upright)).unwrap();
+                transform_about_middle(&document, &[document.layers[0].id], mirror(upright))
+                    .unwrap();
             let found = numbers(&mirrored);
             assert!(
                 (found.width - sides[0]).abs() < 1e-3 && (found.height - sides[1]).abs() < 1e-3,
@@ -172,8 +173,8 @@ mod tests {
                 (again.skew - 25.0).abs() < 1e-2 && (again.angle - 10.0).abs() < 1e-2,
                 "{again:?}"
             );
-            let back =
-                GizmoNumbers { width: 40.0, height: 20.0, ..found }.about(Vec2::splat(0.5), &found);
+            let back = GizmoNumbers { width: 40.0, height: 20.0, ..found }
+                .align_pivot(Vec2::splat(0.5), &found);
             assert!((numbers(&with(&mirrored, &back)).at - start.at).length() < 1e-3);
         }
     }
@@ -184,7 +185,8 @@ mod tests {
         for (share, stays) in
             [(Vec2::splat(0.5), DVec2::new(60.0, 40.0)), (Vec2::X, DVec2::new(80.0, 30.0))]
         {
-            let turned = GizmoNumbers { angle: 90.0, width: 80.0, ..start }.about(share, &start);
+            let turned =
+                GizmoNumbers { angle: 90.0, width: 80.0, ..start }.align_pivot(share, &start);
             assert!((turned.point(share) - stays).length() < 1e-9);
             let found = numbers(&with(&document(), &turned));
             assert!((found.point(share) - stays).length() < 1e-3);

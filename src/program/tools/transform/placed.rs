@@ -45,7 +45,7 @@ impl LayerPlacement {
             None => to_storable(&plane, filter, canvas)?,
         };
         let within = canvas.rect().grown(canvas.longer_side() as i32);
-        let carried = self.liquify.as_ref().map(|lattice| lattice.carried(&outer, within));
+        let carried = self.liquify.as_ref().map(|lattice| lattice.transformed(&outer, within));
         let liquify = carried.filter(|lattice| !lattice.is_empty()).map(Arc::new);
         Some(Self { transform, liquify })
     }

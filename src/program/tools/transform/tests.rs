@@ -210,9 +210,10 @@ fn two_mirrors_and_four_quarter_turns_leave_no_transform() {
     for (map, times) in
         [(mirror(false), 2), (mirror(true), 2), (turn(90.0).unwrap(), 4), (turn(36.0).unwrap(), 10)]
     {
-        let once = about_middle(&document, &[id], map).unwrap();
+        let once = transform_about_middle(&document, &[id], map).unwrap();
         assert!(once.layers[0].transform.is_some());
-        let all = (1..times).fold(once, |document, _| about_middle(&document, &[id], map).unwrap());
+        let all = (1..times)
+            .fold(once, |document, _| transform_about_middle(&document, &[id], map).unwrap());
         let left = all.map_of(id).unwrap();
         assert!(left.is_none(), "{:?}", left.plane);
     }
@@ -260,7 +261,7 @@ fn several_layers_have_one_frame_and_each_goes_along_in_its_own() {
     let distorted = dragged_both(&both, vec2(140.0, 60.0), vec2(150.0, 70.0), distort).unwrap();
     assert!(corners_of(&distorted, 1)[2].distance(vec2(150.0, 70.0)) < 1e-2);
     assert!(corners_of(&distorted, 0)[0].distance(vec2(20.0, 40.0)) < 1e-2);
-    let about = about_middle(&both, &ids, mirror(false)).unwrap();
+    let about = transform_about_middle(&both, &ids, mirror(false)).unwrap();
     close(corners_of(&about, 0), [(140.0, 40.0), (120.0, 40.0), (120.0, 60.0), (140.0, 60.0)]);
 }
 
@@ -288,7 +289,7 @@ fn the_frame_of_several_layers_turns_with_them() {
             .abs()
             < 1e-6
     );
-    let back = GizmoNumbers { angle: 0.0, ..numbers }.about(Vec2::splat(0.5), &numbers);
+    let back = GizmoNumbers { angle: 0.0, ..numbers }.align_pivot(Vec2::splat(0.5), &numbers);
     let by = PlaneMap::affine(back.map_from(&numbers).unwrap()).unwrap();
     let back = ids.iter().fold(turned, |next, id| mapped(&next, *id, by).unwrap());
     assert!(back.layers.iter().all(|layer| layer.transform.is_none()), "nothing is left of it");

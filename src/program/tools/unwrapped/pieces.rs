@@ -50,7 +50,7 @@ impl PieceGizmo {
 }
 
 /// The piece that the pen grabs, by a handle or on it, and what a drag does there.
-pub fn held(
+pub fn grab_piece(
     layout: &PlaneLayout,
     at: Vec2,
     px_per_pt: f32,
@@ -105,7 +105,7 @@ fn with_pieces(content: &Content, pieces: Vec<PlanePiece>) -> Content {
 /// The pen comes down on the sheet with the image or the gradient tool; `pen` is on the sheet.
 pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> GestureStart {
     let layer = context.layer.and_then(|id| context.document.layer(id));
-    if let Some(why) = layer.and_then(|layer| closed::locked(layer)) {
+    if let Some(why) = layer.and_then(|layer| closed::why_locked(layer)) {
         return (None, Outcome::Refused(why.into()));
     }
     let Some((layer, mut bend)) =
@@ -125,7 +125,7 @@ pub fn press(context: &ToolContext, pen: PenSample, layout: &PlaneLayout) -> Ges
         );
     }
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
-    let Some((piece, how)) = held(layout, pen.place(), context.px_per_pt, pen.keys) else {
+    let Some((piece, how)) = grab_piece(layout, pen.place(), context.px_per_pt, pen.keys) else {
         return (None, Outcome::Idle);
     };
     let known =

@@ -6,7 +6,7 @@ use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::session::Session;
 use crate::tools::gizmo::TransformGizmo;
-use crate::tools::move_content::{MoveTarget, held};
+use crate::tools::move_content::{MoveTarget, target_at};
 use eframe::egui::{Id, Painter, Pos2, Shape};
 
 /// For a layer with more strokes only the bounds are shown: finding the stroke under the pointer
@@ -34,7 +34,7 @@ pub fn draw(
         return open
             .outermost_chosen()
             .into_iter()
-            .for_each(|id| bounds(painter, open.shown(), id, to_screen));
+            .for_each(|id| bounds(painter, open.shown_document(), id, to_screen));
     }
     let id = Id::unique("held by the move tool");
     let last: Option<Last> = painter.ctx().data_mut(|data| data.get_temp(id));
@@ -43,30 +43,35 @@ pub fn draw(
         let Some(last) = last else { return };
         return match last.held {
             MoveTarget::Stroke(index) => {
-                let strokes = open.shown().strokes_on_canvas(layer.id);
+                let strokes = open.shown_document().strokes_on_canvas(layer.id);
                 strokes
                     .get(index)
                     .into_iter()
                     .for_each(|stroke| line_through(painter, stroke, to_screen));
             }
-            MoveTarget::Layer => bounds(painter, open.shown(), layer.id, to_screen),
+            MoveTarget::Layer => bounds(painter, open.shown_document(), layer.id, to_screen),
         };
     }
     let Some(at) = under.map(Vec2::floor) else { return };
     let whole = painter.ctx().input(|input| input.modifiers.shift)
-        || open.shown().strokes(layer.id).len() > MOST_STROKES;
+        || open.shown_document().strokes(layer.id).len() > MOST_STROKES;
     let known = last.filter(|last| last.at == at && !whole).map(|last| last.held);
-    let Some(now) = known.or_else(|| held(open.shown(), layer, at + vec2(0.5, 0.5), whole)) else {
+    let Some(now) =
+        known.or_else(|| target_at(open.shown_document(), layer, at + vec2(0.5, 0.5), whole))
+    else {
         return;
     };
     painter.ctx().data_mut(|data| data.insert_temp(id, Last { layer: layer.id, at, held: now }));
     match now {
         MoveTarget::Stroke(index) => {
-            let scene = open.shown().scene_of(layer.id).unwrap_or_else(|| open.shown().scene());
-            let strokes = open.shown().strokes_on_canvas(layer.id);
+            let scene = open
+                .shown_document()
+                .scene_of(layer.id)
+                .unwrap_or_else(|| open.shown_document().scene());
+            let strokes = open.shown_document().strokes_on_canvas(layer.id);
             outlined(painter, strokes.get(index).into_iter().collect(), &scene, to_screen);
         }
-        MoveTarget::Layer => bounds(painter, open.shown(), layer.id, to_screen),
+        MoveTarget::Layer => bounds(painter, open.shown_document(), layer.id, to_screen),
     }
 }
 

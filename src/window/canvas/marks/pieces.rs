@@ -5,7 +5,7 @@ use crate::math::Vec2;
 use crate::session::Session;
 use crate::surface::unwrap::PlaneLayout;
 use crate::tools::ModifierKeys;
-use crate::tools::unwrapped::pieces::{PieceGizmo, bend_on_pieces, held};
+use crate::tools::unwrapped::pieces::{PieceGizmo, bend_on_pieces, grab_piece};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
 /// Draws them while an image or a gradient lies on the pieces; `under`: on the sheet.
@@ -22,7 +22,7 @@ pub fn draw(
         return;
     }
     let held = under
-        .and_then(|at| held(layout, at, px_per_pt, ModifierKeys::default()))
+        .and_then(|at| grab_piece(layout, at, px_per_pt, ModifierKeys::default()))
         .map(|(piece, _)| piece);
     for piece in layout.pieces() {
         let Some(gizmo) = PieceGizmo::of(piece, px_per_pt) else { continue };

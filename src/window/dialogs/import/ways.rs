@@ -21,7 +21,7 @@ pub fn xor(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
 }
 
 /// The surface under one light from above left, its normals flipped.
-pub fn lit(surface: &Surface, [flip_x, flip_y]: [bool; 2]) -> Option<Picture> {
+pub fn light_surface(surface: &Surface, [flip_x, flip_y]: [bool; 2]) -> Option<Picture> {
     const SIDE: u32 = 160;
     let size = surface.size();
     let step = size.width.max(size.height).div_ceil(SIDE).max(1);

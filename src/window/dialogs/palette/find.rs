@@ -151,7 +151,7 @@ fn meanings(word: &str) -> impl Iterator<Item = &'static str> {
 
 /// What fits the typed words: names that begin with them first, then names that hold them, then
 /// what they mean. Of equals, what can be done now is first; otherwise in the order of the menus.
-pub fn found(typed: &str, can: impl Fn(PaletteEntry) -> bool) -> Vec<PaletteEntry> {
+pub fn find_entries(typed: &str, can: impl Fn(PaletteEntry) -> bool) -> Vec<PaletteEntry> {
     let typed = typed.trim().to_lowercase();
     let rank = |entry: PaletteEntry| entry.rank(&typed).map(|rank| (rank, entry));
     let mut found: Vec<(u8, PaletteEntry)> = PaletteEntry::all().filter_map(rank).collect();
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     fn names(typed: &str) -> Vec<&'static str> {
-        found(typed, |_| true).into_iter().map(PaletteEntry::name).collect()
+        find_entries(typed, |_| true).into_iter().map(PaletteEntry::name).collect()
     }
 
     #[test]
@@ -192,13 +192,13 @@ mod tests {
         assert_eq!(names("lasso")[0], "Lasso");
         assert_eq!(names("crop")[0], "Crop to selection");
         assert_eq!(names("crop tool"), ["Crop"]);
-        assert!(found("no such thing", |_| true).is_empty());
+        assert!(find_entries("no such thing", |_| true).is_empty());
     }
 
     #[test]
     fn what_can_be_done_now_comes_first() {
         let is_a_tool = |entry: PaletteEntry| matches!(entry, PaletteEntry::Tool(_));
-        let found = found("crop", is_a_tool);
+        let found = find_entries("crop", is_a_tool);
         assert_eq!((found[0].name(), found[0].kind()), ("Crop", "tool"));
     }
 }

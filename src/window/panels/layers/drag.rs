@@ -18,7 +18,7 @@ pub fn show(
     rect: Rect,
     requests: &mut UiRequests,
 ) {
-    let document = open.shown();
+    let document = open.shown_document();
     // All chosen rows move with a chosen one.
     let held = |id: LayerId| if open.is_chosen(id) { open.outermost_chosen() } else { vec![id] };
     response.dnd_set_drag_payload(layer.id);

@@ -3,7 +3,7 @@
 
 use super::color_of;
 use crate::document::{Content, Document, Layer, LayerId, LayerLabel};
-use crate::widgets::named;
+use crate::widgets::set_accessible_name;
 use eframe::egui::{self, Button, Id, RichText, TextEdit, Ui};
 use std::sync::Arc;
 
@@ -81,7 +81,7 @@ pub fn show(ui: &mut Ui, document: &Document) {
             .hint_text("Filter")
             .desired_width(ui.available_width() - 92.0);
         let field = ui.add(field);
-        named(&field, "Filter layers");
+        set_accessible_name(&field, "Filter layers");
         if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
             filter = LayerFilter::default();
         }

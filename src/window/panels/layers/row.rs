@@ -95,7 +95,7 @@ impl LayerRow<'_> {
             let how = settings.how(ModifierKeys { shift: keys.shift, ctrl: true, alt: keys.alt });
             requests.act(Action::Selection(SelectionAction::Layer { layer: path.clone(), how }));
         } else if response.clicked() && keys.command {
-            self.choose(&open.toggled(layer.id), None, requests);
+            self.choose(&open.toggle_selected(layer.id), None, requests);
         } else if response.clicked() {
             self.extend(open, layer.id, keys.shift, requests);
         }
@@ -258,7 +258,7 @@ fn name(
     if let Some((id, mut text)) = typed {
         let response =
             ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 24.0));
-        crate::widgets::named(&response, "Layer name");
+        crate::widgets::set_accessible_name(&response, "Layer name");
         if response.lost_focus() {
             ui.data_mut(|data| data.remove::<(LayerId, String)>(renaming));
             let is_kept =

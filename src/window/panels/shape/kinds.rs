@@ -8,7 +8,7 @@ use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::paint::Curve;
 use crate::panels::curve;
 use crate::shape::{Bevel, BevelCurve, Detail, LineForm, Lines};
-use crate::widgets::{ValueChange, choice_row, named};
+use crate::widgets::{ValueChange, choice_row, set_accessible_name};
 use eframe::egui::{self, Sense, Ui};
 
 /// The height of the square in which a bevel's profile is bent.
@@ -131,7 +131,7 @@ pub fn profiles(ui: &mut Ui, now: &[ProfilePicture]) -> Option<ValueChange<Vec<P
 fn light(ui: &mut Ui, label: &str, now: Vec3) -> Option<ValueChange<Vec3>> {
     let side = ui.spacing().interact_size.y + 8.0;
     let (rect, response) = ui.allocate_exact_size(egui::vec2(side, side), Sense::drag());
-    named(&response, label);
+    set_accessible_name(&response, label);
     let now = now.normalize_or(Vec3::Z);
     ball(ui.painter(), rect.center(), 0.46 * side, now);
     if response.drag_stopped() {

@@ -10,7 +10,7 @@ use crate::session::Session;
 use crate::session::actions::PartAction;
 use crate::theme::ACCENT;
 use crate::theme::strengthen_hints;
-use crate::widgets::{ValueChange, named, sentence};
+use crate::widgets::{ValueChange, sentence, set_accessible_name};
 use eframe::egui::{
     self, Align2, Color32, Id, Rect, Response, Sense, Stroke, TextEdit, TextStyle, Ui, pos2, vec2,
 };
@@ -106,7 +106,7 @@ fn name(ui: &mut Ui, part: &Part, row: &Response, requests: &mut UiRequests) {
     if let Some((id, mut text)) = typed {
         let response =
             ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 8.0));
-        named(&response, "Part name");
+        set_accessible_name(&response, "Part name");
         if response.lost_focus() {
             ui.data_mut(|data| data.remove::<(String, String)>(renaming));
             let is_kept =

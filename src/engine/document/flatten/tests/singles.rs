@@ -40,7 +40,10 @@ fn every_layer_is_drawn_alone_as_it_is_of_the_whole_document() {
     for (path, layer) in doc.walk() {
         let opaque = |layer: &mut Layer| layer.opacity = 1.0;
         let whole = drawn(&doc.with_layer(layer.id, opaque).unwrap(), layer.id);
-        assert!(drawn(&singles.around(layer.id, opaque).unwrap(), layer.id) == whole, "{path}");
+        assert!(
+            drawn(&singles.isolate_layer(layer.id, opaque).unwrap(), layer.id) == whole,
+            "{path}"
+        );
         several += usize::from(whole.iter().any(|v| *v != 0));
     }
     assert!(several > 12, "{several} show something");

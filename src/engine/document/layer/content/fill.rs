@@ -15,11 +15,11 @@ impl LayerKind for Color {
         "Fill"
     }
 
-    fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
+    fn render_tile(&self, _scene: &Scene, _at: TileAt) -> TileContent {
         TileContent::Solid(self.premultiplied())
     }
 
-    fn painted_far_side(&self, _scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, _scene: &FarScene) -> TileContent {
         TileContent::Solid(self.premultiplied())
     }
 

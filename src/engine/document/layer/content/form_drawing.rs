@@ -33,12 +33,12 @@ impl LayerKind for Live<FormDrawing> {
         }
     }
 
-    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+    fn render_tile(&self, scene: &Scene, at: TileAt) -> TileContent {
         let render = || stroke::render_tile(&self.params().strokes(scene), scene, at);
         TileContent::of_tile(self.tile(scene, at, render))
     }
 
-    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, scene: &FarScene) -> TileContent {
         self.far_side(scene, true, |scene, at| {
             stroke::render_tile(&self.params().strokes(scene), scene, at)
         })

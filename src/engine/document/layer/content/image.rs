@@ -35,11 +35,11 @@ impl LayerKind for Live<PlacedImage> {
         "Image"
     }
 
-    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+    fn render_tile(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
 
-    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, scene: &FarScene) -> TileContent {
         self.far_side(scene, true, |scene, at| self.params().render_tile(scene, at))
     }
 

@@ -84,11 +84,11 @@ impl LayerKind for InkLayer {
         self.tiles().into_iter().for_each(|tiles| count.add_tiles(tiles));
     }
 
-    fn painted(&self, _scene: &Scene, at: TileAt) -> TileContent {
+    fn render_tile(&self, _scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tiles().and_then(|tiles| tiles.tile(at)).cloned())
     }
 
-    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, scene: &FarScene) -> TileContent {
         let tile = self.tiles().and_then(|tiles| tiles.tile(scene.tile.at));
         tile.map_or(TileContent::Nothing, |tile| {
             TileContent::Packed(Arc::new(scene.tile.same(tile)))

@@ -60,11 +60,11 @@ impl LayerKind for PixelLayer {
         count.add_tiles(&self.tiles);
     }
 
-    fn painted(&self, _scene: &Scene, at: TileAt) -> TileContent {
+    fn render_tile(&self, _scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tiles.tile(at).cloned())
     }
 
-    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, scene: &FarScene) -> TileContent {
         let tile = self.tiles.tile(scene.tile.at);
         tile.map_or(TileContent::Nothing, |tile| {
             TileContent::Packed(Arc::new(scene.tile.same(tile)))
@@ -112,7 +112,7 @@ impl LayerKind for PixelLayer {
         Some(Content::Pixels(PixelLayer { tiles, ..self.clone() }))
     }
 
-    fn emptied(&self) -> Option<Content> {
+    fn without_paint(&self) -> Option<Content> {
         Some(Content::Pixels(PixelLayer::default()))
     }
 

@@ -61,14 +61,14 @@ impl LayerKind for Live<Shading> {
         }
     }
 
-    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+    fn render_tile(&self, scene: &Scene, at: TileAt) -> TileContent {
         if self.params().is_lighting_beneath() {
             return TileContent::Nothing;
         }
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
 
-    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, scene: &FarScene) -> TileContent {
         if self.params().is_lighting_beneath() {
             return TileContent::Nothing;
         }

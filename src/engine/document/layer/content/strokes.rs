@@ -51,7 +51,7 @@ impl LayerKind for Live<StrokeList> {
         "Strokes"
     }
 
-    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+    fn render_tile(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(
             self.tile(scene, at, || stroke::render_tile(&self.params().strokes, scene, at)),
         )
@@ -59,7 +59,7 @@ impl LayerKind for Live<StrokeList> {
 
     /// For strokes with too many dabs to cache, the tiles as well: tile by tile, each stroke would
     /// be laid again and again.
-    fn painted_far_side(&self, scene: &FarScene) -> TileContent {
+    fn render_far_side_tile(&self, scene: &FarScene) -> TileContent {
         self.far_side(scene, true, |scene, at| {
             stroke::render_tile(&self.params().strokes, scene, at)
         })
@@ -118,7 +118,7 @@ impl LayerKind for Live<StrokeList> {
         Live::has_homes(self, |list| list.strokes.iter().any(|stroke| stroke.home().is_some()))
     }
 
-    fn emptied(&self) -> Option<Content> {
+    fn without_paint(&self) -> Option<Content> {
         Some(Content::Strokes(Live::new(StrokeList::default())))
     }
 
@@ -255,7 +255,7 @@ fn selected(
         let (canvas, coverage) = (map.canvas(), own.coverage());
         // There may be some beyond the canvas of its own frame, too; a little more, so that it
         // ends.
-        let rect = coverage.covered().grown(2).intersect(map.plane.source_rect(canvas.rect()));
+        let rect = coverage.covered_rect().grown(2).intersect(map.plane.source_rect(canvas.rect()));
         if rect.is_empty() {
             return Arc::default();
         }

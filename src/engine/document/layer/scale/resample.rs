@@ -1,7 +1,7 @@
 //! Rows of pixels averaged into rows of another scale: the inner loop of making layers small. Floor
 //! 4.
 
-use super::covered;
+use super::source_weights;
 use crate::raster::TILE;
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ pub(super) struct AxisTaps {
 impl AxisTaps {
     /// `pixels`: the new ones; `scale`: new pixels per old one.
     pub fn new(pixels: Range<i32>, scale: f32) -> Self {
-        let all: Vec<_> = pixels.map(|i| covered(i, scale)).collect();
+        let all: Vec<_> = pixels.map(|i| source_weights(i, scale)).collect();
         let first = all.iter().flatten().map(|tap| tap.0).min().unwrap_or(0);
         let end = all.iter().flatten().map(|tap| tap.0 + 1).max().unwrap_or(0);
         let (mut taps, mut ends) = (Vec::new(), Vec::new());
@@ -72,7 +72,7 @@ mod tests {
             add_row(&columns, 0.75, &row, &mut sums);
             for (x, sum) in (-64..0).zip(sums) {
                 for (c, found) in sum.into_iter().enumerate() {
-                    let mean = covered(x, scale)
+                    let mean = source_weights(x, scale)
                         .iter()
                         .fold(1.0, |s, (x, w)| s + w * 0.75 * f32::from(value(*x, c)));
                     assert_eq!(found, mean, "scale {scale}, {x}, {c}");

@@ -117,11 +117,13 @@ impl Mesh {
             ));
         }
         for v in self.frame.size.to_array() {
-            range::within("a side of the mesh's frame", v, &MeshFrame::SIDE_PX)?;
+            range::check_range("a side of the mesh's frame", v, &MeshFrame::SIDE_PX)?;
         }
         let places =
             self.points.iter().flat_map(|p| p.to_array()).chain(self.frame.corner.to_array());
-        places.into_iter().try_for_each(|v| range::within("a place of the mesh", v, &COORDINATE))
+        places
+            .into_iter()
+            .try_for_each(|v| range::check_range("a place of the mesh", v, &COORDINATE))
     }
 
     /// The same with the points elsewhere.
@@ -144,7 +146,7 @@ impl Mesh {
 
     /// The same on a plane moved by a map that keeps its frame a rectangle: moves, mirrors, quarter
     /// turns. `None` for other maps.
-    pub(in crate::document) fn carried(&self, map: &PlaneMap) -> Option<Self> {
+    pub(in crate::document) fn transformed(&self, map: &PlaneMap) -> Option<Self> {
         let [a, b, c, d, _, _] = map.coefficients()?;
         let (is_upright, is_turned) = (b == 0.0 && c == 0.0, a == 0.0 && d == 0.0);
         if !(is_upright || is_turned) {

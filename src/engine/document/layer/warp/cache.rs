@@ -44,7 +44,7 @@ pub struct WarpTiles {
 
 impl WarpTiles {
     /// What the layer shows on a tile. `None`: it shows itself there.
-    pub fn shown(
+    pub fn displaced_tile(
         &self,
         at: TileAt,
         compose: &dyn Fn(TileAt) -> Option<Arc<Tile>>,

@@ -4,7 +4,7 @@
 use super::owners::{Cut, NO_PART};
 use crate::raster::{Plane, distance};
 use crate::shape::flats::areas::pixels;
-use crate::shape::flats::color_distance::{added, color_distance, share_on_the_way};
+use crate::shape::flats::color_distance::{color_distance, share_on_the_way, uncomposite};
 use crate::shape::flats::ink::half_width;
 use crate::shape::flats::picture::Pixel;
 use std::collections::VecDeque;
@@ -68,7 +68,7 @@ impl CutLines {
             .max_by_key(|ink| color_distance(*ink, behind));
         let share = ink.map_or(0, |ink| share_on_the_way(drawn, behind, ink));
         let least = share.max(cut.coverage(self.taker.at(x, y), x, y));
-        (least..=255).find_map(|alpha| added(drawn, alpha, behind)).unwrap_or(drawn)
+        (least..=255).find_map(|alpha| uncomposite(drawn, alpha, behind)).unwrap_or(drawn)
     }
 }
 

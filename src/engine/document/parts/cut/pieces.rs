@@ -5,7 +5,7 @@ use super::owners::{Cut, NO_PART, PieceOutline};
 use crate::math::Rect;
 use crate::raster::{Plane, Tile, TileAt, TileGrid};
 use crate::shape::flats::areas::{over, spread};
-use crate::shape::flats::color_distance::added;
+use crate::shape::flats::color_distance::uncomposite;
 use crate::shape::flats::picture::Pixel;
 use std::sync::Arc;
 
@@ -87,7 +87,7 @@ impl Cut {
         };
         let over = behind
             .filter(|behind| behind[3] == 255)
-            .and_then(|behind| added(drawn, covered, behind));
+            .and_then(|behind| uncomposite(drawn, covered, behind));
         match over {
             _ if part != first && part != second => own,
             Some(over) if part == first => over,

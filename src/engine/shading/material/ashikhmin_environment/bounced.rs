@@ -75,7 +75,7 @@ impl EnvironmentSamples {
                     (direction[c], sample.matt[c], sample.kept[c]);
             }
         }
-        self.environment_light.around_row(&last, &width_rad, weight, incoming);
+        self.environment_light.mean_over_cone_row(&last, &width_rad, weight, incoming);
         for c in 0..3 {
             for x in 0..TILE {
                 incoming[c][x] = matt[c][x] + kept[c][x] * incoming[c][x];
@@ -99,7 +99,7 @@ impl EnvironmentSamples {
             if shading.diffuse.weight > 0.0 {
                 let light = self.environment_light.matt(hit.normal);
                 sample.matt +=
-                    sample.kept * rd * (Vec3::ONE - rs) * light * ashikhmin::lifted(facing);
+                    sample.kept * rd * (Vec3::ONE - rs) * light * ashikhmin::matt_share(facing);
             }
             sample.kept *= rs + (Vec3::ONE - rs) * ashikhmin::whiteness(facing);
             sample.width_rad = sample.width_rad.hypot(self.lobe_rad);
@@ -139,9 +139,11 @@ impl EnvironmentSamples {
             if sample.is_met {
                 let arrives = n_l / n_l.max(n.z).max(1e-3);
                 let seen = sample.matt
-                    + sample.kept * self.environment_light.around(last, sample.width_rad);
+                    + sample.kept * self.environment_light.mean_over_cone(last, sample.width_rad);
                 let fresnel = rs + (Vec3::ONE - rs) * ashikhmin::whiteness(h.z);
-                change += fresnel * arrives * (seen - self.environment_light.around(l, width_rad));
+                change += fresnel
+                    * arrives
+                    * (seen - self.environment_light.mean_over_cone(l, width_rad));
             }
         }
         change / FOLLOWED as f32

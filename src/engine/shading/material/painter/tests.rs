@@ -18,7 +18,7 @@ fn light_of(
     let p = &shading.painter;
     let o = p.contact_floor + (1.0 - p.contact_floor) * (-0.4 * p.contact * higher).exp();
     let k = ((n.dot(l) + p.wrap) / (1.0 + p.wrap)).max(0.0);
-    let left = shading.shadows.left();
+    let left = shading.shadows.remaining_light();
     let edge = (4.0 * k * (1.0 - k)).max(0.0).powi(2) * lit * 0.25 * p.edge;
     let back = vec3(-l.x, 0.8 - l.y, -0.25).normalize();
     let smooth = |from: f32, to: f32, v: f32| {

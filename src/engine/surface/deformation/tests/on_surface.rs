@@ -136,7 +136,7 @@ proptest! {
         let before = Bend { operator: ON_SURFACE, anchors, weights: Weights::Segment, ..Bend::default() };
         let after = Bend { pieces: vec![piece], ..before.clone() };
         let [d, e] = [&before, &after].map(|bend| Deformation::new(Some(surface), SIZE, bend));
-        let look = piece.looked_up(d.at(x, y));
+        let look = piece.picture_from_plane(d.at(x, y));
         for (x, y) in [(64, 30), (100, 60), (130, 110)] {
             let (wanted, found) = (look.transform_point2(d.at(x, y)), e.at(x, y));
             let off = found.distance(wanted);

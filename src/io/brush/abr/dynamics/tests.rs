@@ -17,7 +17,7 @@ fn part(control: i32, jitter: f64, least: f64) -> DescriptorValue {
 
 fn convert(values: Values) -> (Brush, Vec<String>) {
     let preset = DescriptorObject::of(values);
-    let AbrConversion { brush, notes, .. } = carried(&preset, Brush::default(), Vec::new());
+    let AbrConversion { brush, notes, .. } = with_dynamics(&preset, Brush::default(), Vec::new());
     (brush, notes)
 }
 
@@ -127,7 +127,7 @@ fn a_texture_is_the_collection_s_pattern() {
         ])
     };
     let textured = |preset: &DescriptorObject, patterns: &[PatternResource]| {
-        let mut carried = carried(preset, Brush::default(), Vec::new());
+        let mut carried = with_dynamics(preset, Brush::default(), Vec::new());
         carried.textured(Path::new("a.abr"), patterns, &mut TipNames::default());
         (carried.brush.grain, carried.notes)
     };

@@ -4,7 +4,7 @@
 
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::{Budget, base64, picture};
-use crate::math::range::held;
+use crate::math::range::clamp_to_range;
 use crate::math::{COORDINATE, Vec2};
 use crate::raster::{Asset, Picture, TileGrid};
 use crate::session::actions::layers::above;
@@ -65,7 +65,7 @@ pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, 
         return open(session, picture::to_tiles(&pasted.picture, 0, 0), pasted);
     };
     let at = at.unwrap_or_else(|| view_middle(open));
-    let at = Vec2::new(held(at.x, &COORDINATE), held(at.y, &COORDINATE));
+    let at = Vec2::new(clamp_to_range(at.x, &COORDINATE), clamp_to_range(at.y, &COORDINATE));
     if to == PasteTo::Image {
         return place(session, &pasted.name, pasted.picture.clone(), at);
     }
@@ -85,7 +85,7 @@ pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, 
 /// unwrapped.
 fn view_middle(open: &OpenDocument) -> Vec2 {
     let size = open.document().size;
-    let view = open.view.filter(|_| open.unwrapped().is_none());
+    let view = open.view.filter(|_| open.unwrap_settings().is_none());
     let side = Vec2::new(size.width as f32, size.height as f32);
     view.map_or(size.center(), |view| view.center.max(Vec2::ZERO).min(side))
 }

@@ -46,7 +46,7 @@ impl LayerAction {
 
     /// Performs a long edit on a document; `None` for any other edit, if it is impossible, or if it
     /// was canceled.
-    pub fn flattened(&self, document: &Document, progress: &Progress) -> Option<Edit> {
+    pub fn perform_long(&self, document: &Document, progress: &Progress) -> Option<Edit> {
         match self {
             LayerAction::MergeDown { layer } => {
                 match &document.outermost(&layer.find(document)?)[..] {
@@ -61,12 +61,12 @@ impl LayerAction {
                 } else {
                     "Turn layer into pixels"
                 };
-                let baked = |next: Document, id| baked(&next, next.layer(id)?, progress);
+                let baked = |next: Document, id| bake(&next, next.layer(id)?, progress);
                 let document = ids.into_iter().try_fold(document.clone(), baked)?;
                 Some(Edit { label, document, select: Vec::new() })
             }
             LayerAction::Flatten {} => {
-                let flat = painted("Picture", flatten_to_paint(document, progress)?);
+                let flat = paint_layer("Picture", flatten_to_paint(document, progress)?);
                 let select = vec![flat.id];
                 let document = Document { layers: vec![Arc::new(flat)], ..document.clone() };
                 Some(Edit { label: "Flatten picture", document, select })
@@ -77,13 +77,13 @@ impl LayerAction {
 }
 
 /// A paint layer that holds these tiles.
-pub fn painted(name: &str, tiles: TileGrid) -> Layer {
+pub fn paint_layer(name: &str, tiles: TileGrid) -> Layer {
     Layer::new(name, Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
 }
 
 /// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to
 /// the layer.
-pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Document> {
+pub(super) fn bake(document: &Document, layer: &Layer, progress: &Progress) -> Option<Document> {
     let document = &document.with_transform_applied(layer.id)?;
     let mask = document.map_of(layer.id)?.layer_on_canvas(document.layer(layer.id)?).mask.clone();
     let bare = document.with_layer(layer.id, |layer| {
@@ -101,14 +101,14 @@ pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> 
 
 /// With a layer that a mesh or liquify displaces as paint of what it shows, if its kind cannot
 /// express that.
-pub(super) fn undisplaced(
+pub(super) fn bake_displacement(
     document: &Document,
     id: LayerId,
     progress: &Progress,
 ) -> Option<Document> {
     let next = document.with_transform_applied(id)?;
     let layer = next.layer(id)?;
-    if layer.is_warped() { baked(&next, layer, progress) } else { Some(next) }
+    if layer.is_warped() { bake(&next, layer, progress) } else { Some(next) }
 }
 
 /// The layer beneath one in its list.
@@ -120,13 +120,13 @@ fn layer_beneath(document: &Document, id: LayerId) -> Option<LayerId> {
 /// A layer and the one beneath it as one paint layer.
 fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
     // Groups around hand down their transforms, so that what is merged lies as it shows.
-    let document = &undisplaced(document, id, progress)?;
+    let document = &bake_displacement(document, id, progress)?;
     let layer = document.layer(id)?;
     let beneath = layer_beneath(document, layer.id)?;
     let is_group = document.layer(beneath)?.content.group().is_some();
     let is_warped = document.layer(beneath)?.is_warped() && !is_group;
     let document =
-        &if is_warped { undisplaced(document, beneath, progress)? } else { document.clone() };
+        &if is_warped { bake_displacement(document, beneath, progress)? } else { document.clone() };
     let (layer, beneath) = (document.layer(id)?, document.layer(beneath)?.clone());
     // The two alone, in a canvas of their own that sees the same surface.
     // The layers of groups are taken one by one.
@@ -166,7 +166,7 @@ fn merged_several(document: &Document, ids: &[LayerId], progress: &Progress) -> 
         blend_linear,
         clip_below,
         clip_to_surface,
-        ..painted(&name, tiles)
+        ..paint_layer(&name, tiles)
     };
     let select = vec![one.id];
     let document = document.with_one_for(ids, one)?;

@@ -7,7 +7,7 @@ use crate::io::recipe::{LiveLook, PaintedBall};
 use crate::shading::{LitSphere, Model};
 
 /// The step that puts a document in a look: its name, the document, and what is chosen then.
-pub(super) fn dressed(document: &Document, name: &str) -> Option<EditStep> {
+pub(super) fn apply_look(document: &Document, name: &str) -> Option<EditStep> {
     document.surface.as_ref()?;
     let next = LiveLook::of_key(name)?.on(document).ok()?;
     let chosen = next.layers.last().map(|layer| layer.id);

@@ -12,18 +12,18 @@ pub(super) fn moves(ids: &[LayerId]) -> &'static str {
 }
 
 /// What was moved is chosen; if it was already, the primary one stays the same.
-pub(super) fn kept(open: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
+pub(super) fn selection_after_move(open: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
     if open.outermost_chosen() == ids { Vec::new() } else { ids }
 }
 
 /// Copies above the topmost layer.
-pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
+pub(super) fn duplicate(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let place = document.place_of(*ids.last()?)?;
     let mut next = document.clone();
     let mut copies = Vec::new();
     for (i, id) in ids.iter().enumerate() {
         let layer = document.layer(*id)?;
-        let copy = copied(layer, &next.free_layer_name(&format!("{} copy", layer.name)));
+        let copy = copy_layer(layer, &next.free_layer_name(&format!("{} copy", layer.name)));
         copies.push(copy.id);
         next = next.with_inserted(copy, LayerSlot { index: place.index + 1 + i, ..place })?;
     }
@@ -32,7 +32,7 @@ pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<EditSte
 }
 
 /// The groups among some layers dissolved.
-pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
+pub(super) fn ungroup(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut freed) = (document.clone(), Vec::new());
     for id in ids {
         let Some(group) =
@@ -78,13 +78,13 @@ pub(super) fn homed(
 
 /// Layers without what is selected, or emptied without a selection; a layer that cannot be cleared
 /// stays as it is.
-pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
+pub(super) fn clear_layers(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut is_any) = (document.clone(), false);
     for id in ids {
         let cleared = match document.selected() {
             Some(selected) => next.with_cleared(*id, selected),
             None => {
-                let empty = next.layer(*id)?.content.emptied();
+                let empty = next.layer(*id)?.content.without_paint();
                 empty.and_then(|empty| next.with_layer(*id, |layer| layer.content = empty))
             }
         };
@@ -96,11 +96,11 @@ pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<EditStep> 
 }
 
 /// A copy under fresh ids.
-pub(in crate::session::actions) fn copied(layer: &Layer, name: &str) -> Layer {
+pub(in crate::session::actions) fn copy_layer(layer: &Layer, name: &str) -> Layer {
     let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
     if let Some(group) = copy.content.group_mut() {
         group.layers =
-            group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
+            group.layers.iter().map(|inner| Arc::new(copy_layer(inner, &inner.name))).collect();
     }
     copy
 }

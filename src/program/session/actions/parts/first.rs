@@ -12,7 +12,7 @@ use crate::document::{
 use crate::math::srgb::Color;
 use crate::raster::TileGrid;
 use crate::session::OpenDocument;
-use crate::session::drawing::painted_with_progress;
+use crate::session::drawing::render_layer_with_progress;
 use crate::shading::{Model, Shading};
 use std::sync::Arc;
 
@@ -39,14 +39,14 @@ impl FirstShape {
 }
 
 /// A layer of a document gets a shape. If canceled, nobody uses the result.
-pub fn shaped(
+pub fn shape_layer(
     document: &Document,
     layer: LayerId,
     inflation: Inflation,
     each: PartFor,
     progress: &Progress,
 ) -> Result<FirstShape, PartRefusal> {
-    let tiles = painted_with_progress(document, layer, progress)
+    let tiles = render_layer_with_progress(document, layer, progress)
         .ok_or("This layer has no paint of its own, so it has no outline.")?;
     let traits = DrawingTraits::of(&tiles, document.size);
     let (document, tiles) = match traits.background {

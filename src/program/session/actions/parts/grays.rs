@@ -8,7 +8,7 @@ use crate::math::srgb::{decode, encode, luminance, quantize};
 use crate::math::{Vec3, vec3};
 use crate::raster::{Plane, TileGrid};
 use crate::session::OpenDocument;
-use crate::session::drawing::painted;
+use crate::session::drawing::render_layer;
 use crate::shape::profiles::MOST_PROFILES;
 use std::sync::Arc;
 
@@ -38,7 +38,7 @@ pub fn free_files<'a>(document: &Document, stem: &'a str) -> impl Iterator<Item 
 /// Light and dark of a layer, sRGB; where it covers nothing, its mean, so that its edge is no
 /// detail.
 pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, PartRefusal> {
-    let tiles = painted(document, layer)
+    let tiles = render_layer(document, layer)
         .filter(|tiles| !tiles.bounds().is_empty())
         .ok_or(PAINTS_NOTHING)?;
     let straight = Plane::from_fn(document.size, |x, y| {
@@ -71,7 +71,7 @@ pub fn shadings(open: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal>
     let mut lights =
         lights_of(&layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>()).into_iter();
     let shading = |(layer, file): (&Arc<Layer>, String)| {
-        let tiles: TileGrid = painted(document, layer.id).ok_or(PAINTS_NOTHING)?;
+        let tiles: TileGrid = render_layer(document, layer.id).ok_or(PAINTS_NOTHING)?;
         let coverage = Plane::from_fn(document.size, |x, y| {
             let [r, g, b, _] = tiles.pixel(x as i32, y as i32).map(|v| f32::from(v) / 255.0);
             quantize(gray(r, g, b))

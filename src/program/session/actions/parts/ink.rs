@@ -7,7 +7,7 @@ use super::first::with_paint;
 use crate::document::{Document, Layer, LayerId, LayerSlot, Progress};
 use crate::raster::paper;
 use crate::session::LayerPath;
-use crate::session::drawing::painted_with_progress;
+use crate::session::drawing::render_layer_with_progress;
 
 fn layer_of(document: &Document, layer: &LayerPath) -> Result<LayerId, PartRefusal> {
     layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")
@@ -28,7 +28,7 @@ pub fn without_paper(
     layer: &LayerPath,
 ) -> Result<(Document, LayerId), PartRefusal> {
     let id = layer_of(document, layer)?;
-    let tiles = painted_with_progress(document, id, &Progress::default())
+    let tiles = render_layer_with_progress(document, id, &Progress::default())
         .ok_or("This layer paints nothing of its own.")?;
     let drawn = paper::without_paper(&tiles)
         .ok_or("No paper was found in this layer: it is empty, or dark all over.")?;

@@ -36,7 +36,7 @@ fn partition_by_part(document: &Document, id: &str) -> (Vec<Arc<Part>>, Vec<Arc<
 }
 
 /// With a copy of a part and of what lies on it, right before it; and the copy's id.
-pub fn duplicated(document: &Document, part: &Part) -> (Document, String) {
+pub fn duplicate(document: &Document, part: &Part) -> (Document, String) {
     let (own, _) = partition_by_part(document, &part.id);
     let id = free_id(document, &[]);
     let copy = Part { id: id.clone(), name: format!("{} copy", part.name), ..part.clone() };

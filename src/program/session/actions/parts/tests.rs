@@ -43,7 +43,7 @@ fn tell(session: &mut Session, line: &str) {
 }
 
 fn shown(session: &Session) -> &Document {
-    session.active().unwrap().shown()
+    session.active().unwrap().shown_document()
 }
 
 fn ids(session: &Session) -> Vec<&str> {

@@ -143,7 +143,7 @@ pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
 /// Beyond what is shown, no more is kept for speed than the ceiling and one more step.
 fn is_below_ceiling(session: &Session, held: &HeldDocuments) -> Kept {
     let kept = |document: &Document| MemoryUse::of(document).kept;
-    let shown: u64 = session.open_documents.iter().map(|open| kept(open.shown())).sum();
+    let shown: u64 = session.open_documents.iter().map(|open| kept(open.shown_document())).sum();
     let steps = session.open_documents.iter().flat_map(|open| open.history.others());
     let largest = steps.map(kept).max().unwrap_or_default();
     let ceiling = held.count(u64::MAX).all.kept / 2;
@@ -302,7 +302,7 @@ pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
     let Some(autosave) = session.autosave.take() else { return Ok(()) };
     autosave.wait_until_written();
     drop(autosave);
-    let lost = Autosave::new(folder.into()).lost();
+    let lost = Autosave::new(folder.into()).lost_sessions();
     let mut back = Vec::new();
     for left in lost.list() {
         let recovered = lost.bring_back(left, &Progress::default());

@@ -174,7 +174,7 @@ proptest! {
         let keys = ModifierKeys { shift, ..Default::default() };
         let drag = if shift { PieceDrag::Scale } else { PieceDrag::Move };
         // Beside the handles, those of the board too.
-        prop_assume!(held(&layout, from, 1.0, keys) == Some((layout.pieces()[0], drag)));
+        prop_assume!(grab_piece(&layout, from, 1.0, keys) == Some((layout.pieces()[0], drag)));
         let pivot = layout.sheet_at(&surface, layout.middle_of(&surface, &layout.pieces()[0])).unwrap();
         let after = dragged(&before, keys, from, to);
         let board = vec2(250.5, 60.5);

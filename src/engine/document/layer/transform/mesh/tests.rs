@@ -71,7 +71,7 @@ fn a_quarter_turn_takes_the_grid_along() {
     let mesh = even.with_points(points).unwrap();
     let turn = PlaneMap::rotation(90.0, vec2(96.0, 96.0));
     let turn = PlaneMap::affine(turn.coefficients().unwrap().map(f64::round)).unwrap();
-    let turned = mesh.carried(&turn).unwrap();
+    let turned = mesh.transformed(&turn).unwrap();
     assert_eq!((turned.columns(), turned.rows()), (3, 4));
     let p = vec2(90.0, 80.0);
     let there = turn.to_canvas(mesh.at(p).0).unwrap();
