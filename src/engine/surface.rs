@@ -21,6 +21,7 @@ pub mod fit;
 pub mod flow;
 pub mod form_lines;
 pub mod grain;
+pub mod hatching;
 pub mod integrate;
 pub mod links;
 mod maps;

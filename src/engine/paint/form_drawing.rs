@@ -3,6 +3,7 @@
 //! a line. Not here: where the lines are (`surface::form_lines`), how strokes look (`stroke`).
 
 mod hand;
+mod hatched;
 
 #[cfg(test)]
 mod tests;
@@ -13,8 +14,10 @@ use super::brush::Brush;
 use super::dynamics::{Curve, Dynamics, Input, Property};
 use super::scene::Scene;
 use super::stroke::Stroke;
+use crate::math::Vec3;
 use crate::math::srgb::Color;
 use crate::surface::form_lines::LineSettings;
+use crate::surface::hatching::HatchSettings;
 use hand::LightOnLines;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -23,6 +26,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub enum FormPattern {
     /// Lines where an illustrator puts them.
     Lines(LineSettings),
+    /// Hatching along the form, its tone by a light.
+    Hatching(HatchSettings),
 }
 
 /// A drawing by the form: it follows its surface.
@@ -46,13 +51,13 @@ impl FormDrawing {
 
     /// A pattern in ink, as it begins.
     pub fn new(pattern: FormPattern) -> Self {
-        Self {
-            pattern,
-            hand: DrawingHand::DEFAULT,
-            brush: Self::pen(),
-            color: Self::INK,
-            made: MadeStrokes::default(),
-        }
+        let (hand, brush) = match pattern {
+            FormPattern::Lines(_) => (DrawingHand::DEFAULT, Self::pen()),
+            FormPattern::Hatching(_) => {
+                (DrawingHand { taper: 8.0, ..DrawingHand::DEFAULT }, Self::burin())
+            }
+        };
+        Self { pattern, hand, brush, color: Self::INK, made: MadeStrokes::default() }
     }
 
     /// The pen that lines begin with: a nib that pressure widens, black at once.
@@ -61,10 +66,33 @@ impl FormDrawing {
         Brush { size: 4.0, hardness: 0.85, spacing: 0.1, dynamics, ..Brush::default() }
     }
 
+    /// The tool that hatching begins with: its width is its pressure.
+    pub fn burin() -> Brush {
+        let dynamics = Dynamics::none().with(Property::Size, Input::Pressure, Curve::Share(1.0));
+        Brush { size: 5.0, hardness: 0.85, spacing: 0.1, dynamics, ..Brush::default() }
+    }
+
+    /// Toward its light, camera space (y up), any length.
+    pub fn light(&self) -> Vec3 {
+        match &self.pattern {
+            FormPattern::Lines(lines) => lines.light,
+            FormPattern::Hatching(hatch) => hatch.light,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn light_mut(&mut self) -> &mut Vec3 {
+        match &mut self.pattern {
+            FormPattern::Lines(lines) => &mut lines.light,
+            FormPattern::Hatching(hatch) => &mut hatch.light,
+        }
+    }
+
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
         let pattern = match &self.pattern {
             FormPattern::Lines(lines) => FormPattern::Lines(lines.scaled(factor)),
+            FormPattern::Hatching(hatch) => FormPattern::Hatching(hatch.scaled(factor)),
         };
         let (hand, brush) = (self.hand.scaled(factor), self.brush.scaled(factor));
         Self { pattern, hand, brush, color: self.color, made: MadeStrokes::default() }
@@ -90,6 +118,7 @@ impl FormDrawing {
                 let lines = surface.form_lines(settings);
                 lines.lines.iter().map(|line| self.hand.stroke(self, line, &light)).collect()
             }
+            FormPattern::Hatching(settings) => hatched::strokes(self, surface, settings),
         }
     }
 }

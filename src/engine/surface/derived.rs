@@ -7,6 +7,7 @@ use super::cache::{Cache, HeapSize, RecentCache};
 use super::chunks::BallPlaces;
 use super::curvature::{Curvature, CurvatureRims, Kappa};
 use super::form_lines::{FormLines, LineKey, SmoothNormals};
+use super::hatching::{HatchKey, HatchLines};
 use super::objects::Objects;
 use super::pyramid::MapPyramids;
 use super::ray::RayMap;
@@ -62,6 +63,8 @@ caches! {
     ball_places: RecentCache<[u32; 4], BallPlaces>,
     /// Lines where an illustrator puts them, by what is asked of them.
     form_lines: RecentCache<LineKey, FormLines>,
+    /// Hatching lines, by what is asked of them.
+    hatch_lines: RecentCache<HatchKey, HatchLines>,
     /// Normals blurred within each piece, by σ, as bits.
     smooth_normals: RecentCache<u32, SmoothNormals>,
     /// What rays are marched through.

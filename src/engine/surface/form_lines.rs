@@ -13,6 +13,7 @@ mod tidy;
 mod tests;
 
 pub use smooth::SmoothNormals;
+pub(in crate::surface) use smooth::{diffused, gradient_of};
 
 use super::Surface;
 use super::cache::HeapSize;

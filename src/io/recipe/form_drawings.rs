@@ -9,12 +9,19 @@ use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::paint::{DrawingHand, FormDrawing, FormPattern};
 use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
+use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
 use serde_json::Value;
 
 impl LayerReader<'_> {
     /// A layer of lines.
     pub fn form_lines(&mut self, fields: &mut Fields) -> Result<FormDrawing> {
         let pattern = FormPattern::Lines(lines(fields)?);
+        self.form_drawing(fields, pattern)
+    }
+
+    /// A layer of hatching.
+    pub fn hatching(&mut self, fields: &mut Fields) -> Result<FormDrawing> {
+        let pattern = FormPattern::Hatching(hatch(fields)?);
         self.form_drawing(fields, pattern)
     }
 
@@ -30,7 +37,7 @@ impl LayerReader<'_> {
             }
             None => plain.brush,
         };
-        let hand = fields.get("hand").map_or(Ok(plain.hand), |node| hand(&node))?;
+        let hand = fields.get("hand").map_or(Ok(plain.hand), |node| hand(&node, plain.hand))?;
         let color = fields.color("color", plain.color)?;
         Ok(FormDrawing { pattern, hand, brush, color, made: plain.made })
     }
@@ -52,8 +59,29 @@ fn kinds(node: &JsonNode) -> Result<LineKinds> {
         .try_fold(LineKinds::NONE, |kinds, node| Ok(kinds.with(node.one_of(&LineKind::ALL)?, true)))
 }
 
-fn hand(node: &JsonNode) -> Result<DrawingHand> {
-    of_object(node, |fields| settings(fields, DrawingHand::SETTINGS, DrawingHand::DEFAULT))
+/// The numbers of a table, how tone becomes lines, their way, and the light.
+fn hatch(fields: &mut Fields) -> Result<HatchSettings> {
+    let plain = HatchSettings::DEFAULT;
+    let numbers = settings(fields, HatchSettings::SETTINGS, plain)?;
+    let style = fields.one_of("style", &HatchStyle::ALL, plain.style)?;
+    let way = fields.one_of("way", &HatchWay::ALL, plain.way)?;
+    let light = fields.get("light").map_or(Ok(plain.light), |node| direction(&node))?;
+    Ok(HatchSettings { style, way, light, ..numbers })
+}
+
+fn write_hatch(out: &mut JsonObject, hatch: &HatchSettings) {
+    let plain = HatchSettings::DEFAULT;
+    out.word("style", &HatchStyle::ALL, hatch.style, plain.style);
+    out.word("way", &HatchWay::ALL, hatch.way, plain.way);
+    write_settings(out, HatchSettings::SETTINGS, hatch, &plain);
+    if hatch.light != plain.light {
+        out.set("light", object::vector(hatch.light));
+    }
+}
+
+/// Fields that are not given are those of `base`.
+fn hand(node: &JsonNode, base: DrawingHand) -> Result<DrawingHand> {
+    of_object(node, |fields| settings(fields, DrawingHand::SETTINGS, base))
 }
 
 fn write_lines(out: &mut JsonObject, lines: &LineSettings) {
@@ -72,11 +100,12 @@ fn write_lines(out: &mut JsonObject, lines: &LineSettings) {
 pub fn write(out: &mut JsonObject, drawing: &FormDrawing) {
     match &drawing.pattern {
         FormPattern::Lines(lines) => write_lines(out, lines),
+        FormPattern::Hatching(hatch) => write_hatch(out, hatch),
     }
-    let mut hand = JsonObject::default();
-    write_settings(&mut hand, DrawingHand::SETTINGS, &drawing.hand, &DrawingHand::DEFAULT);
-    out.object("hand", hand);
     let plain = FormDrawing::new(drawing.pattern);
+    let mut hand = JsonObject::default();
+    write_settings(&mut hand, DrawingHand::SETTINGS, &drawing.hand, &plain.hand);
+    out.object("hand", hand);
     if drawing.brush != plain.brush {
         out.set("brush", write_brush(&drawing.brush).into_value());
     }
@@ -95,6 +124,18 @@ impl RecipeValue for LineSettings {
     }
 }
 
+impl RecipeValue for HatchSettings {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        write_hatch(&mut out, self);
+        out.done()
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        of_object(node, hatch)
+    }
+}
+
 impl RecipeValue for DrawingHand {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
@@ -103,7 +144,7 @@ impl RecipeValue for DrawingHand {
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
-        hand(node)
+        hand(node, DrawingHand::DEFAULT)
     }
 }
 
@@ -126,6 +167,17 @@ mod tests {
         assert_eq!(lines.to_json(), text);
         assert!(lines.kinds.has_kind(LineKind::Wire) && !lines.kinds.has_kind(LineKind::Crease));
         assert_eq!(LineSettings::DEFAULT.to_json(), json!({}));
+    }
+
+    #[test]
+    fn hatching_is_written_as_it_was_read() {
+        let text = json!({
+            "style": "engraving", "way": "slope", "spacing": 6, "angle": 30, "smooth": 4, "spread": 10,
+            "darkness": 0.75, "paper": 0.5, "shadow": 0.25, "hollows": 1, "light": [1, 0, 0.5],
+        });
+        let node = JsonNode::root(std::path::Path::new("r.json"), &text);
+        assert_eq!(HatchSettings::from_json(&node).unwrap().to_json(), text);
+        assert_eq!(HatchSettings::DEFAULT.to_json(), json!({}));
     }
 
     #[test]

@@ -25,13 +25,14 @@ const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
 /// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
-const KINDS: [(ReadContent, &str); 12] = [
+const KINDS: [(ReadContent, &str); 13] = [
     (|_, fields, _| Ok(Content::Fill(fields.color("color", Color::BLACK)?)), "fill"),
     (|reader, fields, _| Ok(Content::Pixels(reader.pixels(fields)?)), "pixels"),
     (|reader, fields, _| Ok(Content::Image(Live::new(reader.image(fields)?))), "image"),
     (|reader, fields, _| Ok(Content::Gradient(Live::new(reader.gradient(fields)?))), "gradient"),
     (|reader, fields, _| Ok(Content::Strokes(Live::new(reader.strokes(fields)?))), "strokes"),
     (|reader, fields, _| Ok(Content::FormDrawing(Live::new(reader.form_lines(fields)?))), "lines"),
+    (|reader, fields, _| Ok(Content::FormDrawing(Live::new(reader.hatching(fields)?))), "hatching"),
     (|reader, fields, _| Ok(Content::Shading(Live::new(reader.shading(fields)?))), "shading"),
     (
         |_, fields, _| Ok(Content::RadianceScaling(shading::radiance_scaling(fields)?)),

@@ -83,8 +83,9 @@ fn svg(document: &Document, drawing: &FormDrawing) -> String {
          viewBox=\"0 0 {width} {height}\">\n<g fill=\"none\" stroke=\"#{r:02x}{g:02x}{b:02x}\" \
          stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
     );
-    let FormPattern::Lines(settings) = &drawing.pattern;
-    let Some(surface) = &scene.surface else { return out };
+    let (FormPattern::Lines(settings), Some(surface)) = (&drawing.pattern, &scene.surface) else {
+        return out;
+    };
     let (lines, strokes) = (surface.form_lines(settings), drawing.strokes(&scene));
     for (kind, name) in LineKind::ALL {
         let of_kind = lines.lines.iter().zip(strokes.iter()).filter(|(line, _)| line.kind == kind);

@@ -23,6 +23,7 @@ use crate::shading::{
     Shading, Shadows, Term,
 };
 use crate::surface::form_lines::LineSettings;
+use crate::surface::hatching::HatchSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
 use values::set_mask;
@@ -59,6 +60,8 @@ actions! {
         "adjust" Adjusted { adjust: Adjust }
         /// Which lines a drawing by the form has.
         "lines" Lines { lines: LineSettings }
+        /// What hatching is like.
+        "hatching" Hatched { hatching: HatchSettings }
         /// How a hand follows the lines of such a drawing.
         "hand" Hand { hand: DrawingHand }
         /// The size of its brush, px.
@@ -136,6 +139,7 @@ impl Property {
             Property::Filtered { .. } => "Filter",
             Property::Adjusted { .. } => "Adjust image",
             Property::Lines { .. } => "Form lines",
+            Property::Hatched { .. } => "Hatching",
             Property::Hand { .. } => "Hand",
             Property::LineSize { .. } | Property::DrawnWith { .. } => "Brush of the lines",
             Property::Worded { .. } => "Text",
@@ -290,6 +294,7 @@ impl Property {
         let mut next = drawing.clone();
         match (self, &mut next.pattern) {
             (Property::Lines { lines }, FormPattern::Lines(own)) => *own = *lines,
+            (Property::Hatched { hatching }, FormPattern::Hatching(own)) => *own = *hatching,
             (Property::Hand { hand }, _) => next.hand = *hand,
             (Property::Fill { color }, _) => next.color = *color,
             (Property::LineSize { to }, _) => next.brush.size = clamp_to_range(*to, &Brush::SIZE),

@@ -133,6 +133,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| add(requests, NewLayer::Lines),
     ),
     row(
+        "New hatching",
+        &[],
+        "Hatching or engraving along the form, its tone by a light that you can move",
+        has_surface,
+        |_, requests| add(requests, NewLayer::Hatching),
+    ),
+    row(
         "New gradient layer",
         &[],
         "A gradient from the first to the second color, bent by the current operator",

@@ -8,7 +8,8 @@ use crate::paint::{Brush, DrawingHand, FormDrawing, FormPattern};
 use crate::session::actions::LayerAction;
 use crate::session::{Property, Session};
 use crate::surface::form_lines::{LineKind, LineSettings};
-use crate::widgets::{NumberField, check, set_accessible_name, title};
+use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
+use crate::widgets::{NumberField, check, choice_row, set_accessible_name, title};
 use eframe::egui::{self, Ui};
 
 /// The panel of one.
@@ -24,6 +25,7 @@ pub fn show(
     }
     match drawing.pattern {
         FormPattern::Lines(lines) => line_settings(ui, lines, setter),
+        FormPattern::Hatching(hatch) => hatch_settings(ui, hatch, setter),
     }
     brush(ui, session, drawing, setter);
     title(ui, "Hand");
@@ -47,6 +49,24 @@ fn line_settings(ui: &mut Ui, lines: LineSettings, setter: &mut LayerSetter) {
     painter::settings(ui, LineSettings::SETTINGS, lines, setter, |lines| Property::Lines { lines });
     light(ui, lines.light, setter, |light| Property::Lines {
         lines: LineSettings { light, ..lines },
+    });
+}
+
+fn hatch_settings(ui: &mut Ui, hatching: HatchSettings, setter: &mut LayerSetter) {
+    title(ui, "Hatching");
+    if let Some(style) = choice_row(ui, "Style", hatching.style, &HatchStyle::LABELS) {
+        let hatching = HatchSettings { style, ..hatching };
+        setter.set(Property::Hatched { hatching }, true);
+    }
+    if let Some(way) = choice_row(ui, "Lines go", hatching.way, &HatchWay::LABELS) {
+        let hatching = HatchSettings { way, ..hatching };
+        setter.set(Property::Hatched { hatching }, true);
+    }
+    painter::settings(ui, HatchSettings::SETTINGS, hatching, setter, |hatching| {
+        Property::Hatched { hatching }
+    });
+    light(ui, hatching.light, setter, |light| Property::Hatched {
+        hatching: HatchSettings { light, ..hatching },
     });
 }
 

@@ -9,6 +9,7 @@ mod row;
 
 use crate::document::{Content, LayerId, LayerLabel, LayerLock};
 use crate::icons::{Icon, icon_button};
+use crate::paint::FormPattern;
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, NewLayer};
@@ -27,7 +28,10 @@ pub fn kind_icon(content: &Content) -> Icon {
         Content::Image(_) => Icon::Tool(ToolKind::Image),
         Content::Gradient(_) => Icon::Tool(ToolKind::Gradient),
         Content::Strokes(_) => Icon::Tool(ToolKind::Strokes),
-        Content::FormDrawing(_) => Icon::FormLines,
+        Content::FormDrawing(live) => match live.params().pattern {
+            FormPattern::Lines(_) => Icon::FormLines,
+            FormPattern::Hatching(_) => Icon::Hatching,
+        },
         Content::Shading(_) => Icon::Shading,
         Content::RadianceScaling(_) => Icon::Scaling,
         Content::Adjustment(_) => Icon::Adjustment,

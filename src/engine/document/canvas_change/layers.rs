@@ -11,7 +11,7 @@ use crate::document::{
     LayerTransform, Live, MaskKind, NormalLayer, PixelLayer, StrokeList, TransformShape,
 };
 use crate::math::{Mat2, PlaneMap, Size, Vec2, vec2, vec3};
-use crate::paint::{FormDrawing, FormPattern, Gradient, PlacedImage, Stroke};
+use crate::paint::{FormDrawing, Gradient, PlacedImage, Stroke};
 use crate::raster::warp::{warped, warped_plane_onto};
 use crate::raster::{BlendMode, TileAt};
 use crate::shading::{LightKind, Shading};
@@ -237,9 +237,9 @@ impl Carrier<'_> {
 
     fn form_drawing(&self, drawing: &FormDrawing) -> FormDrawing {
         let mut next = drawing.clone();
-        let FormPattern::Lines(lines) = &mut next.pattern;
-        let along = self.change.matrix() * vec2(lines.light.x, -lines.light.y);
-        lines.light = vec3(along.x, -along.y, lines.light.z);
+        let light = next.light_mut();
+        let along = self.change.matrix() * vec2(light.x, -light.y);
+        *light = vec3(along.x, -along.y, light.z);
         next
     }
 

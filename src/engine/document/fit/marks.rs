@@ -13,6 +13,7 @@ use crate::paint::{
     Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke, StrokeSelection, Tip,
 };
 use crate::surface::form_lines::LineSettings;
+use crate::surface::hatching::HatchSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Bend, Operator, Weights};
 use std::sync::Arc;
@@ -70,12 +71,11 @@ pub fn form_drawing(drawing: &FormDrawing) -> Fit {
         return Err("lines are painted: smudge, blur and clone do not work here".into());
     }
     match &drawing.pattern {
-        FormPattern::Lines(lines) => {
-            numbers(lines, LineSettings::SETTINGS)?;
-            let reach = -1e6..=1e6;
-            lines.light.to_array().iter().try_for_each(|v| check_range("the light", *v, &reach))?;
-        }
+        FormPattern::Lines(lines) => numbers(lines, LineSettings::SETTINGS)?,
+        FormPattern::Hatching(hatch) => numbers(hatch, HatchSettings::SETTINGS)?,
     }
+    let light = drawing.light().to_array();
+    light.iter().try_for_each(|v| check_range("the light", *v, &(-1e6..=1e6)))?;
     numbers(&drawing.hand, DrawingHand::SETTINGS)?;
     brush(&drawing.brush)
 }

@@ -68,33 +68,73 @@ impl DrawingHand {
         Self { taper, overshoot, wobble, ..*self }
     }
 
-    /// The stroke along a line.
+    /// The stroke along a line of the form.
     pub(super) fn stroke(
         &self,
         drawing: &FormDrawing,
         line: &FormLine,
         light: &LightOnLines,
     ) -> Arc<Stroke> {
-        let points = self.path(line);
-        let along = lengths(&points);
+        let last = line.points.len().saturating_sub(1);
+        let kept = |(i, _): &(usize, &LinePoint)| i % SAMPLE_EVERY == 0 || *i == last;
+        let every: Vec<LinePoint> =
+            line.points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
+        let points = if line.is_closed {
+            every.iter().chain(every.first()).copied().collect()
+        } else {
+            self.overshot(every)
+        };
+        let taper = if line.is_closed { 0.0 } else { self.taper };
+        self.drawn(drawing, &points, taper, |point, left| {
+            let (lit, away) = light.at(point.at + BESIDE_PX * left);
+            let thin = |share: f32, by: f32| 1.0 - share * by.clamp(0.0, 1.0);
+            thin(self.by_strength, 1.0 - point.strength)
+                * thin(self.by_light, lit)
+                * thin(self.by_distance, away)
+        })
+    }
+
+    /// The stroke along a part of a line, whose strength is the pressure.
+    ///
+    /// * `from`: the position of its first point on the line: whatever is left of a line has the
+    ///   same samples.
+    pub(super) fn hatched(
+        &self,
+        drawing: &FormDrawing,
+        points: &[LinePoint],
+        from: usize,
+    ) -> Arc<Stroke> {
+        let last = points.len().saturating_sub(1);
+        let kept =
+            |(i, _): &(usize, &LinePoint)| (from + i) % SAMPLE_EVERY == 0 || *i == 0 || *i == last;
+        let every: Vec<LinePoint> =
+            points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
+        self.drawn(drawing, &self.overshot(every), self.taper, |point, _| point.strength)
+    }
+
+    /// A stroke through points.
+    ///
+    /// * `pressure`: of a point, and the direction to its left.
+    fn drawn(
+        &self,
+        drawing: &FormDrawing,
+        points: &[LinePoint],
+        taper: f32,
+        pressure: impl Fn(&LinePoint, Vec2) -> f32,
+    ) -> Arc<Stroke> {
+        let along = lengths(points);
         let whole = along.last().copied().unwrap_or(0.0);
-        let taper = if line.is_closed { 0.0 } else { self.taper.min(MOST_TAPER * whole) };
+        let taper = taper.min(MOST_TAPER * whole);
         let sample = |i: usize| {
-            let LinePoint { at, strength } = points[i];
+            let at = points[i].at;
             let (before, after) =
                 (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
             // What a line belongs to is on its left (y down).
-            let left = vec2(after.at.y - before.at.y, before.at.x - after.at.x).normalize_or_zero();
-            let (lit, away) = light.at(at + BESIDE_PX * left);
+            let left = vec2(after.at.y - before.at.y, before.at.x - after.at.x);
             let end = along[i].min(whole - along[i]);
-            let thin = |share: f32, by: f32| 1.0 - share * by.clamp(0.0, 1.0);
-            let pressure = thin(self.by_strength, 1.0 - strength)
-                * thin(self.by_light, lit)
-                * thin(self.by_distance, away)
-                * tapered(end, taper);
-            let at = at + self.strayed(at);
+            let pressure = pressure(&points[i], left.normalize_or_zero()) * tapered(end, taper);
             let (pressure, time_secs) = (pressure.max(LEAST), along[i] / SPEED);
-            Sample { pressure, time_secs, ..Sample::at(at) }.normalized()
+            Sample { pressure, time_secs, ..Sample::at(at + self.strayed(at)) }.normalized()
         };
         let samples: Vec<Sample> = (0..points.len()).map(sample).collect();
         let mut brush = drawing.brush.clone();
@@ -105,27 +145,20 @@ impl DrawingHand {
         Arc::new(Stroke::new(brush, Operator::None, drawing.color, samples))
     }
 
-    /// The points of a line that become samples, with what it overshoots.
-    fn path(&self, line: &FormLine) -> Vec<LinePoint> {
-        let last = line.points.len().saturating_sub(1);
-        let kept = |(i, _): &(usize, &LinePoint)| i % SAMPLE_EVERY == 0 || *i == last;
-        let every: Vec<LinePoint> =
-            line.points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
-        if line.is_closed {
-            return every.iter().chain(every.first()).copied().collect();
-        }
-        if self.overshoot <= 0.0 || every.len() < 2 {
-            return every;
+    /// Points that go on beyond both ends.
+    fn overshot(&self, points: Vec<LinePoint>) -> Vec<LinePoint> {
+        let n = points.len();
+        if self.overshoot <= 0.0 || n < 2 {
+            return points;
         }
         let beyond = |end: LinePoint, inner: LinePoint, seed: u32| {
             let [x, y] = [end.at.x, end.at.y].map(|v| (v / 8.0).floor() as i32 as u32);
             let far = self.overshoot * (0.5 + hash::unit(seed, x, y));
             LinePoint { at: end.at + (end.at - inner.at).normalize_or_zero() * far, ..end }
         };
-        let n = every.len();
-        let first = beyond(every[0], every[2.min(n - 1)], 1);
-        let last = beyond(every[n - 1], every[n.saturating_sub(3)], 2);
-        std::iter::once(first).chain(every).chain([last]).collect()
+        let first = beyond(points[0], points[2.min(n - 1)], 1);
+        let last = beyond(points[n - 1], points[n.saturating_sub(3)], 2);
+        std::iter::once(first).chain(points).chain([last]).collect()
     }
 
     /// Where a hand strays to from a point: noise that lies still on the paper.

@@ -3,7 +3,7 @@
 //! Floor 2. Not here: what is left of them (`tidy`).
 
 use super::chains::{LineStep, joined, paired, sides};
-use super::smooth::{SmoothNormals, gradient};
+use super::smooth::{SmoothNormals, gradient_of};
 use super::tidy::RawLine;
 use super::{LineKind, LinePoint, LineSettings};
 use crate::math::{Vec2, Vec3, vec2, vec3};
@@ -66,12 +66,13 @@ impl FormCurves<'_> {
             let g = vec2(nx.at(x, y), ny.at(x, y));
             g / g.length().max(1e-6)
         };
-        let slope =
-            Plane::from_fn(nz.size(), |x, y| gradient(nz, self.linked(x, y), x, y).dot(way(x, y)));
+        let slope = Plane::from_fn(nz.size(), |x, y| {
+            gradient_of(nz, self.linked(x, y), x, y).dot(way(x, y))
+        });
         let scale = SUGGESTIVE_SCALE * self.normals.smooth_px * self.normals.smooth_px;
         let at = |(x, y): (usize, usize)| {
             let tilt = self.normals.nbar(x, y).length();
-            let second = gradient(&slope, self.linked(x, y), x, y).dot(way(x, y));
+            let second = gradient_of(&slope, self.linked(x, y), x, y).dot(way(x, y));
             if tilt > LEAST_TILT { second * scale } else { -1.0 }
         };
         let crossing = |a: (usize, usize), b: (usize, usize)| {
@@ -122,7 +123,7 @@ impl FormCurves<'_> {
 
     fn is_hollow(&self, (x, y): (usize, usize), way: Vec2) -> bool {
         let linked = self.linked(x, y);
-        let [dx, dy] = [0, 1].map(|i| gradient(&self.normals.planes[i], linked, x, y));
+        let [dx, dy] = [0, 1].map(|i| gradient_of(&self.normals.planes[i], linked, x, y));
         way.x * dx.dot(way) + way.y * dy.dot(way) < 0.0
     }
 
@@ -134,7 +135,7 @@ impl FormCurves<'_> {
             if linked == 0 {
                 return [0.0; 3];
             }
-            let slopes = [0, 1, 2].map(|i| gradient(&self.normals.planes[i], linked, x, y));
+            let slopes = [0, 1, 2].map(|i| gradient_of(&self.normals.planes[i], linked, x, y));
             let sum = |of: &dyn Fn(Vec2) -> f32| slopes.iter().map(|s| of(*s)).sum::<f32>();
             let (xx, yy) = (sum(&|s| s.x * s.x), sum(&|s| s.y * s.y));
             let xy = sum(&|s| s.x * s.y);
@@ -146,7 +147,7 @@ impl FormCurves<'_> {
         });
         let [most, x, y] = [0, 1, 2].map(|i| all.map(move |v| v[i]));
         let growth = Plane::from_fn(size, |px, py| {
-            gradient(&most, self.linked(px, py), px, py).dot(vec2(x.at(px, py), y.at(px, py)))
+            gradient_of(&most, self.linked(px, py), px, py).dot(vec2(x.at(px, py), y.at(px, py)))
         });
         Turns { most, way: [x, y], growth }
     }

@@ -55,6 +55,17 @@ impl SmoothNormals {
     }
 }
 
+/// A map diffused along the links of a surface, as wide as a Gaussian of σ px.
+pub(in crate::surface) fn diffused(
+    plane: &Plane<f32>,
+    surface: &Surface,
+    sigma_px: f32,
+) -> Plane<f32> {
+    let mut plane = plane.clone();
+    diffuse(&mut plane, surface.links_plane(), sigma_px);
+    plane
+}
+
 /// Diffuses a map along links, as wide as a Gaussian of σ px: a step adds variance 2 · 0.2 px² on
 /// each axis. Wide ones are diffused on steps of several pixels first.
 pub(in crate::surface) fn diffuse(plane: &mut Plane<f32>, links: &Plane<u8>, sigma_px: f32) {
@@ -162,7 +173,7 @@ fn along_columns(plane: &mut Plane<f32>, links: &Plane<u8>, feedback: f32) {
 
 /// ∇ of a map at a pixel, per px: the mean of the differences to linked neighbors.
 #[inline(always)]
-pub(super) fn gradient(plane: &Plane<f32>, linked: u8, x: usize, y: usize) -> Vec2 {
+pub(in crate::surface) fn gradient_of(plane: &Plane<f32>, linked: u8, x: usize, y: usize) -> Vec2 {
     let side = |bit: u8| usize::from(linked & bit != 0);
     let (left, right) = (x - side(links::LEFT), x + side(links::RIGHT));
     let (up, down) = (y - side(links::UP), y + side(links::DOWN));

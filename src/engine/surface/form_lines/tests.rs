@@ -177,7 +177,7 @@ fn a_quarter_turn_turns_the_lines() {
     let side = 256.0;
     let size = Size::new(256, 256);
     let kinds = LineKinds::PEN.with(LineKind::Ridge, true);
-    let settings = LineSettings { kinds, detail: 0.95, ..Default::default() };
+    let settings = LineSettings { kinds, detail: 1.0, ..Default::default() };
     let upright = lines_of(&surface(size, bumps), &settings);
     let turned = lines_of(&surface(size, |x, y| bumps(y, side - x)), &settings);
     assert!(upright.len() > 2, "{}", upright.len());

@@ -14,6 +14,7 @@ use crate::shading::{
     BallStrokes, Features, Light, Model, Mood, Painter, Projection, Scaling, Shadows, Term,
 };
 use crate::surface::form_lines::LineSettings;
+use crate::surface::hatching::HatchSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
@@ -29,7 +30,7 @@ as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
 as_in_recipes!(ColorAdjustment, Text);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
 as_in_recipes!(Shadows, Painter, BallStrokes);
-as_in_recipes!(LineSettings, DrawingHand);
+as_in_recipes!(LineSettings, HatchSettings, DrawingHand);
 
 /// As documents write it.
 impl crate::session::replay::ReplayValue for LayerTransform {

@@ -18,6 +18,7 @@ use crate::session::actions::Style;
 use crate::session::property::Property;
 use crate::shading::{Environment, Model, RadianceScaling, Shading};
 use crate::surface::form_lines::LineSettings;
+use crate::surface::hatching::HatchSettings;
 use crate::surface::{Maps, NoiseRelief, Surface};
 use edits::{NUMBERS, OTHERS, PROPERTIES, STROKE};
 use proptest::prelude::*;
@@ -82,6 +83,9 @@ pub(super) fn everything() -> Document {
         Content::FormDrawing(Live::new(FormDrawing::new(FormPattern::Lines(
             LineSettings::DEFAULT,
         )))),
+        Content::FormDrawing(Live::new(FormDrawing::new(FormPattern::Hatching(
+            HatchSettings::DEFAULT,
+        )))),
     ];
     let layers = contents
         .into_iter()
@@ -94,7 +98,7 @@ pub(super) fn everything() -> Document {
 fn edit() -> impl Strategy<Value = String> {
     let numbers = prop::collection::vec(prop::sample::select(NUMBERS.to_vec()), 8);
     let all: Vec<&str> = PROPERTIES.iter().chain(OTHERS).copied().collect();
-    (prop::sample::select(all), 0..12usize, numbers).prop_map(|(template, layer, numbers)| {
+    (prop::sample::select(all), 0..13usize, numbers).prop_map(|(template, layer, numbers)| {
         let mut numbers = numbers.into_iter().cycle();
         let template = match template.starts_with("{\"in\"") {
             true => template.to_owned(),

@@ -24,12 +24,14 @@ impl LayerKind for Live<FormDrawing> {
     fn name(&self) -> &'static str {
         match self.params().pattern {
             FormPattern::Lines(_) => "lines",
+            FormPattern::Hatching(_) => "hatching",
         }
     }
 
     fn label(&self) -> &'static str {
         match self.params().pattern {
             FormPattern::Lines(_) => "Form lines",
+            FormPattern::Hatching(_) => "Hatching",
         }
     }
 

@@ -11,6 +11,7 @@ use crate::session::replay::names;
 use crate::shading::{Model, RadianceScaling, Shading};
 use crate::surface::NoiseRelief;
 use crate::surface::form_lines::LineSettings;
+use crate::surface::hatching::HatchSettings;
 
 rilievo_engine::named! {
     /// Kinds of new layers.
@@ -19,6 +20,7 @@ rilievo_engine::named! {
         Paint = "paint" => "Paint layer",
         Strokes = "strokes" => "Stroke layer",
         Lines = "lines" => "Form lines",
+        Hatching = "hatching" => "Hatching",
         Fill = "fill" => "Fill layer",
         Gradient = "gradient" => "Gradient layer",
         Shading = "shading" => "Shading layer",
@@ -54,6 +56,11 @@ pub(super) fn lit_layer(model: Model, document: &Document) -> Layer {
     layer
 }
 
+/// A drawing by the form in lengths that suit a canvas.
+fn drawn(pattern: FormPattern, size: Size) -> Content {
+    Content::FormDrawing(Live::new(FormDrawing::new(pattern).scaled(on_canvas(size))))
+}
+
 /// What lengths of a canvas of 1024 px are multiplied by on another: finer ones would not be seen,
 /// nor coarser ones look drawn.
 fn on_canvas(size: Size) -> f32 {
@@ -77,9 +84,9 @@ pub(super) fn make_layer(
     let (name, content) = match kind {
         NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),
         NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
-        NewLayer::Lines => {
-            let lines = FormDrawing::new(FormPattern::Lines(LineSettings::DEFAULT));
-            ("Form lines", Content::FormDrawing(Live::new(lines.scaled(on_canvas(size)))))
+        NewLayer::Lines => ("Form lines", drawn(FormPattern::Lines(LineSettings::DEFAULT), size)),
+        NewLayer::Hatching => {
+            ("Hatching", drawn(FormPattern::Hatching(HatchSettings::DEFAULT), size))
         }
         NewLayer::Fill => (
             "Fill",

@@ -78,7 +78,7 @@ impl LayerAction {
                 let is_drawing =
                     |layer: &&Arc<Layer>| matches!(layer.content, Content::FormDrawing(_));
                 match layer.find(document).filter(is_drawing) {
-                    None => Err("Select a layer of form lines first."),
+                    None => Err("Select a layer of form lines or hatching first."),
                     Some(layer) if layer.lock == LayerLock::All => Err("The layer is locked."),
                     Some(_) => Ok(()),
                 }

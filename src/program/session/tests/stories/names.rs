@@ -60,7 +60,7 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         Unliquified {} => &["liquify"],
         PassThrough { .. } => &["passing through"],
         Fill { .. } => &["color", "lines or how they are drawn"],
-        Lines { .. } | Hand { .. } | LineSize { .. } | DrawnWith { .. } => {
+        Lines { .. } | Hatched { .. } | Hand { .. } | LineSize { .. } | DrawnWith { .. } => {
             &["lines or how they are drawn"]
         }
         Anchors { .. } | Power { .. } | Adjusted { .. } => &["picture or how it lies"],

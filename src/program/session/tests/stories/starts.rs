@@ -151,6 +151,7 @@ const RECIPE: &str = r##"{ "format": "rilievo", "version": 2,
         { "name": "Ramp", "kind": "gradient", "blend": "screen", "stops": [[0, "#ff000080"], [1, "#00ff00"]],
           "operator": { "kind": "normal" } },
         { "name": "Contours", "kind": "lines", "of": ["outlines", "ridges", "light"], "hand": { "wobble": 1 } },
+        { "name": "Hatching", "kind": "hatching", "spacing": 12, "style": "engraving" },
         { "name": "Lines", "kind": "strokes", "mask": { "kind": "fresnel", "invert": true }, "strokes": [
             { "brush": { "preset": "soft-round", "size": 12 }, "color": "#ffcc00",
               "samples": [[4, 9, 0.5], [30, 33, 1], [50, 12, 0.25, 5, -4, 1.5]] } ] },

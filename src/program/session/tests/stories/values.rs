@@ -23,6 +23,7 @@ use crate::shading::{
     Scaling, Shadows, Term,
 };
 use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
+use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::surface::{Anchor, NoiseRelief, Operator};
@@ -279,6 +280,15 @@ impl Drawn for LineSettings {
         let kinds = LineKind::ALL.map(|(kind, _)| (kind, dice.is(50)));
         let kinds = kinds.into_iter().fold(LineKinds::NONE, with);
         LineSettings { kinds, light: dice.value(dice.word, "light"), ..numbers }
+    }
+}
+
+impl Drawn for HatchSettings {
+    fn drawn(dice: &mut Dice) -> Self {
+        let numbers = settings(dice, HatchSettings::SETTINGS, HatchSettings::DEFAULT);
+        let style = dice.one_of(&HatchStyle::ALL.map(|(style, _)| style));
+        let way = dice.one_of(&HatchWay::ALL.map(|(way, _)| way));
+        HatchSettings { style, way, light: dice.value(dice.word, "light"), ..numbers }
     }
 }
 

@@ -56,13 +56,15 @@ const WEIGHTS: &[(&str, &str, u32)] = &[
 /// Properties that only some kinds of layers have: the kinds, and the words. Any other property is
 /// drawn for all.
 const SUITING: &[(&[&str], &[&str])] = &[
-    (&["fill", "lines"], &["fill"]),
+    (&["fill", "lines", "hatching"], &["fill"]),
     (&["group"], &["pass through"]),
     (&["image"], &["anchors", "power", "adjust"]),
     (&["image", "gradient"], &["operator", "pieces", "filter"]),
     (&["image", "normals"], &["placement", "outside"]),
     (&["gradient"], &["stops", "ends"]),
-    (&["lines"], &["lines", "hand", "line size", "drawn with"]),
+    (&["lines"], &["lines"]),
+    (&["hatching"], &["hatching"]),
+    (&["lines", "hatching"], &["hand", "line size", "drawn with"]),
     (&["normals"], &["grain", "strength"]),
     (&["adjustment"], &["adjustment"]),
     (&["shading", "radiance-scaling"], &["features"]),

@@ -1,0 +1,126 @@
+//! Strokes of hatching: where tone asks for a line, and how wide it is there. Floor 3. Lines that
+//! stay do not move when the light does: tone decides width alone.
+
+use super::FormDrawing;
+use crate::math::{Vec2, Vec3, vec3};
+use crate::paint::brush::Brush;
+use crate::paint::dynamics::{Curve, Input, Property};
+use crate::paint::stroke::Stroke;
+use crate::raster::Plane;
+use crate::surface::Surface;
+use crate::surface::form_lines::{LinePoint, SmoothNormals};
+use crate::surface::hatching::{HatchLine, HatchSettings};
+use crate::surface::shadow::{LampPlace, ShadowLamp, ShareMap};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Thinner lines are not drawn, px.
+const LEAST_PX: f32 = 0.3;
+/// The shortest stroke, points.
+const SHORTEST: usize = 5;
+/// Widths are the mean over so many points on both sides.
+const MEAN: usize = 3;
+/// How far light reaches around a form, of n·ℓ.
+const WRAP: f32 = 0.1;
+/// The share of light that comes from everywhere.
+const AROUND: f32 = 0.18;
+/// The lamp of cast shadows: its radius, how far its shadows reach, in longer sides, and its rays.
+const LAMP: (f32, f32, u32) = (0.08, 0.35, 12);
+/// Shadows that are kept.
+const KEPT: usize = 3;
+/// How far what makes hollows dark may be, in longer sides.
+const HOLLOW: f32 = 0.04;
+
+/// How dark a surface is under the light of a hatching.
+struct FormTone<'s> {
+    settings: &'s HatchSettings,
+    normals: Arc<SmoothNormals>,
+    shadow: Option<Arc<ShareMap>>,
+    open: Option<Arc<Plane<f32>>>,
+    /// Toward the light, image axes.
+    toward: Vec3,
+}
+
+impl<'s> FormTone<'s> {
+    fn of(surface: &Surface, settings: &'s HatchSettings) -> Self {
+        let side = surface.size().longer_side();
+        let light = settings.light.normalize_or(Vec3::Z);
+        let (radius, reach, rays) = LAMP;
+        let lamp =
+            ShadowLamp { place: LampPlace::Afar(light), radius, reach_px: reach * side, rays };
+        Self {
+            settings,
+            normals: surface.smooth_normals(settings.smooth),
+            shadow: (settings.shadow > 0.0).then(|| surface.shadow(&lamp, KEPT)),
+            open: (settings.hollows > 0.0).then(|| surface.occlusion(HOLLOW * side)),
+            toward: vec3(light.x, -light.y, light.z),
+        }
+    }
+
+    /// How dark the drawing is to be at a place, `[0, 1]`.
+    fn dark(&self, at: Vec2) -> f32 {
+        let size = self.normals.planes[0].size();
+        let pixel = |v: f32, n: u32| (v.max(0.0) as usize).min(n.saturating_sub(1) as usize);
+        let (x, y) = (pixel(at.x, size.width), pixel(at.y, size.height));
+        let n = self.normals.nbar(x, y).extend(self.normals.nz(x, y));
+        let lit = ((n.dot(self.toward) + WRAP) / (1.0 + WRAP)).clamp(0.0, 1.0);
+        let seen = self.shadow.as_ref().map_or(1.0, |shadow| shadow.at(x, y));
+        let open = self.open.as_ref().map_or(1.0, |open| open.at(x, y));
+        let cast = 1.0 - self.settings.shadow * (1.0 - seen);
+        let hollow = 1.0 - self.settings.hollows * (1.0 - open);
+        let tone = (lit * cast * (1.0 - AROUND) + AROUND) * hollow;
+        let paper = self.settings.paper.max(1e-3);
+        self.settings.darkness * ((paper - tone) / paper).clamp(0.0, 1.0)
+    }
+}
+
+/// The strokes of a hatching on a surface, level by level.
+pub(super) fn strokes(
+    drawing: &FormDrawing,
+    surface: &Surface,
+    settings: &HatchSettings,
+) -> Vec<Arc<Stroke>> {
+    let tone = FormTone::of(surface, settings);
+    let lines = surface.hatch_lines(settings);
+    let of_line = |line: &HatchLine| of_line(drawing, line, &tone);
+    lines.lines.par_iter().flat_map_iter(of_line).collect()
+}
+
+fn of_line(drawing: &FormDrawing, line: &HatchLine, tone: &FormTone) -> Vec<Arc<Stroke>> {
+    let width = |at: Vec2, room_px: f32| {
+        let share = tone.settings.coverages(tone.dark(at)).nth(usize::from(line.level));
+        share.unwrap_or(0.0) * room_px
+    };
+    let widths: Vec<f32> = line.points.iter().map(|p| width(p.at, p.room_px)).collect();
+    let mean = |i: usize| {
+        let near = &widths[i.saturating_sub(MEAN)..(i + MEAN + 1).min(widths.len())];
+        near.iter().sum::<f32>() / near.len() as f32
+    };
+    let smooth: Vec<f32> = (0..widths.len()).map(mean).collect();
+    let mut strokes = Vec::new();
+    let mut from = 0;
+    while from < smooth.len() {
+        let is_drawn = smooth[from] >= LEAST_PX;
+        let run = smooth[from..].iter().take_while(|w| (**w >= LEAST_PX) == is_drawn).count();
+        if is_drawn && run >= SHORTEST {
+            let point = |i: usize| LinePoint {
+                at: line.points[i].at,
+                strength: pressure_of(&drawing.brush, smooth[i]),
+            };
+            let points: Vec<LinePoint> = (from..from + run).map(point).collect();
+            strokes.push(drawing.hand.hatched(drawing, &points, from));
+        }
+        from += run;
+    }
+    strokes
+}
+
+/// The pressure at which a brush draws so wide: the inverse of how pressure drives its size.
+fn pressure_of(brush: &Brush, width_px: f32) -> f32 {
+    let share = match brush.dynamics.curve(Property::Size, Input::Pressure) {
+        Some(Curve::Share(share)) if *share > 0.05 => *share,
+        _ => 1.0,
+    };
+    let ratio = width_px / brush.size.max(0.1);
+    ((ratio - (1.0 - share)) / share).clamp(0.0, 1.0)
+}

@@ -1,0 +1,209 @@
+//! Hatching: lines that follow the form, equally far apart on the surface, in nested levels, so that
+//! tone decides only which are drawn and how wide. Floor 2. Here: what is asked of them, their
+//! levels, and the cache. `directions` holds the field that they follow, `streamlines` places them,
+//! `room` measures how densely they lie. Not here: tone, and strokes along them
+//! (`paint::form_drawing`).
+
+mod comb;
+mod directions;
+mod room;
+mod streamlines;
+
+#[cfg(test)]
+mod tests;
+
+use super::Surface;
+use super::cache::HeapSize;
+use crate::math::number_settings::number_settings;
+use crate::math::{Vec2, Vec3};
+use directions::DirectionField;
+use std::sync::Arc;
+use streamlines::Streamlines;
+
+crate::named! {
+    /// How tone becomes lines.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum HatchStyle {
+        /// One family, then a second across it in the shade.
+        #[default]
+        Crosshatch = "crosshatch" => ("Crosshatching", "A second family of lines crosses the first in the shade"),
+        /// One family, denser in the shade.
+        Hatch = "hatch" => ("Hatching", "One family of lines, denser in the shade"),
+        /// One family whose width alone carries the tone.
+        Engraving = "engraving" => ("Engraving", "One family of lines, whose width alone carries the tone"),
+    }
+}
+
+crate::named! {
+    /// Which way lines of the first family go.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum HatchWay {
+        /// Around the form: where it bends most.
+        #[default]
+        Around = "around" => ("Around the form", "Where the form bends most"),
+        /// Along the form: where it bends least.
+        Along = "along" => ("Along the form", "Where the form bends least"),
+        /// Down the slope, as rain would run.
+        Slope = "slope" => ("Down the slope", "Toward the outline, as rain would run"),
+        /// At one angle on the paper.
+        Paper = "paper" => ("On the paper", "At one angle, whatever the form"),
+    }
+}
+
+number_settings! {
+    /// What is asked of hatching. Lengths are canvas px.
+    pub struct HatchSettings {
+        /// The distance between the lines of the widest level, px on the surface.
+        spacing: "Lines apart", "The distance between the first lines, px on the surface", 2.0..=200.0, 9.0;
+        /// The angle of the first family, degrees counter-clockwise; on the form, from its way.
+        angle: "Angle", "How far lines are turned, degrees", -180.0..=180.0, 0.0;
+        /// σ: forms smaller than this turn no line, px.
+        smooth: "Smallest form", "Forms smaller than this turn no line, px", 0.5..=50.0, 3.0;
+        /// How far directions spread over what has none, px.
+        spread: "Even out", "How far directions spread over what has none, px", 0.0..=200.0, 25.0;
+        /// How dark the tone is.
+        darkness: "Darkness", "How dark the darkest tone is", 0.0..=1.0, 0.9;
+        /// Tones lighter than this stay paper.
+        paper: "Paper shows from", "Lighter tones stay paper", 0.05..=1.0, 0.85;
+        /// How dark cast shadows are.
+        shadow: "Cast shadows", "How dark cast shadows are", 0.0..=1.0, 0.7;
+        /// How dark hollows are.
+        hollows: "Hollows", "How dark hollows are", 0.0..=1.0, 0.5;
+        and
+        /// How tone becomes lines.
+        style: HatchStyle = HatchStyle::Crosshatch;
+        /// Which way lines go.
+        way: HatchWay = HatchWay::Around;
+        /// Toward the light, camera space (y up), any length.
+        light: Vec3 = Vec3::new(-0.5, 0.6, 0.62);
+    }
+}
+
+impl HatchSettings {
+    /// The same on a canvas `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut next = *self;
+        let lengths = ["spacing", "smooth", "spread"];
+        for setting in Self::SETTINGS.iter().filter(|s| lengths.contains(&s.name)) {
+            setting.put(&mut next, (setting.get)(self) * factor);
+        }
+        next
+    }
+
+    /// The levels, the first drawn first.
+    pub fn levels(&self) -> &'static [HatchLevel] {
+        const fn level(apart: f32, family: u8, share: f32) -> HatchLevel {
+            HatchLevel { apart, family, share }
+        }
+        const CROSSHATCH: &[HatchLevel] =
+            &[level(1.0, 0, 0.2), level(0.5, 0, 0.24), level(0.55, 1, 0.5), level(0.28, 0, 1.0)];
+        const HATCH: &[HatchLevel] = &[level(1.0, 0, 0.2), level(0.5, 0, 0.4), level(0.25, 0, 1.0)];
+        const ENGRAVING: &[HatchLevel] = &[level(0.5, 0, 1.0)];
+        match self.style {
+            HatchStyle::Crosshatch => CROSSHATCH,
+            HatchStyle::Hatch => HATCH,
+            HatchStyle::Engraving => ENGRAVING,
+        }
+    }
+
+    /// What the lines of each level cover where the tone is so dark, `[0, 1]`, as a share of what
+    /// those before leave free: together they cover `dark`.
+    pub fn coverages(&self, dark: f32) -> impl Iterator<Item = f32> {
+        let mut left = 1.0;
+        self.levels().iter().map(move |level| {
+            // What is to stay free, and what one level can cover at most.
+            let wanted = 1.0 - (1.0 - dark).max(0.0) / left;
+            let share = wanted.max(0.0).min(level.share);
+            left *= 1.0 - share;
+            share
+        })
+    }
+
+    fn key(&self) -> HatchKey {
+        let own = [self.spacing, self.angle, self.smooth, self.spread].map(f32::to_bits);
+        HatchKey { style: self.style, way: self.way, bits: own }
+    }
+}
+
+/// One of the nested levels of lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HatchLevel {
+    /// The distance between its lines and those of the levels before, of the widest spacing.
+    pub apart: f32,
+    /// 0, or 1 across it.
+    pub family: u8,
+    /// The most that its lines cover of what those before leave free.
+    pub share: f32,
+}
+
+/// What tells the lines of a surface from others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::surface) struct HatchKey {
+    style: HatchStyle,
+    way: HatchWay,
+    bits: [u32; 4],
+}
+
+/// A point of a hatching line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HatchPoint {
+    /// Canvas px.
+    pub at: Vec2,
+    /// How wide the strip of the picture is that the line has for itself among those of its level,
+    /// px.
+    pub room_px: f32,
+}
+
+/// A line of one level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HatchLine {
+    /// Its level, from 0 on.
+    pub level: u8,
+    /// Its points, a pixel apart.
+    pub points: Vec<HatchPoint>,
+}
+
+/// All lines of a surface, level by level.
+#[derive(Debug, Default, PartialEq)]
+pub struct HatchLines {
+    /// In the order in which they were placed.
+    pub lines: Vec<HatchLine>,
+}
+
+impl HeapSize for HatchLines {
+    fn heap_bytes(&self) -> u64 {
+        let points = |line: &HatchLine| line.points.len() * size_of::<HatchPoint>();
+        let lines = self.lines.iter().map(|line| size_of::<HatchLine>() + points(line));
+        lines.sum::<usize>() as u64
+    }
+}
+
+impl HatchLines {
+    fn of(surface: &Surface, settings: &HatchSettings) -> Self {
+        let normals = surface.smooth_normals(settings.smooth);
+        let field = DirectionField::of(surface, &normals, settings);
+        let levels = settings.levels();
+        // Lines of two families do not keep each other at a distance.
+        let family = |family: u8| {
+            let mut lines = Streamlines::new(surface, &field, family);
+            for (i, level) in levels.iter().enumerate().filter(|(_, l)| l.family == family) {
+                lines.fill(i as u8, (level.apart * settings.spacing).max(1.2));
+            }
+            lines.done()
+        };
+        let (first, second) = rayon::join(|| family(0), || family(1));
+        let mut all: Vec<(u8, Vec<Vec2>)> = first.into_iter().chain(second).collect();
+        // The order of placing within a level stays.
+        all.sort_by_key(|(level, _)| *level);
+        Self { lines: room::measured(surface, all, settings) }
+    }
+}
+
+impl Surface {
+    /// The hatching lines of the surface, cached: tone is no part of them.
+    pub fn hatch_lines(&self, settings: &HatchSettings) -> Arc<HatchLines> {
+        const KEPT: usize = 3;
+        let compute = |_| HatchLines::of(self, settings);
+        self.derived.hatch_lines.get_or_compute(settings.key(), KEPT, compute)
+    }
+}

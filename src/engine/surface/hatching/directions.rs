@@ -1,0 +1,183 @@
+//! Which way hatching lines go: the cross of principal directions, diffused by how directed the form
+//! is and combed to one family, or the slope, or an angle on the paper. Floor 2. Angles are in the
+//! tangent plane, in the frame that S takes from the picture without turning it (MATH 8).
+
+use super::comb::combed;
+use super::{HatchSettings, HatchWay};
+use crate::math::{Mat2, Vec2, vec2};
+use crate::raster::Plane;
+use crate::surface::form_lines::{SmoothNormals, diffused, gradient_of};
+use crate::surface::unwrap::metric::stretch;
+use crate::surface::{Surface, links};
+use std::f32::consts::FRAC_PI_2;
+
+/// The field that lines follow.
+pub struct DirectionField<'s> {
+    surface: &'s Surface,
+    normals: &'s SmoothNormals,
+    /// cos 4θ and sin 4θ of the cross at each pixel, of any length.
+    cross: [Plane<f32>; 2],
+    /// The angle of the first family at each pixel.
+    first: Plane<f32>,
+}
+
+/// The principal directions at a pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Principal {
+    /// Of the direction in which the surface bends most, in the tangent plane.
+    pub angle: f32,
+    /// Half the difference of the curvatures, per px.
+    pub directed: f32,
+}
+
+/// K = −S⁻¹ (∂n̄/∂q) S⁻¹, made symmetric: the shape operator in the tangent plane.
+///
+/// * `slopes`: ∇n̄_x and ∇n̄_y.
+/// * `root`: S.
+pub fn principal(slopes: [Vec2; 2], root: Mat2) -> Principal {
+    let inverse = root.inverse();
+    // Columns of ∂n̄/∂q are the derivatives along x and y.
+    let turn = Mat2::from_cols(vec2(slopes[0].x, slopes[1].x), vec2(slopes[0].y, slopes[1].y));
+    let k = inverse * turn * inverse * -1.0;
+    let (xx, yy) = (k.x_axis.x, k.y_axis.y);
+    let xy = 0.5 * (k.x_axis.y + k.y_axis.x);
+    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+    let larger = 0.5 * xy.atan2(half);
+    // The larger eigenvalue is the one that bends more if the mean is positive.
+    let angle = if mean >= 0.0 { larger } else { larger + FRAC_PI_2 };
+    Principal { angle, directed: half.hypot(xy) }
+}
+
+impl<'s> DirectionField<'s> {
+    pub fn of(surface: &'s Surface, normals: &'s SmoothNormals, settings: &HatchSettings) -> Self {
+        let turned = settings.angle.to_radians();
+        let known = |angle: &(dyn Fn(usize, usize) -> f32 + Sync)| {
+            let first = Plane::from_fn(surface.size(), angle);
+            let cross = [f32::cos, f32::sin].map(|of| first.map(move |angle| of(4.0 * angle)));
+            (cross, first)
+        };
+        let (cross, first) = match settings.way {
+            HatchWay::Paper => known(&|x, y| {
+                // y down: counter-clockwise as seen is negative.
+                let way = vec2(turned.cos(), -turned.sin());
+                let on_surface = root(normals, x, y) * way;
+                on_surface.y.atan2(on_surface.x)
+            }),
+            HatchWay::Slope => {
+                let nbar = |i: usize| diffused(&normals.planes[i], surface, settings.spread);
+                let [nx, ny] = [nbar(0), nbar(1)];
+                known(&|x, y| ny.at(x, y).atan2(nx.at(x, y)) - turned)
+            }
+            HatchWay::Around | HatchWay::Along => of_form(surface, normals, settings, turned),
+        };
+        Self { surface, normals, cross, first }
+    }
+
+    /// S at a pixel.
+    pub fn root(&self, x: usize, y: usize) -> Mat2 {
+        root(self.normals, x, y)
+    }
+
+    /// The direction of a family at a pixel, unit, in the tangent plane.
+    pub fn seed(&self, x: usize, y: usize, family: u8) -> Vec2 {
+        Vec2::from_angle(self.first.at(x, y) + f32::from(family) * FRAC_PI_2)
+    }
+
+    /// Whether a pixel and the one that a step leads to are of one piece.
+    pub fn is_joined(&self, from: (usize, usize), to: (usize, usize)) -> bool {
+        let all = self.surface.links_plane();
+        let linked = |at: (usize, usize), bit: u8| all.at(at.0, at.1) & bit != 0;
+        let across = match to.0 as isize - from.0 as isize {
+            0 => true,
+            1 => linked((from.0, from.1), links::RIGHT),
+            -1 => linked((from.0, from.1), links::LEFT),
+            _ => false,
+        };
+        let down = match to.1 as isize - from.1 as isize {
+            0 => true,
+            1 => linked((to.0, from.1), links::DOWN),
+            -1 => linked((to.0, from.1), links::UP),
+            _ => false,
+        };
+        across && down
+    }
+
+    /// Whether a pixel shows the surface wholly.
+    pub fn is_on(&self, x: usize, y: usize) -> bool {
+        self.surface.coverage(x, y) >= 128
+    }
+
+    /// The branch of the cross at a place that is nearest to a direction, in the tangent plane.
+    pub fn branch(&self, at: Vec2, near: Vec2) -> Vec2 {
+        let [c, s] = self.between(at);
+        let angle = 0.25 * s.atan2(c);
+        let quarter = ((near.y.atan2(near.x) - angle) / FRAC_PI_2).round();
+        Vec2::from_angle(angle + quarter * FRAC_PI_2)
+    }
+
+    /// The cross between pixels, of those that are linked to the nearest.
+    fn between(&self, at: Vec2) -> [f32; 2] {
+        let size = self.surface.size();
+        let (w, h) = (size.width as i32, size.height as i32);
+        let middle = ((at.x as i32).clamp(0, w - 1), (at.y as i32).clamp(0, h - 1));
+        let corner = at - 0.5;
+        let (x, y) = (corner.x.floor() as i32, corner.y.floor() as i32);
+        let (fx, fy) = (corner.x - x as f32, corner.y - y as f32);
+        let own = (middle.0 as usize, middle.1 as usize);
+        let mut sum = [0.0; 2];
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let weight = if dx == 1 { fx } else { 1.0 - fx } * if dy == 1 { fy } else { 1.0 - fy };
+            let (px, py) = ((x + dx).clamp(0, w - 1), (y + dy).clamp(0, h - 1));
+            let there = (px as usize, py as usize);
+            let from = if self.is_joined(own, there) { there } else { own };
+            let (c, s) = (self.cross[0].at(from.0, from.1), self.cross[1].at(from.0, from.1));
+            let scale = weight / c.hypot(s).max(1e-12);
+            sum[0] += scale * c;
+            sum[1] += scale * s;
+        }
+        sum
+    }
+}
+
+/// S at a pixel of smooth normals.
+fn root(normals: &SmoothNormals, x: usize, y: usize) -> Mat2 {
+    stretch(normals.nbar(x, y), normals.nz(x, y), 1.0)
+}
+
+/// The cross of principal directions, e^{4iθ} weighted by how directed the form is and diffused, and
+/// the angle of the first family.
+fn of_form(
+    surface: &Surface,
+    normals: &SmoothNormals,
+    settings: &HatchSettings,
+    turned: f32,
+) -> ([Plane<f32>; 2], Plane<f32>) {
+    let found = Plane::from_fn(surface.size(), |x, y| {
+        let linked = surface.links_plane().at(x, y);
+        if linked == 0 {
+            return Principal::default();
+        }
+        let slopes = [0, 1].map(|i| gradient_of(&normals.planes[i], linked, x, y));
+        principal(slopes, root(normals, x, y))
+    });
+    let weighted = |of: fn(f32) -> f32| found.map(move |p| of(4.0 * p.angle) * p.directed);
+    let spread = |plane: Plane<f32>| diffused(&plane, surface, settings.spread);
+    let (c, s) = rayon::join(|| spread(weighted(f32::cos)), || spread(weighted(f32::sin)));
+    let angle = Plane::from_fn(surface.size(), |x, y| 0.25 * s.at(x, y).atan2(c.at(x, y)));
+    let sure = Plane::from_fn(surface.size(), |x, y| c.at(x, y).hypot(s.at(x, y)));
+    let across = if settings.way == HatchWay::Along { FRAC_PI_2 } else { 0.0 };
+    let most = found.map(move |p| [p.angle + across, p.directed]);
+    let first = combed(&angle, &sure, surface, &most);
+    // Turned in the tangent plane; y down.
+    let first = first.map(move |angle| angle - turned);
+    let eighth = 4.0 * turned;
+    let cross = [
+        Plane::from_fn(surface.size(), |x, y| {
+            c.at(x, y) * eighth.cos() + s.at(x, y) * eighth.sin()
+        }),
+        Plane::from_fn(surface.size(), |x, y| {
+            s.at(x, y) * eighth.cos() - c.at(x, y) * eighth.sin()
+        }),
+    ];
+    (cross, first)
+}
