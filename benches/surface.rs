@@ -1,7 +1,7 @@
 //! What knowing the shape costs: the curvature tensor of a map of 3840 × 2160, next to a copy of
 //! the same bytes.
 //!
-//! And what unwrapping a map of 1024 × 1024 costs.
+//! And what unwrapping a map of 1024 × 1024 costs, and finding its lines and its hatching.
 //!
 //! `cargo bench --bench surface`. Figures are per map; divide by 8.29 million for ns per pixel.
 //! `threads = 0` is all.
@@ -11,9 +11,14 @@ use rilievo::math::{vec2, vec3};
 use rilievo::raster::Plane;
 use rilievo::surface::Deformation;
 use rilievo::{Anchor, Bend, Maps, Operator, Size, Surface};
+use rilievo_engine::paint::{FormDrawing, FormPattern};
 use rilievo_engine::surface::deformation::DeformedRect;
+use rilievo_engine::surface::form_lines::{LineKind, LineKinds, LineSettings};
+use rilievo_engine::surface::hatching::HatchSettings;
 use rilievo_engine::surface::operator::UnwrapSettings;
+use rilievo_engine::surface::scene::Scene;
 use rilievo_engine::surface::unwrap::Unwrapping;
+use std::sync::Arc;
 
 fn main() {
     divan::main();
@@ -116,5 +121,61 @@ fn unwrapped_under_a_moved_anchor(bencher: Bencher, anchors: usize) {
         bend.anchors[0].at.x += 1.0;
         Deformation::new(Some(&surface), UNWRAPPED, &bend)
             .fill(UNWRAPPED.rect(), black_box(&mut deformed));
+    });
+}
+
+/// The lines of a pen drawing, from nothing. Argument: threads.
+#[divan::bench(sample_count = 5, args = [1, 2, 0])]
+fn form_lines(bencher: Bencher, threads: usize) {
+    bencher.with_inputs(ball_before_a_wall).bench_local_values(|surface| {
+        with_threads(threads, || {
+            black_box(surface.form_lines(&LineSettings::DEFAULT));
+        });
+        surface
+    });
+}
+
+/// The same after the light moved: the edge of light is traced among them. Argument: threads.
+#[divan::bench(sample_count = 5, args = [2])]
+fn form_lines_under_a_moved_light(bencher: Bencher, threads: usize) {
+    let (surface, mut turn) = (ball_before_a_wall(), 0.0f32);
+    let kinds = LineKinds::PEN.with(LineKind::Light, true);
+    bencher.bench_local(|| {
+        turn += 0.01;
+        let settings = LineSettings {
+            kinds,
+            light: vec3(turn.cos(), turn.sin(), 1.0),
+            ..LineSettings::DEFAULT
+        };
+        with_threads(threads, || {
+            black_box(surface.form_lines(&settings));
+        });
+    });
+}
+
+/// The lines of crosshatching, from nothing. Argument: threads.
+#[divan::bench(sample_count = 3, args = [1, 2])]
+fn hatch_lines(bencher: Bencher, threads: usize) {
+    bencher.with_inputs(ball_before_a_wall).bench_local_values(|surface| {
+        with_threads(threads, || {
+            black_box(surface.hatch_lines(&HatchSettings::DEFAULT));
+        });
+        surface
+    });
+}
+
+/// The strokes of crosshatching after the light moved, without painting them. Argument: threads.
+#[divan::bench(sample_count = 5, args = [2])]
+fn hatching_under_a_moved_light(bencher: Bencher, threads: usize) {
+    let (surface, mut turn) = (Arc::new(ball_before_a_wall()), 0.0f32);
+    let scene = Scene { size: UNWRAPPED, surface: Some(surface) };
+    bencher.bench_local(|| {
+        turn += 0.01;
+        let settings =
+            HatchSettings { light: vec3(turn.cos(), turn.sin(), 1.0), ..HatchSettings::DEFAULT };
+        with_threads(threads, || {
+            let drawing = FormDrawing::new(FormPattern::Hatching(settings));
+            black_box(drawing.strokes(&scene));
+        });
     });
 }

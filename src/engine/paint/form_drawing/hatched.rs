@@ -32,7 +32,7 @@ const KEPT: usize = 3;
 const HOLLOW: f32 = 0.04;
 
 /// How dark a surface is under the light of a hatching.
-struct FormTone<'s> {
+pub(super) struct FormTone<'s> {
     settings: &'s HatchSettings,
     normals: Arc<SmoothNormals>,
     shadow: Option<Arc<ShareMap>>,
@@ -42,7 +42,7 @@ struct FormTone<'s> {
 }
 
 impl<'s> FormTone<'s> {
-    fn of(surface: &Surface, settings: &'s HatchSettings) -> Self {
+    pub fn of(surface: &Surface, settings: &'s HatchSettings) -> Self {
         let side = surface.size().longer_side();
         let light = settings.light.normalize_or(Vec3::Z);
         let (radius, reach, rays) = LAMP;
@@ -58,7 +58,7 @@ impl<'s> FormTone<'s> {
     }
 
     /// How dark the drawing is to be at a place, `[0, 1]`.
-    fn dark(&self, at: Vec2) -> f32 {
+    pub fn dark(&self, at: Vec2) -> f32 {
         let size = self.normals.planes[0].size();
         let pixel = |v: f32, n: u32| (v.max(0.0) as usize).min(n.saturating_sub(1) as usize);
         let (x, y) = (pixel(at.x, size.width), pixel(at.y, size.height));

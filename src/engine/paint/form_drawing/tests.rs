@@ -1,9 +1,13 @@
 //! Strokes along the lines of a form. Floor 3.
 
 use super::*;
+use crate::math::vec2;
 use crate::math::{Size, Vec3, vec3};
+use crate::paint::stroke;
 use crate::raster::Plane;
+use crate::raster::TileAt;
 use crate::surface::form_lines::{LineKind, LineKinds};
+use crate::surface::hatching::HatchStyle;
 use crate::surface::{Maps, Surface};
 
 /// A roof over the canvas, its ridge from side to side.
@@ -70,4 +74,91 @@ fn twice_the_canvas_doubles_the_drawing() {
     let twice = drawing.scaled(2.0);
     assert_eq!((twice.hand.wobble, twice.brush.size), (4.0, 8.0));
     assert_eq!(twice.hand.by_light, drawing.hand.by_light);
+}
+
+/// A sheet whose normals turn from the light to away from it, from left to right.
+fn turning() -> Scene {
+    let size = Size::new(384, 192);
+    let normals = Plane::from_fn(size, |x, _| {
+        let turn = (x as f32 / 384.0 - 0.5) * 1.8;
+        vec3(-turn.sin(), 0.0, turn.cos())
+    });
+    let depth = Plane::filled(size, 0.5);
+    let coverage = Plane::filled(size, 255);
+    let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
+    Scene { size, surface: Some(Arc::new(surface)) }
+}
+
+fn hatching(style: HatchStyle) -> FormDrawing {
+    let settings = HatchSettings {
+        style,
+        light: vec3(-0.8, 0.0, 0.6),
+        shadow: 0.0,
+        hollows: 0.0,
+        spacing: 8.0,
+        ..HatchSettings::DEFAULT
+    };
+    let hand = DrawingHand { taper: 0.0, ..DrawingHand::DEFAULT };
+    FormDrawing { hand, ..FormDrawing::new(FormPattern::Hatching(settings)) }
+}
+
+#[test]
+fn hatching_covers_what_the_tone_asks() {
+    let scene = turning();
+    for (style, _) in HatchStyle::ALL {
+        let drawing = hatching(style);
+        let FormPattern::Hatching(settings) = &drawing.pattern else { panic!("hatching") };
+        let tone = hatched::FormTone::of(scene.surface.as_deref().unwrap(), settings);
+        let strokes = drawing.strokes(&scene);
+        let mut coverage = Plane::filled(scene.size, 0.0f32);
+        for at in TileAt::covering(scene.size.rect()) {
+            let Some(tile) = stroke::render_tile(&strokes, &scene, at) else { continue };
+            let corner = at.rect();
+            for (i, pixel) in tile.bytes().chunks_exact(4).enumerate() {
+                let (x, y) = (corner.x0 as usize + i % 64, corner.y0 as usize + i / 64);
+                coverage.set(x, y, f32::from(pixel[3]) / 255.0);
+            }
+        }
+        let mut off: Vec<f32> = Vec::new();
+        for (cx, cy) in
+            (20..370).step_by(12).flat_map(|x| (24..172).step_by(12).map(move |y| (x, y)))
+        {
+            let (mut sum, mut wanted, mut count) = (0.0, 0.0, 0.0);
+            for (x, y) in (cx - 12..=cx + 12).flat_map(|x| (cy - 12..=cy + 12).map(move |y| (x, y)))
+            {
+                let from = vec2(x as f32 - cx as f32, y as f32 - cy as f32);
+                if from.length() <= 12.0 {
+                    sum += coverage.at(x as usize, y as usize);
+                    wanted += tone.dark(vec2(x as f32 + 0.5, y as f32 + 0.5));
+                    count += 1.0;
+                }
+            }
+            off.push((sum - wanted) / count);
+        }
+        let mean = off.iter().sum::<f32>() / off.len() as f32;
+        off.iter_mut().for_each(|v| *v = v.abs());
+        off.sort_by(f32::total_cmp);
+        let (p50, p90) = (off[off.len() / 2], off[off.len() * 9 / 10]);
+        assert!(p50 < 0.04 && p90 < 0.1, "{style:?}: mean {mean}, median {p50}, p90 {p90}");
+    }
+}
+
+#[test]
+fn hatching_that_stays_does_not_move_with_the_light() {
+    let scene = turning();
+    let before = hatching(HatchStyle::Crosshatch);
+    let mut after = before.clone();
+    let (sin, cos) = 5f32.to_radians().sin_cos();
+    let light = before.light();
+    *after.light_mut() = vec3(cos * light.x - sin * light.z, 0.0, sin * light.x + cos * light.z);
+    let places = |drawing: &FormDrawing| -> std::collections::HashSet<[u32; 2]> {
+        let strokes = drawing.strokes(&scene);
+        let inner = strokes.iter().flat_map(|s| &s.samples()[1..s.samples().len() - 1]);
+        inner.map(|sample| sample.at.to_array().map(f32::to_bits)).collect()
+    };
+    let (a, b) = (places(&before), places(&after));
+    assert!(a != b);
+    // Ends move along their lines; all else is where it was.
+    let kept = a.intersection(&b).count();
+    assert!(kept * 10 > a.len().min(b.len()) * 9, "{kept} of {} and {}", a.len(), b.len());
 }
