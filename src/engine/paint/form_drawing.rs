@@ -105,12 +105,12 @@ impl FormDrawing {
         if let Some(known) = self.made.on(&front) {
             return known;
         }
-        let strokes: Arc<[Arc<Stroke>]> = self.drawn(&front).into();
+        let strokes: Arc<[Arc<Stroke>]> = self.draw(&front).into();
         self.made.keep(&front, &strokes);
         strokes
     }
 
-    fn drawn(&self, scene: &Scene) -> Vec<Arc<Stroke>> {
+    fn draw(&self, scene: &Scene) -> Vec<Arc<Stroke>> {
         let Some(surface) = scene.surface.as_deref() else { return Vec::new() };
         match &self.pattern {
             FormPattern::Lines(settings) => {

@@ -13,7 +13,7 @@ mod tidy;
 mod tests;
 
 pub use smooth::SmoothNormals;
-pub(in crate::surface) use smooth::{diffused, gradient_of};
+pub(in crate::surface) use smooth::{diffuse_copy, gradient_of};
 
 use super::Surface;
 use super::cache::HeapSize;
@@ -180,7 +180,7 @@ impl FormLines {
             let unwrapped = surface.unwrapping(UnwrapSettings { amount: 1.0, smooth_px: 2.0 });
             lines.extend(fields::wires(surface, &unwrapped, settings));
         }
-        Self { lines: tidy::tidied(lines, settings) }
+        Self { lines: tidy::tidy_lines(lines, settings) }
     }
 }
 

@@ -195,7 +195,7 @@ impl HatchLines {
         let mut all: Vec<(u8, Vec<Vec2>)> = first.into_iter().chain(second).collect();
         // The order of placing within a level stays.
         all.sort_by_key(|(level, _)| *level);
-        Self { lines: room::measured(surface, all, settings) }
+        Self { lines: room::measure_room(surface, all, settings) }
     }
 }
 

@@ -128,7 +128,7 @@ impl RecipeValue for HatchSettings {
     fn to_json(&self) -> Value {
         let mut out = JsonObject::default();
         write_hatch(&mut out, self);
-        out.done()
+        out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {

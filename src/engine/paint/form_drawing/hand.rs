@@ -82,10 +82,10 @@ impl DrawingHand {
         let points = if line.is_closed {
             every.iter().chain(every.first()).copied().collect()
         } else {
-            self.overshot(every)
+            self.extend_ends(every)
         };
         let taper = if line.is_closed { 0.0 } else { self.taper };
-        self.drawn(drawing, &points, taper, |point, left| {
+        self.draw(drawing, &points, taper, |point, left| {
             let (lit, away) = light.at(point.at + BESIDE_PX * left);
             let thin = |share: f32, by: f32| 1.0 - share * by.clamp(0.0, 1.0);
             thin(self.by_strength, 1.0 - point.strength)
@@ -98,7 +98,7 @@ impl DrawingHand {
     ///
     /// * `from`: the position of its first point on the line: whatever is left of a line has the
     ///   same samples.
-    pub(super) fn hatched(
+    pub(super) fn draw_part(
         &self,
         drawing: &FormDrawing,
         points: &[LinePoint],
@@ -109,13 +109,13 @@ impl DrawingHand {
             |(i, _): &(usize, &LinePoint)| (from + i) % SAMPLE_EVERY == 0 || *i == 0 || *i == last;
         let every: Vec<LinePoint> =
             points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
-        self.drawn(drawing, &self.overshot(every), self.taper, |point, _| point.strength)
+        self.draw(drawing, &self.extend_ends(every), self.taper, |point, _| point.strength)
     }
 
     /// A stroke through points.
     ///
     /// * `pressure`: of a point, and the direction to its left.
-    fn drawn(
+    fn draw(
         &self,
         drawing: &FormDrawing,
         points: &[LinePoint],
@@ -132,9 +132,9 @@ impl DrawingHand {
             // What a line belongs to is on its left (y down).
             let left = vec2(after.at.y - before.at.y, before.at.x - after.at.x);
             let end = along[i].min(whole - along[i]);
-            let pressure = pressure(&points[i], left.normalize_or_zero()) * tapered(end, taper);
+            let pressure = pressure(&points[i], left.normalize_or_zero()) * taper_share(end, taper);
             let (pressure, time_secs) = (pressure.max(LEAST), along[i] / SPEED);
-            Sample { pressure, time_secs, ..Sample::at(at + self.strayed(at)) }.normalized()
+            Sample { pressure, time_secs, ..Sample::at(at + self.stray(at)) }.normalized()
         };
         let samples: Vec<Sample> = (0..points.len()).map(sample).collect();
         let mut brush = drawing.brush.clone();
@@ -146,7 +146,7 @@ impl DrawingHand {
     }
 
     /// Points that go on beyond both ends.
-    fn overshot(&self, points: Vec<LinePoint>) -> Vec<LinePoint> {
+    fn extend_ends(&self, points: Vec<LinePoint>) -> Vec<LinePoint> {
         let n = points.len();
         if self.overshoot <= 0.0 || n < 2 {
             return points;
@@ -162,7 +162,7 @@ impl DrawingHand {
     }
 
     /// Where a hand strays to from a point: noise that lies still on the paper.
-    fn strayed(&self, at: Vec2) -> Vec2 {
+    fn stray(&self, at: Vec2) -> Vec2 {
         if self.wobble <= 0.0 {
             return Vec2::ZERO;
         }
@@ -175,7 +175,7 @@ impl DrawingHand {
 }
 
 /// The pressure so far from an end.
-fn tapered(from_end: f32, taper: f32) -> f32 {
+fn taper_share(from_end: f32, taper: f32) -> f32 {
     if taper <= 0.0 {
         return 1.0;
     }

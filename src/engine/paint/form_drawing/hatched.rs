@@ -108,7 +108,7 @@ fn of_line(drawing: &FormDrawing, line: &HatchLine, tone: &FormTone) -> Vec<Arc<
                 strength: pressure_of(&drawing.brush, smooth[i]),
             };
             let points: Vec<LinePoint> = (from..from + run).map(point).collect();
-            strokes.push(drawing.hand.hatched(drawing, &points, from));
+            strokes.push(drawing.hand.draw_part(drawing, &points, from));
         }
         from += run;
     }

@@ -30,7 +30,7 @@ struct JoinPlace {
 
 /// Joins steps in the order in which they are given; a place where more than two meet ends all of
 /// them.
-pub fn joined(steps: &[LineStep]) -> Vec<Chain> {
+pub fn join_steps(steps: &[LineStep]) -> Vec<Chain> {
     let mut places: HashMap<u64, JoinPlace> = HashMap::with_capacity(steps.len() + 1);
     for (i, step) in steps.iter().enumerate() {
         for key in step.keys {
@@ -96,7 +96,7 @@ impl Chaining<'_> {
 /// the cell.
 ///
 /// Of four, the shorter pairs; of three or one, none.
-pub fn paired<T: Copy>(crossings: &[T], apart: impl Fn(T, T) -> f32) -> Vec<[T; 2]> {
+pub fn pair_crossings<T: Copy>(crossings: &[T], apart: impl Fn(T, T) -> f32) -> Vec<[T; 2]> {
     match *crossings {
         [a, b] => vec![[a, b]],
         [a, b, c, d] => {

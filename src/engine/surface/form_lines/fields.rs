@@ -2,7 +2,7 @@
 //! wires. Each is where a map is zero, traced through the cells between four pixels that are linked.
 //! Floor 2. Not here: what is left of them (`tidy`).
 
-use super::chains::{LineStep, joined, paired, sides};
+use super::chains::{LineStep, join_steps, pair_crossings, sides};
 use super::smooth::{SmoothNormals, gradient_of};
 use super::tidy::RawLine;
 use super::{LineKind, LinePoint, LineSettings};
@@ -198,7 +198,7 @@ impl FormCurves<'_> {
                     }
                     let apart = |a: (u64, LinePoint), b: (u64, LinePoint)| a.1.at.distance(b.1.at);
                     steps.extend(
-                        paired(&found, apart)
+                        pair_crossings(&found, apart)
                             .into_iter()
                             .map(|[a, b]| LineStep { keys: [a.0, b.0], points: [a.1, b.1] }),
                     );
@@ -212,7 +212,7 @@ impl FormCurves<'_> {
             points: chain.points,
             is_closed: chain.is_closed,
         };
-        joined(&steps).into_iter().map(raw).collect()
+        join_steps(&steps).into_iter().map(raw).collect()
     }
 }
 
@@ -257,7 +257,7 @@ pub(super) fn wires(
             })
             .collect();
         let steps: Vec<LineStep> = rows.into_iter().flatten().collect();
-        lines.extend(joined(&steps).into_iter().map(|chain| RawLine {
+        lines.extend(join_steps(&steps).into_iter().map(|chain| RawLine {
             kind: LineKind::Wire,
             points: chain.points,
             is_closed: chain.is_closed,
@@ -287,7 +287,7 @@ fn wire_steps(plane: &Plane<f32>, spacing: f32, (x, y): (usize, usize), out: &mu
             }
         }
         let apart = |a: (u64, LinePoint), b: (u64, LinePoint)| a.1.at.distance(b.1.at);
-        let pairs = paired(&found, apart).into_iter();
+        let pairs = pair_crossings(&found, apart).into_iter();
         out.extend(pairs.map(|[a, b]| LineStep { keys: [a.0, b.0], points: [a.1, b.1] }));
     }
 }

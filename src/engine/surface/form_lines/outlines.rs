@@ -2,7 +2,7 @@
 //! at the places that contours know between pixels. Floor 2. Not here: curves of smooth forms
 //! (`fields`).
 
-use super::chains::{Chain, LineStep, joined, sides};
+use super::chains::{Chain, LineStep, join_steps, sides};
 use super::tidy::RawLine;
 use super::{LineKind, LinePoint, LineSettings};
 use crate::math::{Vec2, vec2};
@@ -147,11 +147,11 @@ impl Partings<'_> {
             .collect();
         let cells: Vec<CellStep> = rows.into_iter().flatten().collect();
         let steps: Vec<LineStep> = cells.iter().map(|cell| cell.step).collect();
-        let chains = joined(&steps);
+        let chains = join_steps(&steps);
         let sides: Vec<(Vec2, Vec2)> =
             cells.iter().map(|cell| (cell.step.points[0].at, cell.toward_far)).collect();
         let far_of = FarSides::of(&sides);
-        chains.into_iter().map(|chain| oriented(chain, kind, &far_of)).collect()
+        chains.into_iter().map(|chain| orient(chain, kind, &far_of)).collect()
     }
 
     fn steps_of_cell(&self, parting: Parting, (x, y): (usize, usize), out: &mut Vec<CellStep>) {
@@ -254,7 +254,7 @@ impl FarSides {
 }
 
 /// A chain whose far side is on its right.
-fn oriented(mut chain: Chain, kind: LineKind, far: &FarSides) -> RawLine {
+fn orient(mut chain: Chain, kind: LineKind, far: &FarSides) -> RawLine {
     let votes = chain.points.windows(3).filter_map(|three| {
         let along = three[2].at - three[0].at;
         // y down: what is on the right has a positive cross product.

@@ -34,13 +34,13 @@ const DOUBLE_COS: f32 = 0.7;
 const ENDS: usize = 3;
 
 /// Lines as a hand would draw them, by kind, the longest first.
-pub fn tidied(lines: Vec<RawLine>, settings: &LineSettings) -> Vec<FormLine> {
+pub fn tidy_lines(lines: Vec<RawLine>, settings: &LineSettings) -> Vec<FormLine> {
     let clear = lines.into_iter().flat_map(|line| clear_runs(line, settings.detail));
     let smooth = clear.flat_map(|line| {
-        let even = RawLine { points: resampled(&line.points, line.is_closed), ..line };
-        split_at_corners(even).into_iter().map(smoothed)
+        let even = RawLine { points: resample(&line.points, line.is_closed), ..line };
+        split_at_corners(even).into_iter().map(smooth_line)
     });
-    let joined = joined_over_gaps(smooth.collect());
+    let joined = join_over_gaps(smooth.collect());
     let mut long: Vec<FormLine> =
         joined.into_iter().map(to_line).filter(|line| is_long(line, settings)).collect();
     // Ties are broken by place, so that the order of tracing does not matter.
@@ -116,7 +116,7 @@ fn runs(mut line: RawLine, keeps: impl Fn(usize, &LinePoint) -> bool) -> Vec<Raw
 }
 
 /// Points a pixel apart along a line.
-fn resampled(points: &[LinePoint], is_closed: bool) -> Vec<LinePoint> {
+fn resample(points: &[LinePoint], is_closed: bool) -> Vec<LinePoint> {
     let mut path = points.to_vec();
     if is_closed {
         path.extend(points.first().copied());
@@ -189,7 +189,7 @@ fn split_at_corners(mut line: RawLine) -> Vec<RawLine> {
 }
 
 /// Smooth without shrinking (Taubin 1995); ends stay.
-fn smoothed(mut line: RawLine) -> RawLine {
+fn smooth_line(mut line: RawLine) -> RawLine {
     const PASSES: usize = 4;
     let n = line.points.len();
     if n < 5 {
@@ -216,7 +216,7 @@ fn smoothed(mut line: RawLine) -> RawLine {
 type LineEnd = (usize, bool);
 
 /// Lines of one kind whose ends are near and point at each other, as one.
-fn joined_over_gaps(lines: Vec<RawLine>) -> Vec<RawLine> {
+fn join_over_gaps(lines: Vec<RawLine>) -> Vec<RawLine> {
     let end = |(i, is_last): LineEnd| {
         let points = &lines[i].points;
         let far = points.len().saturating_sub(1).min(4);
@@ -266,11 +266,11 @@ fn joined_over_gaps(lines: Vec<RawLine>) -> Vec<RawLine> {
             mates.insert(b, a);
         }
     }
-    strung(lines, &mates)
+    string_lines(lines, &mates)
 }
 
 /// Lines strung together at the ends that are mates.
-fn strung(lines: Vec<RawLine>, mates: &HashMap<LineEnd, LineEnd>) -> Vec<RawLine> {
+fn string_lines(lines: Vec<RawLine>, mates: &HashMap<LineEnd, LineEnd>) -> Vec<RawLine> {
     let mut used = vec![false; lines.len()];
     let mut all = Vec::with_capacity(lines.len());
     // First those that begin with an open end, then rings of lines.

@@ -15,7 +15,7 @@ const PER_QUEUE: f32 = 0.5;
 /// * `angle`: of a branch of the cross, `(−π/4, π/4]`.
 /// * `sure`: how directed the form is there.
 /// * `most`: of the direction that the first family is to follow, as a whole, and its weight.
-pub fn combed(
+pub fn comb_cross(
     angle: &Plane<f32>,
     sure: &Plane<f32>,
     surface: &Surface,

@@ -1,12 +1,12 @@
-//! Which way hatching lines go: the cross of principal directions, diffused by how directed the form
-//! is and combed to one family, or the slope, or an angle on the paper. Floor 2. Angles are in the
+//! Which way hatching lines go: the cross of principal directions, diffuse_copy by how directed the form
+//! is and comb_cross to one family, or the slope, or an angle on the paper. Floor 2. Angles are in the
 //! tangent plane, in the frame that S takes from the picture without turning it (MATH 8).
 
-use super::comb::combed;
+use super::comb::comb_cross;
 use super::{HatchSettings, HatchWay};
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::Plane;
-use crate::surface::form_lines::{SmoothNormals, diffused, gradient_of};
+use crate::surface::form_lines::{SmoothNormals, diffuse_copy, gradient_of};
 use crate::surface::unwrap::metric::stretch;
 use crate::surface::{Surface, links};
 use std::f32::consts::FRAC_PI_2;
@@ -64,7 +64,7 @@ impl<'s> DirectionField<'s> {
                 on_surface.y.atan2(on_surface.x)
             }),
             HatchWay::Slope => {
-                let nbar = |i: usize| diffused(&normals.planes[i], surface, settings.spread);
+                let nbar = |i: usize| diffuse_copy(&normals.planes[i], surface, settings.spread);
                 let [nx, ny] = [nbar(0), nbar(1)];
                 known(&|x, y| ny.at(x, y).atan2(nx.at(x, y)) - turned)
             }
@@ -144,7 +144,7 @@ fn root(normals: &SmoothNormals, x: usize, y: usize) -> Mat2 {
     stretch(normals.nbar(x, y), normals.nz(x, y), 1.0)
 }
 
-/// The cross of principal directions, e^{4iθ} weighted by how directed the form is and diffused, and
+/// The cross of principal directions, e^{4iθ} weighted by how directed the form is and diffuse_copy, and
 /// the angle of the first family.
 fn of_form(
     surface: &Surface,
@@ -161,13 +161,13 @@ fn of_form(
         principal(slopes, root(normals, x, y))
     });
     let weighted = |of: fn(f32) -> f32| found.map(move |p| of(4.0 * p.angle) * p.directed);
-    let spread = |plane: Plane<f32>| diffused(&plane, surface, settings.spread);
+    let spread = |plane: Plane<f32>| diffuse_copy(&plane, surface, settings.spread);
     let (c, s) = rayon::join(|| spread(weighted(f32::cos)), || spread(weighted(f32::sin)));
     let angle = Plane::from_fn(surface.size(), |x, y| 0.25 * s.at(x, y).atan2(c.at(x, y)));
     let sure = Plane::from_fn(surface.size(), |x, y| c.at(x, y).hypot(s.at(x, y)));
     let across = if settings.way == HatchWay::Along { FRAC_PI_2 } else { 0.0 };
     let most = found.map(move |p| [p.angle + across, p.directed]);
-    let first = combed(&angle, &sure, surface, &most);
+    let first = comb_cross(&angle, &sure, surface, &most);
     // Turned in the tangent plane; y down.
     let first = first.map(move |angle| angle - turned);
     let eighth = 4.0 * turned;

@@ -12,7 +12,7 @@ const CELL_PX: usize = 2;
 const MEAN: (f32, f32, f32) = (0.9, 3.0, 24.0);
 
 /// Lines with the room of their points.
-pub fn measured(
+pub fn measure_room(
     surface: &Surface,
     lines: Vec<(u8, Vec<Vec2>)>,
     settings: &HatchSettings,

@@ -57,7 +57,7 @@ pub(super) fn lit_layer(model: Model, document: &Document) -> Layer {
 }
 
 /// A drawing by the form in lengths that suit a canvas.
-fn drawn(pattern: FormPattern, size: Size) -> Content {
+fn make_drawing(pattern: FormPattern, size: Size) -> Content {
     Content::FormDrawing(Live::new(FormDrawing::new(pattern).scaled(on_canvas(size))))
 }
 
@@ -84,9 +84,11 @@ pub(super) fn make_layer(
     let (name, content) = match kind {
         NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),
         NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
-        NewLayer::Lines => ("Form lines", drawn(FormPattern::Lines(LineSettings::DEFAULT), size)),
+        NewLayer::Lines => {
+            ("Form lines", make_drawing(FormPattern::Lines(LineSettings::DEFAULT), size))
+        }
         NewLayer::Hatching => {
-            ("Hatching", drawn(FormPattern::Hatching(HatchSettings::DEFAULT), size))
+            ("Hatching", make_drawing(FormPattern::Hatching(HatchSettings::DEFAULT), size))
         }
         NewLayer::Fill => (
             "Fill",
