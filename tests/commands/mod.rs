@@ -1,4 +1,4 @@
-//! Every command that a page, a comment or `.ci/run` gives can be run as it is written: its
+//! Every command that a page, a comment, a workflow or `.ci/run` gives can be run as it is written: its
 //! packages, targets, features, filters, subcommands, options and samples exist. Nothing is run.
 
 mod cargo;
@@ -27,6 +27,7 @@ fn pages() -> Vec<(PathBuf, String)> {
         top.into_iter().chain(files("docs", "md")).map(read).collect();
     let (path, script) = read(root().join(".ci/run"));
     pages.push((path, format!("```sh\n{script}\n```\n")));
+    pages.extend(files(".github", "yml").map(read).map(|(path, text)| (path, steps(&text))));
     let folders = ["src", "tests", "benches", "examples", "sample_normals", "brushes"];
     let sources = folders
         .iter()
@@ -34,6 +35,15 @@ fn pages() -> Vec<(PathBuf, String)> {
         .filter(|path| !path.starts_with(own_folder()));
     pages.extend(sources.map(read).map(|(path, text)| (path, comments(&text))));
     pages
+}
+
+/// The commands that a workflow runs, one a step.
+fn steps(workflow: &str) -> String {
+    let command = |line: &str| {
+        let run = line.trim_start().trim_start_matches("- ").strip_prefix("run: ");
+        format!("{}\n", run.unwrap_or_default())
+    };
+    format!("```sh\n{}```\n", workflow.lines().map(command).collect::<String>())
 }
 
 /// These files speak of commands that are wrong.
