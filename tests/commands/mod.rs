@@ -27,7 +27,8 @@ fn pages() -> Vec<(PathBuf, String)> {
         top.into_iter().chain(files("docs", "md")).map(read).collect();
     let (path, script) = read(root().join(".ci/run"));
     pages.push((path, format!("```sh\n{script}\n```\n")));
-    pages.extend(files(".github", "yml").map(read).map(|(path, text)| (path, steps(&text))));
+    let workflows = files(".github", "yml").into_iter().map(read);
+    pages.extend(workflows.map(|(path, text)| (path, commands_of_workflow(&text))));
     let folders = ["src", "tests", "benches", "examples", "sample_normals", "brushes"];
     let sources = folders
         .iter()
@@ -38,7 +39,7 @@ fn pages() -> Vec<(PathBuf, String)> {
 }
 
 /// The commands that a workflow runs, one a step.
-fn steps(workflow: &str) -> String {
+fn commands_of_workflow(workflow: &str) -> String {
     let command = |line: &str| {
         let run = line.trim_start().trim_start_matches("- ").strip_prefix("run: ");
         format!("{}\n", run.unwrap_or_default())

@@ -26,6 +26,13 @@ impl<T> NumberSetting<T> {
             (self.set)(settings, to.max(*self.range.start()).min(*self.range.end()));
         }
     }
+
+    /// Makes a length `factor` times as large, or the least that it may be. It may become larger
+    /// than documents hold: a picture that is only rendered larger looks as it did.
+    pub fn scale(&self, settings: &mut T, factor: f32) {
+        let to = (self.get)(settings) * factor;
+        (self.set)(settings, to.max(*self.range.start()));
+    }
 }
 
 /// Declares a struct of numbers with their table, `SETTINGS`, and their defaults; after `and`,

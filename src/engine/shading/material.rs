@@ -271,8 +271,8 @@ impl Shading {
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = self.clone();
         next.occlusion_radius_px *= factor;
-        next.shadows.reach *= factor;
-        next.painter.contact_size *= factor;
+        next.shadows = self.shadows.scaled(factor);
+        next.painter = self.painter.scaled(factor);
         next.strokes = self.strokes.scaled(factor);
         next
     }

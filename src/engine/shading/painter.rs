@@ -57,6 +57,14 @@ impl Painter {
     /// What warmth adds to each channel of a lamp, at 1.
     pub const WARM: [f32; 3] = [0.06, 0.0, -0.1];
 
+    /// The same on a canvas `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut next = *self;
+        let lengths = Self::SETTINGS.iter().filter(|setting| setting.name == "contact_size");
+        lengths.for_each(|setting| setting.scale(&mut next, factor));
+        next
+    }
+
     /// A lamp's light, warmed.
     pub fn warmed(&self, light: [f32; 3]) -> [f32; 3] {
         std::array::from_fn(|c| light[c] * (1.0 + self.warmth * Self::WARM[c]).max(0.0))

@@ -52,6 +52,14 @@ impl Shadows {
         Self { rays: self.rays.min(Self::FEW_RAYS), ..*self }
     }
 
+    /// The same on a canvas `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut next = *self;
+        let lengths = Self::SETTINGS.iter().filter(|setting| setting.name == "reach");
+        lengths.for_each(|setting| setting.scale(&mut next, factor));
+        next
+    }
+
     /// The light that is left where a lamp is hidden, linear, as a share of its own.
     pub fn remaining_light(&self) -> [f32; 3] {
         self.color.linear().map(|c| 1.0 - self.strength * (1.0 - c))

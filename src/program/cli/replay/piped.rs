@@ -1,13 +1,14 @@
 //! Actions from a pipe, each answered with a line of JSON, for programs that drive this one.
 //! Floor 7.
 //!
-//! A line that fails is answered and changes nothing more; the next is performed as usual.
+//! A line that fails is answered and changes nothing more; the next is performed as usual. Where a
+//! recovery log is kept, what is answered is in it.
 
 use crate::document::Document;
 use crate::io::Budget;
 use crate::session::actions::Action;
 use crate::session::replay::{self, ReplayValue};
-use crate::session::{LayerPath, LayerPaths, Session};
+use crate::session::{Autosave, LayerPath, LayerPaths, Session};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::io::{BufRead, ErrorKind, Read, Write};
@@ -68,6 +69,8 @@ fn answer_all(session: &mut Session, mut from: impl BufRead, mut to: impl Write)
             continue;
         };
         refused += usize::from(!is_done);
+        session.keep();
+        session.autosave.iter().for_each(Autosave::wait_until_written);
         let mut notes = std::mem::take(&mut session.notes);
         notes.append(&mut session.said);
         reply.insert("notes".into(), notes.into());
@@ -142,6 +145,7 @@ fn description(document: &Document) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::Progress;
 
     fn answered(lines: &str) -> (Vec<Value>, Result<()>) {
         let mut replies = Vec::new();
@@ -177,6 +181,22 @@ mod tests {
         let layers = document["layers"].as_array().unwrap();
         assert_eq!(layers.last().unwrap()["kind"], "strokes");
         assert_eq!(layers.last().unwrap()["layer"], replies[2]["layer"]);
+    }
+
+    #[test]
+    fn what_is_answered_is_in_the_recovery_log() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = Session::default();
+        session.autosave = Some(Autosave::new(folder.path().into()));
+        let lines = "{\"in\":\"file\",\"do\":\"new\",\"width\":40,\"height\":30}\n\
+                     {\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}\n";
+        answer_all(&mut session, lines.as_bytes(), Vec::new()).unwrap();
+        let kept = session.active().unwrap().document().clone();
+        drop(session);
+        let lost = Autosave::new(folder.path().into()).lost_sessions();
+        let left = lost.list().pop().expect("a log");
+        let back = lost.bring_back(left, &Progress::default()).unwrap().unwrap();
+        assert_eq!(kept.difference(back.open.document()), None);
     }
 
     #[test]

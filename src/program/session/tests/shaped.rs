@@ -171,3 +171,11 @@ fn a_document_whose_shape_is_still_to_be_made_is_shown_exported_and_saved_with_i
             && !file.exists()
     );
 }
+
+#[test]
+fn a_lit_drawing_is_made_small_though_its_contact_shade_reaches_as_little_as_it_can() {
+    let mut session = shaped();
+    tell(&mut session, r#"{"in":"canvas","do":"scale","width":40,"height":30,"filter":"smooth"}"#);
+    assert_eq!(document_of(&session).size, crate::math::Size::new(40, 30), "{:?}", session.notes);
+    assert_same_everywhere(document_of(&session), "made small");
+}

@@ -144,7 +144,10 @@ pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
 fn is_below_ceiling(session: &Session, held: &HeldDocuments) -> Kept {
     let kept = |document: &Document| MemoryUse::of(document).kept;
     let shown: u64 = session.open_documents.iter().map(|open| kept(open.shown_document())).sum();
-    let steps = session.open_documents.iter().flat_map(|open| open.history.others());
+    // While a change is only shown, the document beneath it is one of them.
+    let steps = session.open_documents.iter().flat_map(|open| {
+        [open.document(), open.saved_document()].into_iter().chain(open.history.others())
+    });
     let largest = steps.map(kept).max().unwrap_or_default();
     let ceiling = held.count(u64::MAX).all.kept / 2;
     let now = held.count(ceiling).all.kept;
