@@ -113,7 +113,7 @@ pub mod paint {
         Cycle, DabInputs, DistanceMetric, Drive, Dynamics, Falloff, Fill, Gradient, GradientStop,
         HomeFrame, ImageFilter, Input, Offset, Pickup, PictureSource, PlacedImage, Placement,
         Property, Rate, Sample, Selection, Spread, StabilizedPen, Stabilizer, Stroke, StrokeFrame,
-        StrokeHome, StrokeSelection, StylusFilter, Tip,
+        StrokeHome, StrokeSelection, StylusFilter, Text, TextAlign, TextRun, TextStyle, Tip,
         grain::{BrushGrain, GrainSource, GrainSpace},
         tip::{Bristles, Hose, Noise},
     };
@@ -183,7 +183,7 @@ pub mod files {
     #[doc(inline)]
     pub use rilievo_io::{
         Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, Terms, export, maps,
-        open, picture, recipe, save,
+        open, picture, recipe, save, text,
     };
 }
 

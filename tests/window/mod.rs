@@ -18,6 +18,7 @@ mod shape;
 mod transforming;
 mod unwrapped;
 mod warping;
+mod writing;
 
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;

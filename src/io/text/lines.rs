@@ -104,7 +104,7 @@ fn broken(text: &Text, paragraph: Line) -> Vec<Line> {
     let (mut lines, mut start, mut last_break) = (Vec::new(), 0, None);
     for (byte, letter) in string.char_indices() {
         let end = byte + letter.len_utf8();
-        let is_over = !letter.is_whitespace() && begins(end) - begins(start) > text.width;
+        let is_over = !letter.is_whitespace() && (begins(end) - begins(start)).abs() > text.width;
         if is_over && byte > start {
             let at = last_break.unwrap_or(byte);
             lines.push(paragraph.cut(start, at));
@@ -183,27 +183,51 @@ fn arc(text: &Text, first: &Line, along: f32) -> String {
 }
 
 /// Where the letters of a line that was laid out begin: bytes within the line, and px along it;
-/// the last one is its end.
+/// the last one is its end. A letter from right to left begins at its right side.
 pub(super) fn letters(text: &Text, line: &Line, laid: &[&usvg::Text]) -> Vec<(usize, f32)> {
     let string = line.string();
     let along = |x: f32, y: f32| if text.vertical { y - line.at.y } else { x - line.at.x };
-    let (mut found, mut byte, mut end) = (Vec::new(), 0, 0.0f32);
-    for glyph in laid.iter().flat_map(|text| text.layouted()).flat_map(|s| &s.positioned_glyphs) {
-        let at = glyph.transform();
+    let glyphs = laid.iter().flat_map(|text| text.layouted()).flat_map(|s| &s.positioned_glyphs);
+    let mut glyphs: Vec<(&str, f32, f32)> = glyphs
+        .map(|glyph| {
+            let at = glyph.transform();
+            let begin = along(at.tx, at.ty);
+            (glyph.text.as_str(), begin, begin)
+        })
+        .collect();
+    let side = laid.first().map(|laid| {
+        let bounds = laid.abs_bounding_box();
+        if text.vertical { bounds.bottom() } else { bounds.right() }
+    });
+    let end = side.map_or(0.0, |side| along(side, side));
+    for i in 0..glyphs.len() {
+        glyphs[i].2 = glyphs.get(i + 1).map_or(end, |next| next.1);
+    }
+    let mut last = end;
+    if is_from_right_to_left(&string) {
+        // The glyphs stand as they are seen.
+        last = glyphs.first().map_or(end, |first| first.1);
+        glyphs.reverse();
+        glyphs.iter_mut().for_each(|(_, begin, end)| *begin = *end);
+    }
+    let (mut found, mut byte) = (Vec::new(), 0);
+    for (letters, begin, _) in glyphs {
         let Some(rest) = string.get(byte..) else { break };
-        if let Some(skipped) = rest.find(glyph.text.as_str()).filter(|_| !glyph.text.is_empty()) {
+        if let Some(skipped) = rest.find(letters).filter(|_| !letters.is_empty()) {
             byte += skipped;
-            found.push((byte, along(at.tx, at.ty)));
-            byte += glyph.text.len();
+            found.push((byte, begin));
+            byte += letters.len();
         }
     }
-    if let Some(laid) = laid.first() {
-        let bounds = laid.abs_bounding_box();
-        let side = if text.vertical { bounds.bottom() } else { bounds.right() };
-        end = along(side, side);
-    }
-    found.push((string.len(), end));
+    found.push((string.len(), last));
     found
+}
+
+/// Whether the first letter that has a direction is one of Hebrew, Arabic or a relative of theirs.
+fn is_from_right_to_left(string: &str) -> bool {
+    let letter = string.chars().find(|letter| letter.is_alphabetic());
+    letter
+        .is_some_and(|c| matches!(u32::from(c), 0x590..=0x8ff | 0xfb1d..=0xfdff | 0xfe70..=0xfeff))
 }
 
 /// The places between the letters of a text.

@@ -96,6 +96,14 @@ fn carets_stand_between_letters_and_end_each_line() {
     assert_eq!((a.at.y, empty.at.y, c.at.y), (0.0, 24.0, 48.0));
 }
 
+/// Hack has no Hebrew; what stands in for it, even boxes, stands from right to left.
+#[test]
+fn carets_of_hebrew_go_from_right_to_left() {
+    let carets = carets(&text("אב")).unwrap();
+    let x: Vec<f32> = carets.iter().map(|caret| caret.at.x).collect();
+    assert!(x.len() == 3 && x[0] > x[1] && x[1] > x[2] && x[2].abs() < 1.0, "{x:?}");
+}
+
 #[test]
 fn an_empty_text_a_long_one_and_one_without_its_font_are_no_failures() {
     let empty = layout(&text(""));
