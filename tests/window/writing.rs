@@ -18,7 +18,7 @@ fn text(harness: &Story) -> Text {
 }
 
 fn type_text(harness: &mut Story, words: &str) {
-    harness.get_by_label("Words").type_text(words);
+    harness.get_by_label("Words on the canvas").type_text(words);
     steps(harness);
 }
 

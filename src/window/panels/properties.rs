@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         }
         Content::Image(live) => {
             if let Some(words) = &live.params().source.text {
-                text::show(ui, session, layer.id, words, &mut setter);
+                text::show(ui, layer.id, words, &mut setter);
             }
             image(ui, live.params(), &mut setter);
         }

@@ -1,15 +1,18 @@
-//! What a text says and in which type. What is typed here is seen on the canvas at once, where
-//! `canvas::text_carets` draws the caret. Floor 7.
+//! What a text says and in which type. What is typed, here or on the canvas, is seen on the canvas
+//! at once, where `canvas::text_carets` draws the caret. Floor 7.
 
 use super::colors;
 use super::setter::LayerSetter;
-use crate::document::LayerId;
+use crate::document::{Content, LayerId};
 use crate::io::text;
 use crate::paint::{Text, TextAlign, TextStyle};
+use crate::panel_layout::PanelKind;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::{Property, Session, Writing};
+use crate::tools::ToolKind;
 use crate::widgets::{NumberField, check, name, set_accessible_name};
 use eframe::egui::text::{CCursor, CCursorRange};
-use eframe::egui::{self, ComboBox, Id, TextEdit, Ui};
+use eframe::egui::{self, ComboBox, Id, Rect, TextEdit, Ui, UiBuilder, vec2};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -28,14 +31,13 @@ pub fn typed_range() -> Id {
     Id::unique("typed range of a text")
 }
 
-pub fn show(
-    ui: &mut Ui,
-    session: &Session,
-    layer: LayerId,
-    words: &Text,
-    setter: &mut LayerSetter,
-) {
-    let range = field(ui, session, layer, words, setter);
+pub fn show(ui: &mut Ui, layer: LayerId, words: &Text, setter: &mut LayerSetter) {
+    let id = Id::unique(("words of a layer", layer));
+    let mut range = field(ui, id, "Words", (layer, words), setter);
+    let on_canvas = ui.data(|data| data.get_temp::<Option<TypedRange>>(typed_range())).flatten();
+    if let Some(typed) = on_canvas.filter(|typed| typed.layer == layer) {
+        range = typed.bytes;
+    }
     let style = words.style_at(range.end);
     let lost = text::missing_families(words);
     if !lost.is_empty() {
@@ -117,31 +119,51 @@ fn lines(ui: &mut Ui, words: &Text, setter: &mut LayerSetter) {
     }
 }
 
-/// The field that is typed in; the bytes that are selected in it.
+/// Typing on the canvas: a field that is not seen, for the text that the text tool was pressed on.
+/// `Properties` comes to the front.
+pub fn type_on_canvas(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let Some(writing) = session.writing.filter(|_| session.tool == ToolKind::Text) else { return };
+    let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
+    let Content::Image(live) = &layer.content else { return };
+    let Some(words) = live.params().source.text.as_ref().filter(|_| layer.id == writing.layer)
+    else {
+        return;
+    };
+    let id = Id::unique(("words on the canvas", layer.id));
+    if begin(ui, id, writing, &words.string()) {
+        requests.request(WindowRequest::ShowPanel(PanelKind::Properties));
+    }
+    let corner = Rect::from_min_size(ui.max_rect().left_bottom(), vec2(200.0, 20.0));
+    let mut hidden = ui.new_child(UiBuilder::new().max_rect(corner));
+    hidden.set_opacity(0.0);
+    let mut setter = LayerSetter { layer: path, requests };
+    field(&mut hidden, id, "Words on the canvas", (layer.id, words), &mut setter);
+}
+
+/// A field that is typed in; the bytes that are selected in it.
 fn field(
     ui: &mut Ui,
-    session: &Session,
-    layer: LayerId,
-    words: &Text,
+    id: Id,
+    label: &str,
+    (layer, words): (LayerId, &Text),
     setter: &mut LayerSetter,
 ) -> Range<usize> {
-    let id = Id::unique(("words of a layer", layer));
     let mut string = words.string();
-    if let Some(writing) = session.writing.filter(|writing| writing.layer == layer) {
-        begin(ui, id, writing, &string);
-    }
     let edit = TextEdit::multiline(&mut string).id(id).desired_rows(2).desired_width(f32::INFINITY);
     let output = edit.show(ui);
-    set_accessible_name(&output.response, "Words");
+    set_accessible_name(&output.response, label);
     let byte =
         |letters: usize| string.char_indices().nth(letters).map_or(string.len(), |(byte, _)| byte);
     let range = output.cursor_range.map(|range| {
         let ends = [byte(range.primary.index.0), byte(range.secondary.index.0)];
         (ends[0].min(ends[1])..ends[0].max(ends[1]), ends[0])
     });
-    let typed = range.clone().filter(|_| output.response.has_focus());
-    let typed = typed.map(|(bytes, caret)| TypedRange { layer, bytes, caret });
-    ui.data_mut(|data| data.insert_temp(typed_range(), typed));
+    if let Some((bytes, caret)) = range.clone().filter(|_| output.response.has_focus()) {
+        let typed = TypedRange { layer, bytes, caret };
+        ui.data_mut(|data| data.insert_temp(typed_range(), Some(typed)));
+    } else if output.response.lost_focus() {
+        ui.data_mut(|data| data.insert_temp(typed_range(), None::<TypedRange>));
+    }
     if output.response.changed() {
         // A word is a step of the history.
         let is_word = string.ends_with(char::is_whitespace);
@@ -152,11 +174,11 @@ fn field(
     range.map_or(0..0, |(bytes, _)| bytes)
 }
 
-/// Goes into the field where the text tool was pressed, once for each press.
-fn begin(ui: &Ui, id: Id, writing: Writing, string: &str) {
+/// Goes into the field where the text tool was pressed, once for each press; whether it did.
+fn begin(ui: &Ui, id: Id, writing: Writing, string: &str) -> bool {
     let last = Id::unique("last press of the text tool");
     if ui.data(|data| data.get_temp::<Writing>(last)) == Some(writing) {
-        return;
+        return false;
     }
     ui.data_mut(|data| data.insert_temp(last, writing));
     let letters = |byte: usize| string.get(..byte).map_or(0, |before| before.chars().count());
@@ -168,6 +190,7 @@ fn begin(ui: &Ui, id: Id, writing: Writing, string: &str) {
     state.cursor.set_char_range(Some(range));
     state.store(ui.ctx(), id);
     ui.memory_mut(|memory| memory.request_focus(id));
+    true
 }
 
 /// A menu of all fonts; another one that was chosen.

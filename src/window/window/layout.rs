@@ -56,6 +56,7 @@ impl MainWindow {
         CentralPanel::no_frame().show(ui, |ui| {
             let area = ui.max_rect();
             self.canvas.show(ui, &self.session, &mut requests.actions);
+            panels::text::type_on_canvas(ui, &self.session, requests);
             self.show_steps(ui);
             self.show_messages(ui.ctx(), area);
             show_hovered(ui, area, self.session.active().is_some());

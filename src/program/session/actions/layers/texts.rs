@@ -97,7 +97,8 @@ pub(super) fn write(open: &mut OpenDocument, text: &Text, at: Vec2) -> Result<()
         filter: ImageFilter::Antialias,
         frame: Default::default(),
     };
-    let layer = Layer::new(document.free_layer_name(&name(text)), Content::Image(Live::new(image)));
+    let (name, content) = (document.free_layer_name(&name(text)), Content::Image(Live::new(image)));
+    let layer = Layer { clip_to_surface: false, ..Layer::new(name, content) };
     let id = layer.id;
     if let Some(next) = document.with_inserted(layer, above(open))
         && open.commit("Write", next)
