@@ -3,8 +3,8 @@
 use super::{Story, drag, key, layers, press, session, steps, window};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
+use rilievo::Content;
 use rilievo::paint::Text;
-use rilievo_program::document::Content;
 use rilievo_program::tools::ToolKind;
 
 fn text(harness: &Story) -> Text {
