@@ -130,7 +130,7 @@ pub fn type_on_canvas(ui: &mut Ui, session: &Session, requests: &mut UiRequests)
         return;
     };
     let id = Id::unique(("words on the canvas", layer.id));
-    if begin(ui, id, writing, &words.string()) {
+    if try_to_begin(ui, id, writing, &words.string()) {
         requests.request(WindowRequest::ShowPanel(PanelKind::Properties));
     }
     let corner = Rect::from_min_size(ui.max_rect().left_bottom(), vec2(200.0, 20.0));
@@ -175,7 +175,7 @@ fn field(
 }
 
 /// Goes into the field where the text tool was pressed, once for each press; whether it did.
-fn begin(ui: &Ui, id: Id, writing: Writing, string: &str) -> bool {
+fn try_to_begin(ui: &Ui, id: Id, writing: Writing, string: &str) -> bool {
     let last = Id::unique("last press of the text tool");
     if ui.data(|data| data.get_temp::<Writing>(last)) == Some(writing) {
         return false;
