@@ -1,6 +1,6 @@
 //! Texts, by the tool, keys and the panel of properties.
 
-use super::{Story, drag, key, layers, press, session, steps, window};
+use super::{Story, command, drag, key, layers, press, session, steps, window};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo::Content;
@@ -34,14 +34,14 @@ fn a_click_writes_typing_replaces_and_undo_takes_it_back() {
     type_text(&mut harness, "Big ");
     type_text(&mut harness, "fish");
     assert_eq!(text(&harness).string(), "Big fish");
-    assert!(layers(&harness).contains(&"Big fish".to_owned()), "{:?}", layers(&harness));
     press(&mut harness, "Bold");
     assert_eq!(text(&harness).runs[0].style.weight, 700);
+    assert!(layers(&harness).contains(&"Big fish".to_owned()), "{:?}", layers(&harness));
     // Beside it another one begins.
     drag(&mut harness, vec2(-100.0, 200.0), vec2(-100.0, 200.0));
     steps(&mut harness);
     assert_eq!((text(&harness).string().as_str(), layers(&harness).len()), ("Text", 3));
     key(&mut harness, Modifiers::NONE, Key::Escape);
-    press(&mut harness, "Undo");
+    command(&mut harness, "Undo");
     assert_eq!(layers(&harness).len(), 2);
 }

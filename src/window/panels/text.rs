@@ -8,7 +8,8 @@ use crate::io::text;
 use crate::paint::{Text, TextAlign, TextStyle};
 use crate::panel_layout::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
-use crate::session::{Property, Session, Writing};
+use crate::session::actions::LayerAction;
+use crate::session::{Action, Property, Session, Writing};
 use crate::tools::ToolKind;
 use crate::widgets::{NumberField, check, name, set_accessible_name};
 use eframe::egui::text::{CCursor, CCursorRange};
@@ -169,7 +170,8 @@ fn field(
         let is_word = string.ends_with(char::is_whitespace);
         setter.set(Property::Worded { text: words.saying(&string) }, is_word);
     } else if output.response.lost_focus() {
-        setter.set(Property::Worded { text: words.clone() }, true);
+        // What was typed is kept.
+        setter.requests.act(Action::Layer(LayerAction::Unadjust {}));
     }
     range.map_or(0..0, |(bytes, _)| bytes)
 }
@@ -177,7 +179,9 @@ fn field(
 /// Goes into the field where the text tool was pressed, once for each press; whether it did.
 fn try_to_begin(ui: &Ui, id: Id, writing: Writing, string: &str) -> bool {
     let last = Id::unique("last press of the text tool");
-    if ui.data(|data| data.get_temp::<Writing>(last)) == Some(writing) {
+    // A click ends with the release, and takes the focus from fields beside it.
+    let is_pressed = ui.input(|i| i.pointer.any_down() || i.pointer.any_released());
+    if is_pressed || ui.data(|data| data.get_temp::<Writing>(last)) == Some(writing) {
         return false;
     }
     ui.data_mut(|data| data.insert_temp(last, writing));

@@ -75,7 +75,7 @@ actions! {
         /// The paint of layers is adjusted for good, within the selection; shown only, until it is
         /// `done`.
         "adjust" Adjust { layer: LayerPaths, adjustment: ColorAdjustment, done: bool }
-        /// Forgets what is only shown.
+        /// Forgets what is only shown; what was typed is kept.
         "unadjust" Unadjust {}
         /// Adds a paintable mask that shows all of the layer, or hides it; an existing mask becomes
         /// paintable.
