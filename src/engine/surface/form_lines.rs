@@ -74,7 +74,7 @@ number_settings! {
         /// σ: forms smaller than this get no line, px.
         smooth: "Smallest form", "Forms smaller than this get no line, px", 0.5..=50.0, 2.0;
         /// How faint a line may be.
-        detail: "Detail", "How faint a fold may be and still get a line", 0.0..=1.0, 0.5;
+        detail: "Detail", "How faint a fold may be and still get a line", 0.0..=1.0, 0.6;
         /// The length of the shortest line, px.
         shortest: "Shortest line", "Shorter lines are left out, px", 0.0..=1000.0, 12.0;
         /// How far lines stand back behind what passes in front of them, px.
@@ -137,6 +137,8 @@ pub struct FormLine {
     pub points: Vec<LinePoint>,
     /// It ends where it begins.
     pub is_closed: bool,
+    /// Whether its first and its last point lie on another line, which it is joined to.
+    pub is_joined: [bool; 2],
 }
 
 impl FormLine {

@@ -84,7 +84,12 @@ impl DrawingHand {
         } else {
             self.extend_ends(every)
         };
-        let taper = if line.is_closed { 0.0 } else { self.taper };
+        // Lines that meet do not fade out before they do.
+        let taper = line.is_joined.map(
+            |is_joined| {
+                if line.is_closed || is_joined { 0.0 } else { self.taper }
+            },
+        );
         self.draw(drawing, &points, taper, |point, left| {
             let (lit, away) = light.at(point.at + BESIDE_PX * left);
             let thin = |share: f32, by: f32| 1.0 - share * by.clamp(0.0, 1.0);
@@ -109,30 +114,31 @@ impl DrawingHand {
             |(i, _): &(usize, &LinePoint)| (from + i) % SAMPLE_EVERY == 0 || *i == 0 || *i == last;
         let every: Vec<LinePoint> =
             points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
-        self.draw(drawing, &self.extend_ends(every), self.taper, |point, _| point.strength)
+        self.draw(drawing, &self.extend_ends(every), [self.taper; 2], |point, _| point.strength)
     }
 
     /// A stroke through points.
     ///
+    /// * `taper`: the length over which each end grows thin, px.
     /// * `pressure`: of a point, and the direction to its left.
     fn draw(
         &self,
         drawing: &FormDrawing,
         points: &[LinePoint],
-        taper: f32,
+        taper: [f32; 2],
         pressure: impl Fn(&LinePoint, Vec2) -> f32,
     ) -> Arc<Stroke> {
         let along = lengths(points);
         let whole = along.last().copied().unwrap_or(0.0);
-        let taper = taper.min(MOST_TAPER * whole);
+        let taper = taper.map(|taper| taper.min(MOST_TAPER * whole));
         let sample = |i: usize| {
             let at = points[i].at;
             let (before, after) =
                 (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
             // What a line belongs to is on its left (y down).
             let left = vec2(after.at.y - before.at.y, before.at.x - after.at.x);
-            let end = along[i].min(whole - along[i]);
-            let pressure = pressure(&points[i], left.normalize_or_zero()) * taper_share(end, taper);
+            let ends = taper_share(along[i], taper[0]) * taper_share(whole - along[i], taper[1]);
+            let pressure = pressure(&points[i], left.normalize_or_zero()) * ends;
             let (pressure, time_secs) = (pressure.max(LEAST), along[i] / SPEED);
             Sample { pressure, time_secs, ..Sample::at(at + self.stray(at)) }.normalized()
         };

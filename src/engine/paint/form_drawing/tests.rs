@@ -70,7 +70,7 @@ fn a_hand_overshoots_and_strays_the_same_way_each_time() {
 fn twice_the_canvas_doubles_the_drawing() {
     let drawing = drawing(DrawingHand { wobble: 2.0, ..DrawingHand::DEFAULT });
     let FormPattern::Lines(lines) = drawing.scaled(2.0).pattern else { panic!("lines") };
-    assert_eq!((lines.smooth, lines.shortest, lines.detail), (4.0, 24.0, 0.5));
+    assert_eq!((lines.smooth, lines.shortest, lines.detail), (4.0, 24.0, 0.6));
     let twice = drawing.scaled(2.0);
     assert_eq!((twice.hand.wobble, twice.brush.size), (4.0, 8.0));
     assert_eq!(twice.hand.by_light, drawing.hand.by_light);

@@ -44,6 +44,8 @@ struct Partings<'s> {
     shares: Plane<u8>,
     /// The share of each pixel that its own population sees, where it is between parts.
     own: Plane<f32>,
+    /// Pixels of a rim that only coarse maps tore off what they belong to.
+    fringe: Plane<bool>,
 }
 
 /// The lines along broken links.
@@ -52,7 +54,9 @@ pub(super) fn trace(surface: &Surface, settings: &LineSettings) -> Vec<RawLine> 
     for pixel in surface.contours().pixels().iter().filter(|pixel| pixel.is_between_parts()) {
         own.set(pixel.x as usize, pixel.y as usize, pixel.share);
     }
-    let partings = Partings { surface, shares: surface.shares(), own };
+    let shares = surface.shares();
+    let fringe = fringe_of(surface, &shares);
+    let partings = Partings { surface, shares, own, fringe };
     let kinds = [
         (Parting::Outline, LineKind::Outline),
         (Parting::Crease, LineKind::Crease),
@@ -60,6 +64,25 @@ pub(super) fn trace(surface: &Surface, settings: &LineSettings) -> Vec<RawLine> 
     ];
     let wanted = kinds.into_iter().filter(|(_, kind)| settings.kinds.has_kind(*kind));
     wanted.flat_map(|(parting, kind)| partings.lines(parting, kind)).collect()
+}
+
+/// Pixels of the surface next to the rim, or next to such a one, that are not linked inward: what
+/// lies there is hardly wider than a pixel, and its own rim is drawn.
+fn fringe_of(surface: &Surface, shares: &Plane<u8>) -> Plane<bool> {
+    let links = surface.links_plane();
+    let is_on = |x: i32, y: i32| shares.get(x, y).is_none_or(|share| share >= 128);
+    Plane::from_fn(shares.size(), |x, y| {
+        let linked = links.at(x, y);
+        let (px, py) = (x as i32, y as i32);
+        let inward =
+            [(links::RIGHT, 1, 0), (links::LEFT, -1, 0), (links::DOWN, 0, 1), (links::UP, 0, -1)];
+        is_on(px, py)
+            && inward.into_iter().any(|(bit, dx, dy)| {
+                linked & bit == 0
+                    && is_on(px + dx, py + dy)
+                    && (!is_on(px - dx, py - dy) || !is_on(px - 2 * dx, py - 2 * dy))
+            })
+    })
 }
 
 impl Partings<'_> {
@@ -76,7 +99,8 @@ impl Partings<'_> {
         let bit = if a.0 == b.0 { links::DOWN } else { links::RIGHT };
         let is_linked = |links: &Plane<u8>| links.at(a.0, a.1) & bit != 0;
         if !is_linked(self.surface.links_plane()) {
-            return Some(Parting::Outline);
+            let is_torn = self.fringe.at(a.0, a.1) || self.fringe.at(b.0, b.1);
+            return (!is_torn).then_some(Parting::Outline);
         }
         if !is_linked(self.surface.smooth_links_plane()) {
             return Some(Parting::Crease);

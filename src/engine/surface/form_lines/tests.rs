@@ -275,3 +275,16 @@ fn normals_are_diffused_as_by_a_gaussian() {
     smooth::diffuse(&mut wide, &links, 8.0);
     assert!((wide.at(51, 40) - 0.144).abs() < 0.03, "{}", wide.at(51, 40));
 }
+
+#[test]
+fn a_rim_that_coarse_maps_tore_off_breaks_no_outline() {
+    // Pixels along the lower rim are far behind the form.
+    let block = |x: f32, y: f32| {
+        let is_inside = (40.0..160.0).contains(&x) && (40.0..120.0).contains(&y);
+        is_inside.then_some(if y > 119.0 { -60.0 } else { 20.0 })
+    };
+    let lines = lines_of(&surface(Size::new(200, 160), block), &LineSettings::default());
+    let all: Vec<_> = lines.iter().map(|l| (l.kind, l.length_px(), l.is_joined)).collect();
+    assert_eq!(lines.len(), 4, "{all:?}");
+    assert!(lines.iter().all(|line| line.is_joined == [true; 2]), "{all:?}");
+}

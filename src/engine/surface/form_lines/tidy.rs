@@ -30,6 +30,8 @@ const CORNER_PX: usize = 5;
 /// Two lines nearer than this are one, px, where the cosine of their angle is at least this.
 const DOUBLE_PX: f32 = 2.0;
 const DOUBLE_COS: f32 = 0.7;
+/// An end this near to another line is joined to it, px.
+const JOINT_PX: f32 = 3.5;
 /// Points at the ends of a line that double nothing: other lines go on there.
 const ENDS: usize = 3;
 
@@ -62,6 +64,7 @@ pub fn tidy_lines(lines: Vec<RawLine>, settings: &LineSettings) -> Vec<FormLine>
     if settings.gap > 0.0 {
         left = behind(left, settings);
     }
+    find_joints(&mut left);
     left
 }
 
@@ -70,7 +73,8 @@ fn is_long(line: &FormLine, settings: &LineSettings) -> bool {
 }
 
 fn to_line(raw: RawLine) -> FormLine {
-    FormLine { kind: raw.kind, points: raw.points, is_closed: raw.is_closed }
+    let RawLine { kind, points, is_closed } = raw;
+    FormLine { kind, points, is_closed, is_joined: [false; 2] }
 }
 
 /// The kinds that fade out.
@@ -344,6 +348,22 @@ fn behind(lines: Vec<FormLine>, settings: &LineSettings) -> Vec<FormLine> {
     };
     let parts = lines.into_iter().enumerate().flat_map(cut);
     parts.filter(|line| is_long(line, settings)).collect()
+}
+
+/// Tells which ends of lines lie on other lines.
+fn find_joints(lines: &mut [FormLine]) {
+    let mut known = NearPoints::default();
+    for (i, line) in lines.iter().enumerate() {
+        known.add(i as u32, line.kind, &line.points);
+    }
+    for (i, line) in lines.iter_mut().enumerate().filter(|(_, line)| !line.is_closed) {
+        let is_on_other = |point: Option<&LinePoint>| {
+            point.is_some_and(|point| {
+                known.has_within(point.at, JOINT_PX, |other| other.line != i as u32)
+            })
+        };
+        line.is_joined = [is_on_other(line.points.first()), is_on_other(line.points.last())];
+    }
 }
 
 /// The direction at each point, unit.
