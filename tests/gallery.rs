@@ -1,6 +1,7 @@
 //! The gallery: `docs/GALLERY.md` has the command of every sample recipe and shows every picture.
 //! What the pictures look like is held by `goldens::gallery`.
 
+use rilievo_program::session::Session;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -40,6 +41,27 @@ fn the_gallery_gives_the_command_for_every_recipe() {
     for path in recipes() {
         let command = format!("rilievo render sample_normals/{}", name(&path));
         assert!(gallery.contains(&command), "docs/GALLERY.md has no “{command}”");
+    }
+}
+
+/// A drawing becomes a finished picture, which its script writes into the current folder.
+#[test]
+fn every_drawing_of_the_gallery_is_finished_by_its_script() {
+    let (gallery, folder) = (gallery(), tempfile::tempdir().unwrap());
+    let scripts = files("sample_normals/drawings", |extension| extension == "jsonl");
+    assert!(scripts.len() >= 7, "only {} scripts", scripts.len());
+    for path in scripts {
+        let (script, stem) = (fs::read_to_string(&path).unwrap(), path.file_stem().unwrap());
+        assert!(
+            gallery.contains(&format!("rilievo replay sample_normals/drawings/{}", name(&path)))
+        );
+        let written = folder.path().join(stem).with_extension("png");
+        let shown = written.to_string_lossy().replace('\\', "/");
+        let script =
+            script.replace(&format!("\"{}.png\"", stem.to_string_lossy()), &format!("\"{shown}\""));
+        let mut session = Session::default();
+        session.replay(&path, &script).unwrap_or_else(|e| panic!("{}: {e}", name(&path)));
+        assert!(written.is_file(), "{} wrote no picture: {:?}", name(&path), session.notes);
     }
 }
 
