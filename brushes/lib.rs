@@ -1,6 +1,6 @@
-//! The brushes, painted balls and looks that come with Rilievo. To add one, add a file to its folder
-//! and a line here. The file of a brush has the fields of a stroke, and what a list shows
-//! (`docs/RECIPES.md`); that of a look has layers (`docs/LOOKS.md`). A ball is a picture, with the
+//! The brushes, painted balls, looks and materials that come with Rilievo. To add one, add a file to
+//! its folder and a line here. The file of a brush has the fields of a stroke, and what a list shows
+//! (`docs/RECIPES.md`); that of a look or material has layers (`docs/LOOKS.md`). A ball is a picture, with the
 //! recipe that it was painted by beside it.
 
 /// The texts of a folder (`""`: this one), each with its key.
@@ -83,6 +83,23 @@ pub const LOOKS: &[(&str, &str)] = &table!["looks/":
     "bronze",
     "blueprint",
     "moonlight",
+];
+
+/// Every material for a part: its key and its file, in the order of the list.
+pub const MATERIALS: &[(&str, &str)] = &table!["materials/":
+    "skin",
+    "cloth",
+    "leather",
+    "plastic",
+    "rubber",
+    "wood",
+    "stone",
+    "porcelain",
+    "gold",
+    "chrome",
+    "glass",
+    "jelly",
+    "fur",
 ];
 
 macro_rules! balls {

@@ -7,6 +7,7 @@ pub mod hash;
 pub mod named;
 pub mod noise;
 pub(crate) mod number_settings;
+pub mod oklab;
 pub mod plane_map;
 pub mod range;
 pub mod rect;

@@ -12,6 +12,7 @@
 //! | `samples` | readings of the pen |
 //! | `brush` | the numbers of a brush, its dynamics |
 //! | `tips` | a brush's tip and its grain |
+//! | `materials` | the materials that come with the program |
 //! | `looks` | the looks and painted balls that come with the program |
 //! | `presets` | the brushes that come with the program, and those in files of their own |
 //! | `shading` | shading layers, radiance scaling |
@@ -35,6 +36,7 @@ mod light;
 mod liquify;
 mod looks;
 mod masks;
+mod materials;
 mod normals;
 pub mod parts;
 mod pictures;
@@ -51,6 +53,7 @@ pub mod value;
 mod version;
 
 pub use looks::{LiveLook, PaintedBall};
+pub use materials::PartMaterial;
 pub use presets::{
     BrushPreset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush,
     write_preset, written_brush,

@@ -11,6 +11,7 @@ pub mod import;
 pub mod looks;
 pub mod losses;
 pub mod maps;
+pub mod materials;
 pub mod new;
 pub mod palette;
 pub mod path;
@@ -40,6 +41,7 @@ pub enum Dialog {
     Keep(edge::KeepDialog),
     Grid,
     Looks(Box<looks::LooksDialog>),
+    Materials(Box<materials::MaterialsDialog>),
     Canvas(canvas::CanvasSizeDialog),
     ImageSize(canvas::ImageSizeDialog),
     Turn(canvas::TurnDialog),
@@ -101,7 +103,7 @@ impl Dialog {
         requests: &mut UiRequests,
     ) -> DialogAnswer {
         let mut modal = Modal::new(Id::unique("dialog"));
-        if let Dialog::Adjust(_) = self {
+        if let Dialog::Adjust(_) | Dialog::Materials(_) = self {
             // Beside the picture, which shows what it does.
             let beside = Modal::default_area(Id::unique("dialog"))
                 .anchor(egui::Align2::RIGHT_TOP, egui::vec2(-24.0, 72.0));
@@ -120,6 +122,7 @@ impl Dialog {
                 }
                 Dialog::Grid => grid::show(ui, session, requests),
                 Dialog::Looks(looks) => looks.show(ui, session, requests),
+                Dialog::Materials(materials) => materials.show(ui, session, requests),
                 Dialog::Canvas(canvas) => canvas.show(ui, requests),
                 Dialog::ImageSize(image) => image.show(ui, requests),
                 Dialog::Turn(turn) => turn.show(ui, requests),

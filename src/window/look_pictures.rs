@@ -1,11 +1,12 @@
-//! Pictures of the looks: the user's own drawing in each of them, small, painted on another thread.
-//! Floor 7. Not here: what a look is (`io::recipe::looks`).
+//! Pictures of the looks and of the materials: the user's own drawing in each look, and a ball in the
+//! color of a part of each material, small, painted on another thread. Floor 7. Not here: what they
+//! are (`io::recipe`).
 
 use super::jobs;
 use super::mood_pictures::image_of;
 use crate::Error;
 use crate::document::{Document, DocumentReducer};
-use crate::io::recipe::LiveLook;
+use crate::io::recipe::{LiveLook, PartMaterial};
 use eframe::egui::{self, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2};
 use std::collections::HashMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -24,16 +25,18 @@ pub struct LookPictures {
 }
 
 impl LookPictures {
-    pub fn new(waker: egui::Context) -> Self {
+    /// `dressed`: what is painted for a document, one after the other, by keys.
+    pub fn new<T>(waker: egui::Context, dressed: fn(Document) -> T) -> Self
+    where
+        T: Iterator<Item = (&'static str, Option<Document>)> + 'static,
+    {
         let ((wanted, orders), (sender, coming)) = (channel::<Document>(), channel());
         let work = move || {
             while let Ok(document) = orders.recv() {
-                let factor = (SIDE / document.size.longer_side()).min(1.0);
-                let Ok(small) = DocumentReducer::new(factor).of(&document) else { continue };
-                for look in LiveLook::all() {
-                    let Some(image) = painted(&small, &look) else { continue };
+                for (key, dressed) in dressed(document) {
+                    let Some(image) = dressed.as_ref().and_then(image_of) else { continue };
                     // Once the dialog is closed, nobody waits for the others.
-                    if sender.send((look.key, image)).is_err() {
+                    if sender.send((key, image)).is_err() {
                         return;
                     }
                     waker.request_repaint();
@@ -51,6 +54,11 @@ impl LookPictures {
             // Without a thread there are no pictures, only names.
             let _ = self.wanted.send(document.clone());
         }
+        self.collect(ctx);
+    }
+
+    /// Collects what is painted.
+    pub fn collect(&mut self, ctx: &egui::Context) {
         for (key, image) in self.coming.try_iter() {
             self.made.insert(key, ctx.load_texture(key, image, TextureOptions::LINEAR));
         }
@@ -62,7 +70,15 @@ impl LookPictures {
     }
 }
 
-/// A small document in a look.
-fn painted(small: &Document, look: &LiveLook) -> Option<ColorImage> {
-    image_of(&look.on(small).ok()?)
+/// A document in every look, small.
+pub fn in_looks(document: Document) -> impl Iterator<Item = (&'static str, Option<Document>)> {
+    let factor = (SIDE / document.size.longer_side()).min(1.0);
+    let small = DocumentReducer::new(factor).of(&document).ok();
+    let dressed = move |look: LiveLook| (look.key, small.as_ref().and_then(|s| look.on(s).ok()));
+    LiveLook::all().map(dressed)
+}
+
+/// A ball of every material.
+pub fn in_materials(ball: Document) -> impl Iterator<Item = (&'static str, Option<Document>)> {
+    PartMaterial::all().map(move |of| (of.key, of.on(&ball, None).ok().map(|given| given.0)))
 }

@@ -70,6 +70,7 @@ pub enum WindowRequest {
     KeepDialog,
     GridDialog,
     LooksDialog,
+    MaterialsDialog,
     CanvasSizeDialog,
     ImageSizeDialog,
     TurnDialog,

@@ -106,6 +106,7 @@ pub fn all() -> Vec<Case> {
     all.extend(operators());
     all.extend(Model::ALL.iter().map(|(_, name)| shading(name)));
     all.push(ball_strokes());
+    all.push(pixel_shading());
     all.push(scaling());
     all.push(normals());
     all.extend(masks());
@@ -224,6 +225,14 @@ fn ball_strokes() -> Case {
     let layers = json!([{ "kind": "shading", "model": "lit-sphere", "sphere": { "file": "sphere.png" },
         "strokes": { "size": 48, "chunk": 16, "follow": 0.3 } }]);
     Case::layers("shading", "ball-strokes", ROUNDED, Shape::Torus, layers)
+}
+
+/// A painter's light in four tones that mix where they meet, one of them a color that was given.
+fn pixel_shading() -> Case {
+    let layers = json!([{ "kind": "fill", "color": "#d08858" },
+        { "kind": "shading", "model": "painter", "painter": { "beneath": true },
+          "pixel": { "bands": 4, "dither": 0.6, "colors": ["#a05a50"] } }]);
+    Case::layers("shading", "pixel", ROUNDED, Shape::Torus, layers)
 }
 
 /// The relief of a ramp made stronger, in a group of its own.

@@ -10,6 +10,13 @@ use crate::shape::flats::lifted_ink::LiftedInk;
 use std::sync::Arc;
 
 impl Document {
+    /// How many layers lie beneath the ink on top of all: the place of new layers, so that lines stay
+    /// on top.
+    pub fn below_top_ink(&self) -> usize {
+        let is_ink = |layer: &Arc<Layer>| matches!(layer.content, Content::Ink(_));
+        self.layers.iter().rposition(|layer| !is_ink(layer)).map_or(0, |last| last + 1)
+    }
+
     /// Whether the ink of each drawing that an ink layer names, and of no other, is lifted off it,
     /// and each ink layer shows it as it is.
     pub(super) fn is_ink_lifted(&self) -> bool {

@@ -27,6 +27,7 @@ mod modifiers;
 mod order;
 mod outlines;
 mod part;
+pub mod pixel_art;
 mod placed_outlines;
 mod scale;
 mod solve_form;

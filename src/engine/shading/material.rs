@@ -20,6 +20,7 @@ use super::{
     features::Features,
     light::{Light, LightKind, RowLight},
     painter::Painter,
+    pixel::PixelShading,
     scaling::{Reference, Scaling},
     shadow::Shadows,
     sphere::LitSphere,
@@ -149,6 +150,8 @@ pub struct Shading {
     pub shadows: Shadows,
     /// The painter's light.
     pub painter: Painter,
+    /// How it is divided into tones where it lights the picture beneath.
+    pub pixel: PixelShading,
 }
 
 impl Shading {
@@ -231,6 +234,7 @@ impl Shading {
             bounces: 0,
             shadows: Shadows { on: is_painter, ..Shadows::DEFAULT },
             painter: Painter::DEFAULT,
+            pixel: PixelShading::default(),
         }
     }
 

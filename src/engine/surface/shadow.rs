@@ -1,24 +1,29 @@
 //! Cast shadows: how much of a lamp's disc each point of the surface sees. Floor 2. It is computed
-//! from depth, in pixels (MATH 5). Here: lamps, their rays, the equation and the cache; `sweep` is
-//! the fast way over a map, `contact` the shade of what stands higher nearby. Not here: what
-//! shadows look like (`shading::shadow`).
+//! from depth, in pixels (MATH 5). Here: lamps, their rays, the equation and the cache; `parallel`
+//! and `point` are the fast ways over a map, `contact` is the shade of what stands higher nearby.
+//! Not here: what shadows look like (`shading::shadow`).
 
 mod contact;
+mod counts;
+mod heights;
+mod merge;
+mod parallel;
 mod point;
 mod share;
+mod sliding;
 mod sweep;
 
 #[cfg(test)]
 mod tests;
 
 pub use contact::ContactShade;
+pub(in crate::surface) use heights::HeightMaps;
 pub use share::ShareMap;
 
 use super::Surface;
-use super::cache::HeapSize;
 use super::contours::FarSide;
 use crate::math::{Vec2, Vec3, fast, vec2, vec3};
-use crate::raster::Plane;
+use counts::HiddenCounts;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -62,6 +67,8 @@ const BETWEEN_RAYS: f32 = 0.9;
 #[derive(Clone, Copy, Debug)]
 struct LampRay {
     aim: Aim,
+    /// Where it ends, from the middle of the disc, as a share of the distance.
+    out: Vec2,
     /// How far away what it meets may be, px.
     reach_px: f32,
     /// The half-width of the part of the disc that it stands for, as a share of the distance.
@@ -89,8 +96,9 @@ impl ShadowLamp {
             let (sin, cos) = (k as f32 * TURN_RAD).sin_cos();
             let share = 0.5 + 0.5 * ((k as f32 + 0.5) * 0.618_034).fract();
             let spread = BETWEEN_RAYS * self.radius / (count as f32).sqrt();
-            let aim = self.aim(vec2(cos, sin) * out, heights)?;
-            Some(LampRay { aim, reach_px: share * self.reach_px, spread })
+            let out = vec2(cos, sin) * out;
+            let aim = self.aim(out, heights)?;
+            Some(LampRay { aim, out, reach_px: share * self.reach_px, spread })
         };
         (0..count).filter_map(ray).collect()
     }
@@ -155,10 +163,11 @@ fn hidden(above_px: f32, distance_px: f32, rise: f32, spread: f32) -> f32 {
     fast::min(fast::max((above_px - bias) / width + 0.5, 0.0), 1.0)
 }
 
-/// How much of what stands so far away counts: all up to half of the reach, nothing from there on.
+/// How much of what stands so far away counts: all up to `from_px`, nothing from `to_px` on.
 #[inline(always)]
-fn fade(distance_px: f32, reach_px: f32) -> f32 {
-    fast::min(fast::max(2.0 - distance_px * (2.0 / reach_px), 0.0), 1.0)
+fn fade(distance_px: f32, from_px: f32, to_px: f32) -> f32 {
+    let per_px = 1.0 / fast::max(to_px - from_px, 1e-3);
+    fast::min(fast::max((to_px - distance_px) * per_px, 0.0), 1.0)
 }
 
 /// How high a ray is, px: as the part of the disc that it stands for, and a pixel at least.
@@ -173,84 +182,6 @@ fn width_at(distance_px: f32, rise: f32, spread: f32) -> f32 {
 fn seen(hidden: f32) -> f32 {
     let t = 1.0 - hidden;
     t * t * (3.0 - 2.0 * t)
-}
-
-/// Heights toward the viewer, px: 0 at the surface's farthest point, and off it, where the page is.
-pub(in crate::surface) struct HeightMaps {
-    /// As the picture lies.
-    upright: Plane<f32>,
-    /// Columns as rows.
-    turned: Plane<f32>,
-    highest: f32,
-}
-
-impl HeightMaps {
-    fn of(surface: &Surface) -> Self {
-        let range = surface.depth_range_px();
-        let height = |x: usize, y: usize| match surface.coverage(x, y) {
-            0 => 0.0,
-            _ => (1.0 - surface.depth(x, y)) * range,
-        };
-        let upright = Plane::from_fn(surface.size(), height);
-        let turned = sweep::turned(&upright);
-        Self { upright, turned, highest: range }
-    }
-
-    /// h between pixels, `x` and `y` between their centers; 0 beyond the picture. Along a row or a
-    /// column it is linear.
-    #[cfg(test)]
-    fn between(&self, x: f32, y: f32) -> f32 {
-        let at = |x: i32, y: i32| self.upright.get(x, y).unwrap_or(0.0);
-        let (x0, y0) = (x.floor(), y.floor());
-        let (fx, fy) = (x - x0, y - y0);
-        let (x0, y0) = (x0 as i32, y0 as i32);
-        let row = |y: i32| at(x0, y) + (at(x0 + 1, y) - at(x0, y)) * fx;
-        row(y0) + (row(y0 + 1) - row(y0)) * fy
-    }
-
-    /// The share of a lamp that a pixel sees: the equation, one step a row (or a column) after
-    /// another. `sweep` finds the same for all pixels.
-    #[cfg(test)]
-    fn seen_from(&self, (x, y): (usize, usize), lamp: &ShadowLamp) -> f32 {
-        let rays = lamp.rays(self.highest);
-        let q = vec2(x as f32, y as f32);
-        let of_ray = |ray: &LampRay| {
-            let h = self.upright.at(x, y);
-            let (way, rise, farthest) = match ray.aim {
-                Aim::Along { way, rise } => (way, rise, f32::MAX),
-                Aim::To(lamp) => {
-                    let flat = lamp.truncate() - q;
-                    let length = flat.length().max(1e-3);
-                    (flat / length, (lamp.z - h) / length, length)
-                }
-            };
-            let step = 1.0 / way.abs().max_element();
-            // What is near, and what is far: near, low things hide as well as far, high ones.
-            let mut highest = [(f32::MIN, 0.0); 2];
-            let count = (ray.reach_px / step).max(1.0) as i32;
-            for t in (1..=count).map(|i| i as f32 * step).take_while(|t| *t < farthest) {
-                let at = q + way * t;
-                // Rays to a point draw together on their way to it.
-                let nearer = if farthest < f32::MAX { farthest / (farthest - t) } else { 1.0 };
-                let rises = (self.between(at.x, at.y) - h - rise * t) * nearer;
-                let highest = &mut highest[usize::from(t > 0.5 * ray.reach_px)];
-                if rises > highest.0 {
-                    *highest = (rises, t);
-                }
-            }
-            let [near, far] =
-                highest.map(|(above, t)| hidden(above, t, rise.max(RISE.0), ray.spread));
-            near.max(far * fade(highest[1].1, ray.reach_px))
-        };
-        let count = lamp.rays.clamp(1, MOST_RAYS);
-        seen(rays.iter().map(of_ray).sum::<f32>() / count as f32)
-    }
-}
-
-impl HeapSize for HeightMaps {
-    fn heap_bytes(&self) -> u64 {
-        self.upright.heap_bytes() + self.turned.heap_bytes()
-    }
 }
 
 impl Surface {
@@ -284,23 +215,23 @@ impl ShareMap {
     /// Of every pixel under a lamp: rays are counted in whole numbers, so that their order does not
     /// matter.
     fn of_lamp(heights: &HeightMaps, lamp: &ShadowLamp) -> Self {
+        if let LampPlace::Afar(_) = lamp.place {
+            let groups = parallel::RayGroups::of(lamp, heights.highest);
+            return groups.counts(heights).visible_shares(groups.count);
+        }
         let rays = lamp.rays(heights.highest);
-        let count = lamp.rays.clamp(1, MOST_RAYS);
         let each = rays.len().div_ceil(rayon::current_num_threads()).max(1);
         let counted = rays
             .par_chunks(each)
             .map(|rays| {
-                let mut counts = sweep::HiddenCounts::new(heights.upright.size());
-                rays.iter().for_each(|ray| match ray.aim {
-                    Aim::Along { .. } => sweep::add(heights, ray, &mut counts),
-                    Aim::To(_) => point::add(heights, ray, &mut counts),
-                });
+                let mut counts = HiddenCounts::new(heights.upright.whole.size());
+                rays.iter().for_each(|ray| point::add(heights, ray, &mut counts));
                 counts
             })
-            .reduce_with(sweep::HiddenCounts::plus);
+            .reduce_with(HiddenCounts::plus);
         match counted {
-            Some(counts) => counts.visible_shares(count),
-            None => Self::full(heights.upright.size()),
+            Some(counts) => counts.visible_shares(lamp.rays.clamp(1, MOST_RAYS)),
+            None => Self::full(heights.upright.whole.size()),
         }
     }
 }

@@ -6,8 +6,8 @@ use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{COORDINATE, Vec3, srgb::Color};
 use crate::shading::{
-    BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, Reference,
-    Scaling, Shadows, Term,
+    BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, PixelShading,
+    Reference, Scaling, Shadows, Term,
 };
 use serde_json::Value;
 
@@ -121,6 +121,30 @@ impl RecipeValue for Painter {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         painter(node, Painter::DEFAULT)
+    }
+}
+
+impl RecipeValue for PixelShading {
+    fn to_json(&self) -> Value {
+        write_pixel(self).into_value()
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        of_object(node, |fields| {
+            let bands =
+                fields.get("bands").map_or(Ok(0), |node| node.whole(0..=*Self::BANDS.end()));
+            let colors = match fields.get("colors") {
+                Some(node) => {
+                    node.list(Self::MOST_COLORS)?.iter().map(|node| node.color()).collect()
+                }
+                None => Ok(Vec::new()),
+            };
+            let bands = bands?;
+            if bands == 1 {
+                return Err(node.refusal("has 1 tone of each color; there may be 2 to 5, or 0"));
+            }
+            Ok(Self { bands, dither: fields.number("dither", 0.0, Self::DITHER)?, colors: colors? })
+        })
     }
 }
 
@@ -309,6 +333,16 @@ pub fn write_painter(painter: &Painter, base: &Painter) -> JsonObject {
     out.color("fill_color", painter.fill_color, base.fill_color);
     out.color("bounce_color", painter.bounce_color, base.bounce_color);
     out.color("rim_color", painter.rim_color, base.rim_color);
+    out
+}
+
+pub fn write_pixel(pixel: &PixelShading) -> JsonObject {
+    let mut out = JsonObject::default();
+    out.number("bands", pixel.bands as f32, 0.0);
+    out.number("dither", pixel.dither, 0.0);
+    if !pixel.colors.is_empty() {
+        out.set("colors", pixel.colors.iter().map(|color| object::color(*color)).collect());
+    }
     out
 }
 

@@ -61,7 +61,7 @@ impl PaintedBall {
 }
 
 /// The files that looks name.
-struct BuiltInFiles;
+pub(super) struct BuiltInFiles;
 
 impl Files for BuiltInFiles {
     fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
@@ -115,17 +115,21 @@ impl LiveLook {
         let file = parsed(self.key, text)?;
         let painted = file.get("painted").filter(|_| is_painted);
         let layers = painted.or(file.get("layers")).cloned().unwrap_or_default();
-        let recipe = json!({ "format": "rilievo", "version": super::VERSION,
-            "canvas": { "width": SIDE, "height": SIDE }, "layers": layers });
-        let (path, budget) = (path(self.key), Budget::default());
-        let source =
-            RecipeSource { file: &path, files: &BuiltInFiles, budget: &budget, onto: None };
-        let whole = read_value(&recipe, source)?;
-        let factor = canvas.longer_side() / SIDE as f32;
-        let scaled = whole.scaled(factor).map_err(|e| Error::unsupported(&path, e))?;
-        let group = Group { layers: scaled.layers, pass_through: true };
+        let layers = live_layers(&path(self.key), layers, canvas)?;
+        let group = Group { layers, pass_through: true };
         Ok(Layer::new(self.name.clone(), Content::Group(group)))
     }
+}
+
+/// Layers that come with the program, at the lengths of a canvas.
+pub(super) fn live_layers(path: &Path, layers: Value, canvas: Size) -> Result<Vec<Arc<Layer>>> {
+    let recipe = json!({ "format": "rilievo", "version": super::VERSION,
+        "canvas": { "width": SIDE, "height": SIDE }, "layers": layers });
+    let budget = Budget::default();
+    let source = RecipeSource { file: path, files: &BuiltInFiles, budget: &budget, onto: None };
+    let whole = read_value(&recipe, source)?;
+    let factor = canvas.longer_side() / SIDE as f32;
+    Ok(whole.scaled(factor).map_err(|e| Error::unsupported(path, e))?.layers)
 }
 
 /// Whether a layer holds something of a drawing. Fills are paper, and shading is what a look covers.
@@ -149,7 +153,12 @@ fn path(key: &str) -> PathBuf {
 }
 
 fn parsed(key: &str, text: &str) -> Result<Value> {
-    json::parse(&path(key), text.as_bytes(), &Budget::default())
+    parsed_file(&path(key), text)
+}
+
+/// A file that comes with the program.
+pub(super) fn parsed_file(path: &Path, text: &str) -> Result<Value> {
+    json::parse(path, text.as_bytes(), &Budget::default())
 }
 
 #[cfg(test)]

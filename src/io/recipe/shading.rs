@@ -12,7 +12,7 @@ use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::TURNS;
 use crate::math::range::STOPS;
 use crate::shading::{
-    Environment, Light, LitSphere, Model, Projection, RadianceScaling, Shading, Term,
+    Environment, Light, LitSphere, Model, PixelShading, Projection, RadianceScaling, Shading, Term,
 };
 use serde_json::{Value, json};
 
@@ -67,6 +67,10 @@ impl LayerReader<'_> {
             painter: match fields.get("painter") {
                 Some(node) => light::painter(&node, base.painter)?,
                 None => base.painter,
+            },
+            pixel: match fields.get("pixel") {
+                Some(node) => PixelShading::from_json(&node)?,
+                None => PixelShading::default(),
             },
         })
     }
@@ -178,6 +182,7 @@ pub fn write(out: &mut JsonObject, shading: &Shading) {
     out.number("bounces", shading.bounces as f32, base.bounces as f32);
     out.object("shadows", light::write_shadows(&shading.shadows, &base.shadows));
     out.object("painter", light::write_painter(&shading.painter, &base.painter));
+    out.object("pixel", light::write_pixel(&shading.pixel));
 }
 
 pub fn write_radiance_scaling(out: &mut JsonObject, scaling: &RadianceScaling) {

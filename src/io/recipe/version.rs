@@ -4,7 +4,7 @@
 use crate::document::{Content, Document, Layer, LayerLabel};
 use crate::paint::DistanceMetric;
 use crate::paint::grain::GrainSpace;
-use crate::shading::{BallStrokes, Model};
+use crate::shading::{BallStrokes, Model, PixelShading};
 use crate::surface::Operator;
 
 /// The newest schema this program reads. A document that needs nothing newer is written as the
@@ -35,6 +35,7 @@ pub fn has_unwrapped(document: &Document) -> bool {
             shading.bounces > 0
                 || shading.model == Model::Painter
                 || shading.shadows.on
+                || shading.pixel != PixelShading::default()
                 || shading.strokes != BallStrokes::DEFAULT
         }
         _ => false,

@@ -8,7 +8,7 @@ use super::told::tell;
 use super::{LimitArgs, progress, values};
 use crate::document::Document;
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
-use crate::io::recipe::LiveLook;
+use crate::io::recipe::{LiveLook, PartMaterial};
 use crate::math::srgb::Color;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -29,6 +29,10 @@ pub struct RenderArgs {
     /// Show it in a look that comes with the program, such as oil-sketch, clay or blueprint
     #[arg(long, value_name = "NAME", value_parser = look)]
     look: Option<LiveLook>,
+    /// Give a part a material that comes with the program, such as leather=part-2; without a part,
+    /// the whole surface. May be given several times
+    #[arg(long, value_name = "NAME[=PART]", value_parser = material)]
+    material: Vec<MaterialChoice>,
     /// Size of the picture relative to the canvas
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::scale)]
     scale: f32,
@@ -54,6 +58,23 @@ pub struct RenderArgs {
 fn look(word: &str) -> std::result::Result<LiveLook, String> {
     LiveLook::of_key(word)
         .ok_or_else(|| format!("one of {}", LiveLook::keys().collect::<Vec<_>>().join(", ")))
+}
+
+/// A material, and the part that gets it.
+#[derive(Clone)]
+struct MaterialChoice {
+    material: PartMaterial,
+    part: Option<String>,
+}
+
+fn material(word: &str) -> std::result::Result<MaterialChoice, String> {
+    let (name, part) = match word.split_once('=') {
+        Some((name, part)) => (name, Some(part.to_owned())),
+        None => (word, None),
+    };
+    let material = PartMaterial::of_key(name)
+        .ok_or_else(|| format!("one of {}", PartMaterial::keys().collect::<Vec<_>>().join(", ")))?;
+    Ok(MaterialChoice { material, part })
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
@@ -92,14 +113,20 @@ impl RenderArgs {
     }
 }
 
-/// In the look that was asked for.
+/// In the look and the materials that were asked for.
 fn dressed(args: &RenderArgs, document: Document) -> Result<Document> {
-    let Some(look) = &args.look else { return Ok(document) };
+    if args.look.is_none() && args.material.is_empty() {
+        return Ok(document);
+    }
     if document.surface.is_none() {
         let reason = "it has no shape: name its maps with --normal or --depth";
         return Err(Error::unsupported(args.named(), reason));
     }
-    look.on(&document)
+    let give = |document: Document, choice: &MaterialChoice| {
+        Ok(choice.material.on(&document, choice.part.as_deref())?.0)
+    };
+    let document = args.material.iter().try_fold(document, give)?;
+    args.look.as_ref().map_or(Ok(document.clone()), |look| look.on(&document))
 }
 
 fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {

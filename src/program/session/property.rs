@@ -19,8 +19,8 @@ use crate::paint::{
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
 use crate::shading::{
-    BallStrokes, Features, Light, Model, Mood, Painter, Projection, RadianceScaling, Scaling,
-    Shading, Shadows, Term,
+    BallStrokes, Features, Light, Model, Mood, Painter, PixelShading, Projection, RadianceScaling,
+    Scaling, Shading, Shadows, Term,
 };
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
@@ -99,6 +99,7 @@ actions! {
         "index" RefractiveIndex { to: f32 }
         "shadows" Shadowed { shadows: Shadows }
         "painter" Painted { painter: Painter }
+        "pixels" Pixeled { pixel: PixelShading }
         "ball strokes" BallMarks { strokes: BallStrokes }
         /// Lamps, shadows and painter's light of a mood.
         "mood" InMood { mood: Mood }
@@ -163,6 +164,7 @@ impl Property {
             Property::Anisotropy { .. } | Property::RefractiveIndex { .. } => "Material",
             Property::Shadowed { .. } => "Shadows",
             Property::Painted { .. } => "Painter's light",
+            Property::Pixeled { .. } => "Pixel shading",
             Property::BallMarks { .. } => "Strokes of the ball",
             Property::InMood { .. } => "Mood",
             Property::Features { .. } => "Features",
@@ -339,6 +341,7 @@ impl Property {
             Property::RefractiveIndex { to } => next.index = clamp_to_range(*to, &Shading::INDEX),
             Property::Shadowed { shadows } => next.shadows = *shadows,
             Property::Painted { painter } => next.painter = *painter,
+            Property::Pixeled { pixel } => next.pixel.clone_from(pixel),
             Property::BallMarks { strokes } => next.strokes = *strokes,
             Property::InMood { mood } => next = mood.on(shading),
             Property::Features { features } => next.features = features.clone(),

@@ -46,6 +46,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.request(WindowRequest::LooksDialog),
     ),
     row(
+        "Materials…",
+        &[],
+        "Makes a part leather, wood, glass, gold, …",
+        has_surface,
+        |_, requests| requests.request(WindowRequest::MaterialsDialog),
+    ),
+    row(
         "Paint the ball",
         &[],
         "Opens the ball of the layer as a drawing of its own; each stroke on it repaints the shape",

@@ -2,7 +2,7 @@
 
 use super::{DialogAnswer, close};
 use crate::io::recipe::LiveLook;
-use crate::look_pictures::LookPictures;
+use crate::look_pictures::{LookPictures, in_looks};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, Session};
@@ -21,7 +21,10 @@ pub struct LooksDialog {
 
 impl LooksDialog {
     pub fn new(ctx: &egui::Context) -> Self {
-        Self { looks: LiveLook::all().collect(), pictures: LookPictures::new(ctx.clone()) }
+        Self {
+            looks: LiveLook::all().collect(),
+            pictures: LookPictures::new(ctx.clone(), in_looks),
+        }
     }
 
     pub fn show(

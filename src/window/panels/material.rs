@@ -39,6 +39,9 @@ pub fn shading(
     if is_painter {
         painter::terms(ui, shading.painter, setter);
     }
+    if shading.is_lighting_beneath() {
+        painter::pixels(ui, &shading.pixel, setter);
+    }
     match shading.model {
         Model::Phong | Model::Toon | Model::Painter => {
             let number = NumberField::new("Shininess", 1.0..=400.0, "How small the highlight is")

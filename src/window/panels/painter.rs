@@ -6,7 +6,8 @@ use super::setter::LayerSetter;
 use crate::math::srgb::Color;
 use crate::mood_pictures::MoodPictures;
 use crate::session::Property;
-use crate::shading::{Mood, NumberSetting, Painter, Shading, Shadows};
+use crate::session::actions::LayerAction;
+use crate::shading::{Mood, NumberSetting, Painter, PixelShading, Shading, Shadows};
 use crate::widgets::{NumberField, check, set_accessible_name, title};
 use eframe::egui::{self, Ui};
 
@@ -82,6 +83,46 @@ pub fn terms(ui: &mut Ui, painter: Painter, setter: &mut LayerSetter) {
                     Property::Painted { painter }
                 })
             }));
+        }
+    });
+}
+
+/// Light in a few tones of each color.
+pub fn pixels(ui: &mut Ui, pixel: &PixelShading, setter: &mut LayerSetter) {
+    title(ui, "Pixel shading");
+    let hint = "A few tones of each color without soft edges, for pictures drawn pixel by pixel";
+    if let Some(on) = check(ui, "Flat tones", hint, pixel.is_on()) {
+        if on && pixel.colors.is_empty() {
+            return setter.act(|layer| LayerAction::PixelColors { layer });
+        }
+        let bands = if on { PixelShading::USUAL_BANDS } else { 0 };
+        setter.set(Property::Pixeled { pixel: PixelShading { bands, ..pixel.clone() } }, true);
+    }
+    if !pixel.is_on() {
+        return;
+    }
+    let (low, high) = (*PixelShading::BANDS.start() as f32, *PixelShading::BANDS.end() as f32);
+    let bands = NumberField::new("Tones", low..=high, "Tones of each color").decimals(0);
+    setter.take(bands.row(ui, pixel.bands as f32).map(|c| {
+        c.map(|to| Property::Pixeled {
+            pixel: PixelShading { bands: to.round() as u32, ..pixel.clone() },
+        })
+    }));
+    let hint = "How far two tones mix in a checkerboard where they meet";
+    let dither = NumberField::new("Dither", PixelShading::DITHER, hint);
+    setter.take(dither.row(ui, pixel.dither).map(|c| {
+        c.map(|dither| Property::Pixeled { pixel: PixelShading { dither, ..pixel.clone() } })
+    }));
+    ui.horizontal(|ui| {
+        let hint = "Take tones from the colors of the picture beneath, as it is now";
+        if ui.button("Colors of the picture").on_hover_text(hint).clicked() {
+            setter.act(|layer| LayerAction::PixelColors { layer });
+        }
+        let hint = "Make every tone: shade darker and cooler, light paler and warmer";
+        let made = egui::Button::new("Made colors").selected(pixel.colors.is_empty());
+        if ui.add(made).on_hover_text(hint).clicked() {
+            let pixel = PixelShading { colors: Vec::new(), ..pixel.clone() };
+            setter.set(Property::Pixeled { pixel }, true);
         }
     });
 }

@@ -2,7 +2,9 @@
 //! interface. Floor 7.
 
 use super::MainWindow;
-use crate::dialogs::{Dialog, adjust, canvas, edge, import, looks, new, palette, shortcuts};
+use crate::dialogs::{
+    Dialog, adjust, canvas, edge, import, looks, materials, new, palette, shortcuts,
+};
 use crate::file_purpose::FilePurpose;
 use crate::panel_layout::PanelSide;
 use crate::requests::WindowRequest;
@@ -66,6 +68,11 @@ impl MainWindow {
             WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),
             WindowRequest::LooksDialog => {
                 self.dialogs.push(Dialog::Looks(Box::new(looks::LooksDialog::new(ctx))))
+            }
+            WindowRequest::MaterialsDialog => {
+                let part = self.session.active().and_then(|open| open.part.clone());
+                self.dialogs
+                    .push(Dialog::Materials(Box::new(materials::MaterialsDialog::new(ctx, part))))
             }
             WindowRequest::Paste(to) => self.paste(to),
             WindowRequest::Palette => {

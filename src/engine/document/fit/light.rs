@@ -6,7 +6,7 @@ use crate::math::range::{STOPS, at_most, check_range};
 use crate::math::{COORDINATE, TURNS};
 use crate::shading::{
     BallStrokes, Environment, FeatureScale, Features, Light, LightKind, NumberSetting, Painter,
-    RadianceScaling, Reference, Scaling, Shading, Shadows, Term,
+    PixelShading, RadianceScaling, Reference, Scaling, Shading, Shadows, Term,
 };
 
 /// The most values that things take in a description.
@@ -38,6 +38,7 @@ pub fn shading(shading: &Shading) -> Fit {
         let (rays, most) = (shading.shadows.rays, Shadows::RAYS.end());
         return Err(format!("the rays to a lamp are {rays}; there may be 1 to {most}"));
     }
+    pixel(&shading.pixel)?;
     check_range(
         "the reach of occlusion",
         shading.occlusion_radius_px,
@@ -51,6 +52,18 @@ pub fn shading(shading: &Shading) -> Fit {
         ));
     }
     shading.environment.as_ref().map_or(Ok(()), environment)
+}
+
+fn pixel(pixel: &PixelShading) -> Fit {
+    let (bands, most) = (pixel.bands, PixelShading::BANDS.end());
+    if bands != 0 && !pixel.is_on() {
+        return Err(format!("the tones of each color are {bands}; there may be 2 to {most}, or 0"));
+    }
+    if pixel.colors.len() > PixelShading::MOST_COLORS {
+        let (colors, most) = (pixel.colors.len(), PixelShading::MOST_COLORS);
+        return Err(format!("the colors of pixel shading are {colors}; there may be {most}"));
+    }
+    check_range("the dither", pixel.dither, &PixelShading::DITHER)
 }
 
 fn settings<T>(all: &T, table: &'static [NumberSetting<T>]) -> Fit {

@@ -3,7 +3,7 @@
 
 use super::{FormArea, Part};
 use crate::document::{Document, Progress};
-use crate::math::{Affine2, Vec2};
+use crate::math::{Affine2, Vec2, vec2};
 use crate::memory::free_bytes;
 use std::sync::Arc;
 
@@ -52,4 +52,35 @@ impl Document {
 pub fn nearest_at(areas: &[(Arc<Part>, Arc<FormArea>)], at: Vec2) -> Option<Arc<Part>> {
     let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
     areas.iter().rev().find(|(_, area)| area.at(x, y) >= 128).map(|(part, _)| part.clone())
+}
+
+/// A canvas point where a part is seen, in the middle of its longest visible row; `None` where
+/// nothing of it is.
+pub fn visible_place(document: &Document, part: &str) -> Option<Vec2> {
+    let areas = document.part_areas();
+    let place = areas.iter().position(|(known, _)| known.id == part)?;
+    let (own, nearer) = (&areas[place].1, &areas[place + 1..]);
+    let (low, high) = own.covered_box();
+    let [x0, y0, x1, y1] = [low.x, low.y, high.x, high.y].map(|v| v as i32);
+    let canvas = document.size.rect();
+    let is_seen = |x: i32, y: i32| {
+        canvas.contains(x, y)
+            && own.at(x, y) >= 128
+            && nearer.iter().all(|(_, area)| area.at(x, y) < 128)
+    };
+    let mut longest: Option<(i32, Vec2)> = None;
+    for y in y0..y1 {
+        let mut run = 0;
+        for x in x0..=x1 {
+            if x < x1 && is_seen(x, y) {
+                run += 1;
+                continue;
+            }
+            if run > longest.map_or(0, |(length, _)| length) {
+                longest = Some((run, vec2(x as f32 - 0.5 * run as f32, y as f32 + 0.5)));
+            }
+            run = 0;
+        }
+    }
+    longest.map(|(_, at)| at)
 }

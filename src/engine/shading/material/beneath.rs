@@ -6,6 +6,7 @@ use crate::math::{fast, srgb};
 use crate::raster::planar::{BRIGHTEST, PixelRow};
 use crate::raster::{PlanarTile, TILE, TileAt};
 use crate::shading::light::RowLight;
+use crate::shading::pixel::KnownTones;
 use crate::shading::radiance::Exactness;
 use crate::shading::surface_row::{Light3, SurfaceRow};
 use crate::surface::shadow::ShareMap;
@@ -31,7 +32,7 @@ impl Shading {
         let (x0, width) = (inside.x0 as usize, inside.width());
         let mut surface_row = SurfaceRow::new(surface, &features, x0, inside.y0 as usize, width);
         let (mut lights, mut terms) = (self.row_lights(surface), PainterTerms::new(self, surface));
-        let ground = self.ground_maps(surface);
+        let (ground, mut tones) = (self.ground_maps(surface), KnownTones::default());
         for (row, y) in pixels.rows_mut().iter_mut().zip(inside.y0..inside.y1) {
             surface_row.move_to(y as usize);
             let coverage = surface_row.coverage();
@@ -40,7 +41,13 @@ impl Shading {
                 terms.read(&surface_row, &lights, 0);
                 let mut covered = [false; TILE];
                 covered.iter_mut().zip(coverage).for_each(|(covered, c)| *covered = *c > 0);
-                self.light_row(&terms, &lights, exactness, &covered, row);
+                match self.pixel.is_on() {
+                    true => {
+                        let places = std::array::from_fn(|x| Some((x0 + x, y as usize)));
+                        self.tone_row(&terms, &lights, &covered, (&places, &mut tones), row);
+                    }
+                    false => self.light_row(&terms, &lights, exactness, &covered, row),
+                }
             }
             if !ground.is_empty() {
                 let bare = coverage.iter().enumerate().filter(|(_, c)| **c == 0);
@@ -64,6 +71,7 @@ impl Shading {
         let mut lit = sheet.map(|sheet| {
             (sheet, self.features.on(sheet), self.row_lights(sheet), PainterTerms::new(self, sheet))
         });
+        let mut tones = KnownTones::default();
         let rows = places.chunks_exact(TILE).zip(canvas.chunks_exact(TILE));
         for (row, (places, at)) in pixels.rows_mut().iter_mut().zip(rows) {
             if let Some((sheet, features, lights, terms)) = &mut lit {
@@ -76,8 +84,13 @@ impl Shading {
                         covered[x] = true;
                     }
                 }
-                if covered.contains(&true) {
-                    self.light_row(terms, lights, exactness, &covered, row);
+                match self.pixel.is_on() {
+                    _ if !covered.contains(&true) => {}
+                    true => {
+                        let places = std::array::from_fn(|x| at.get(x).copied().flatten());
+                        self.tone_row(terms, lights, &covered, (&places, &mut tones), row);
+                    }
+                    false => self.light_row(terms, lights, exactness, &covered, row),
                 }
             }
             if !ground.is_empty() {
@@ -120,6 +133,31 @@ impl Shading {
         }
     }
 
+    /// The same in a few tones of each color. `at`: the places of the pixels on the canvas, and the
+    /// tones that are known.
+    fn tone_row(
+        &self,
+        terms: &PainterTerms,
+        lights: &[RowLight],
+        covered: &[bool; TILE],
+        (places, tones): (&[Option<(usize, usize)>; TILE], &mut KnownTones),
+        row: &mut PixelRow,
+    ) {
+        let light = terms.brightness(self, lights);
+        let level = terms.leveled().brightness(self, lights);
+        for x in (0..TILE).filter(|x| covered[*x] && row.a[*x] > 0.0) {
+            let is_odd = places[x].is_some_and(|(x, y)| (x + y) % 2 == 1);
+            let step = self.pixel.step(light[x] / level[x].max(1e-4), is_odd);
+            let own = [0, 1, 2].map(|c| srgb::quantize(row.rgb[c][x] / row.a[x]));
+            if step != 0 {
+                let tone = tones.tone(&self.pixel, own, step);
+                for (channel, tone) in row.rgb.iter_mut().zip(tone) {
+                    channel[x] = f32::from(tone) / 255.0 * row.a[x];
+                }
+            }
+        }
+    }
+
     /// What is seen of the lamps, if the page is shaded.
     pub(super) fn ground_maps(&self, surface: &Surface) -> Vec<Arc<ShareMap>> {
         match self.has_ground_shadow() {
@@ -131,6 +169,12 @@ impl Shading {
     /// Lays the shadow of a canvas pixel over pixel `x` of a row.
     fn shade_page(&self, maps: &[Arc<ShareMap>], at: (usize, usize), row: &mut PixelRow, x: usize) {
         let share = self.shadows.ground_at(maps, &self.lights, at);
+        let ground = self.shadows.ground;
+        let share = match self.pixel.is_on() {
+            true if share < 0.5 * ground => 0.0,
+            true => ground,
+            false => share,
+        };
         if share > 0.0 {
             let color = self.shadows.color.to_f32();
             for (channel, color) in row.rgb.iter_mut().zip(color) {

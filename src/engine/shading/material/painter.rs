@@ -4,6 +4,7 @@
 //! numbers (`shading::painter`), cast shadows (`shading::shadow`).
 
 use super::{Shading, lobes};
+use crate::math::srgb::luminance;
 use crate::math::{Vec3, fast, vec3};
 use crate::raster::TILE;
 use crate::shading::Painter;
@@ -107,6 +108,35 @@ impl PainterTerms {
         }
     }
 
+    /// The same row of a level part that nothing shades.
+    pub fn leveled(&self) -> Self {
+        let lamp = |lamp: &LampRow| LampRow {
+            toward: lamp.toward,
+            toward_seen: lamp.toward_seen,
+            seen: [1.0; TILE],
+            kappa: [0.0; TILE],
+        };
+        Self {
+            contact: self.contact.clone(),
+            is_scaled: self.is_scaled,
+            normal: LEVEL_ROW,
+            normal_seen: LEVEL_ROW,
+            higher: [0.0; TILE],
+            lower: [0.0; TILE],
+            kappa: [0.0; TILE],
+            lamps: self.lamps.iter().map(lamp).collect(),
+        }
+    }
+
+    /// The luminance of the light of the row on white, linear, without rim.
+    pub fn brightness(&self, shading: &Shading, lights: &[RowLight]) -> RowValues {
+        let sums = self.sums(shading, lights);
+        std::array::from_fn(|x| {
+            let [r, g, b] = [0, 1, 2].map(|c| sums.even[c][x] + sums.shine[c][x]);
+            luminance(r, g, b)
+        })
+    }
+
     /// The light of the row, linear. `albedo`: the color that is lit, linear.
     pub fn shade(
         &self,
@@ -115,6 +145,22 @@ impl PainterTerms {
         albedo: &Light3,
         light: &mut Light3,
     ) {
+        let painter = &shading.painter;
+        let Sums { open, even, edge, shine } = self.sums(shading, lights);
+        let mut rim = [0.0; TILE];
+        if painter.rim > 0.0 {
+            let toward = self.lamps.first().map_or(&LEVEL_ROW, |lamp| &lamp.toward);
+            rim_row([&self.normal, &self.normal_seen, toward], &self.lower, &open, &mut rim);
+        }
+        let with = Finish {
+            exposure: painter.exposure,
+            edge: painter.edge * Painter::EDGE,
+            rim: painter.rim_color.linear().map(|c| c * painter.rim * Painter::RIM),
+        };
+        finish_row(albedo, &even, [&edge, &rim], &shine, &with, light);
+    }
+
+    fn sums(&self, shading: &Shading, lights: &[RowLight]) -> Sums {
         let painter = &shading.painter;
         let mut open = [0.0; TILE];
         contact_row(&self.higher, painter, &mut open);
@@ -140,17 +186,7 @@ impl PainterTerms {
                 lobes::add(&mut shine, tint, &gloss);
             }
         }
-        let mut rim = [0.0; TILE];
-        if painter.rim > 0.0 {
-            let toward = self.lamps.first().map_or(&LEVEL_ROW, |lamp| &lamp.toward);
-            rim_row([&self.normal, &self.normal_seen, toward], &self.lower, &open, &mut rim);
-        }
-        let with = Finish {
-            exposure: painter.exposure,
-            edge: painter.edge * Painter::EDGE,
-            rim: painter.rim_color.linear().map(|c| c * painter.rim * Painter::RIM),
-        };
-        finish_row(albedo, &even, [&edge, &rim], &shine, &with, light);
+        Sums { open, even, edge, shine }
     }
 
     fn scale(&self, scaling: crate::shading::Scaling, kappa: &RowValues, rho: &mut RowValues) {
@@ -160,6 +196,16 @@ impl PainterTerms {
             }
         }
     }
+}
+
+/// What is added up along a row.
+struct Sums {
+    /// What contact shade leaves of the light.
+    open: RowValues,
+    /// The light that the color takes.
+    even: Light3,
+    edge: RowValues,
+    shine: Light3,
 }
 
 fn strongest(radiance: [f32; 3]) -> f32 {

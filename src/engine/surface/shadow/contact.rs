@@ -90,7 +90,8 @@ fn smaller(map: &Plane<f32>, step: usize) -> Plane<f32> {
 impl ContactShade {
     pub(super) fn of(surface: &Surface, largest_px: f32) -> Self {
         let heights = surface.heights();
-        let (map, page) = (&heights.upright, Blurred::page(surface, SIZES[LARGE] * largest_px));
+        let (map, page) =
+            (&heights.upright.whole, Blurred::page(surface, SIZES[LARGE] * largest_px));
         let mut by_step: Vec<(usize, Plane<f32>)> = Vec::new();
         let blurred: Vec<Blurred> = SIZES
             .iter()

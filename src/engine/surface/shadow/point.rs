@@ -5,13 +5,19 @@
 //! and ρ rows away sees the lamp, at height H, under the slope (H − h)/ρ; what stands on its line
 //! under the least slope is what stands highest above its ray.
 
-use super::sweep::{
-    BETWEEN, HiddenCounts, Highest, LANES, NOTHING, SlidingHighest, WHOLE, rows_of,
-};
-use super::{Aim, HeightMaps, LampRay, RISE, fade, hidden};
+use super::counts::{HiddenCounts, WHOLE};
+use super::heights::HeightMaps;
+use super::{Aim, LampRay, RISE, fade, hidden};
 use crate::math::{Vec3, fast, vec3};
 use crate::raster::Plane;
 
+/// Lines of a strip, side by side.
+const LANES: usize = 72;
+/// Pixels between them in a row that are looked at: whole vectors of both.
+const BETWEEN: usize = 64;
+type LineValues = [f32; LANES];
+/// Lower than every height above a ray.
+const NOTHING: f32 = -1e9;
 /// Rows closer than this to the lamp lie under it.
 const UNDER: f32 = 0.5;
 
@@ -33,8 +39,8 @@ pub(super) fn add(heights: &HeightMaps, ray: &LampRay, counts: &mut HiddenCounts
     let Aim::To(lamp) = ray.aim else { return };
     for (is_turned, is_up) in [(false, false), (false, true), (true, false), (true, true)] {
         let (map, lamp) = match is_turned {
-            false => (&heights.upright, lamp),
-            true => (&heights.turned, vec3(lamp.y, lamp.x, lamp.z)),
+            false => (&heights.upright.whole, lamp),
+            true => (&heights.turned.whole, vec3(lamp.y, lamp.x, lamp.z)),
         };
         let farthest = if is_up { lamp.y } else { map.height() as f32 - 1.0 - lamp.y };
         if farthest > UNDER {
@@ -135,10 +141,96 @@ impl Quarter<'_> {
                     let distance = (turn as f32 - highest.row[i]) * lengths[i];
                     (hidden(above, distance, rise, self.ray.spread), distance)
                 });
-                fast::max(near.0, far.0 * fade(far.1, self.ray.reach_px))
+                fast::max(near.0, far.0 * fade(far.1, 0.5 * self.ray.reach_px, self.ray.reach_px))
             };
             let (a, b) = (of_line(left), of_line(left + 1));
             counts[x] += fast::whole((a + (b - a) * between) * WHOLE) as u16;
+        }
+    }
+}
+
+/// Whole rows of a window, in a map of so many.
+fn rows_of(window: f32, height: usize) -> usize {
+    (window.max(1.0) as usize).clamp(1, height.max(1))
+}
+
+/// What strips keep of their rows: the greatest of those that a row looks back at, however many
+/// these are.
+struct SlidingHighest {
+    /// Of this block, the heights of its rows, and the highest since it began.
+    block: Vec<LineValues>,
+    since: Highest,
+    in_block: usize,
+    /// The highest of a row of the block before or of those after it.
+    before: Vec<Highest>,
+    /// The highest that the last rows looked back at, and that this one does.
+    last: Vec<Highest>,
+    near: Highest,
+}
+
+impl SlidingHighest {
+    /// For rows that look back at `reach` others, `≥ 1`.
+    fn of(reach: usize) -> Self {
+        Self {
+            block: vec![[NOTHING; LANES]; reach],
+            since: Highest::NONE,
+            in_block: 0,
+            before: vec![Highest::NONE; reach],
+            last: vec![Highest::NONE; reach],
+            near: Highest::NONE,
+        }
+    }
+
+    /// The highest of the rows that the next one looks back at, and of as many before these.
+    #[inline(always)]
+    fn highest(&mut self) -> [&Highest; 2] {
+        let (since, before) = (&self.since, &self.before[self.in_block]);
+        for i in 0..LANES {
+            // Values, not places: the compiler would choose between addresses.
+            let (a, b) = (before.height[i], since.height[i]);
+            let (row_a, row_b) = (before.row[i], since.row[i]);
+            self.near.height[i] = if a > b { a } else { b };
+            self.near.row[i] = if a > b { row_a } else { row_b };
+        }
+        // Rows are as many as a block's: this one's place holds the row a block before.
+        [&self.near, &self.last[self.in_block]]
+    }
+
+    /// Goes on to the next row, after [`SlidingHighest::highest`]: `heights` of row number `turn`.
+    #[inline(always)]
+    fn take(&mut self, heights: &LineValues, turn: usize) {
+        let reach = self.block.len();
+        self.last[self.in_block] = self.near;
+        self.since.take(heights, turn as f32);
+        self.block[self.in_block] = *heights;
+        self.in_block += 1;
+        if self.in_block == reach {
+            let (mut after, first) = (Highest::NONE, turn + 1 - reach);
+            for k in (0..reach).rev() {
+                after.take(&self.block[k], (first + k) as f32);
+                self.before[k] = after;
+            }
+            (self.since, self.in_block) = (Highest::NONE, 0);
+        }
+    }
+}
+
+/// What stands highest on each line, and in which row.
+#[derive(Clone, Copy)]
+struct Highest {
+    height: LineValues,
+    row: LineValues,
+}
+
+impl Highest {
+    const NONE: Self = Self { height: [NOTHING; LANES], row: [0.0; LANES] };
+
+    #[inline(always)]
+    fn take(&mut self, heights: &LineValues, row: f32) {
+        for ((height, at), new) in self.height.iter_mut().zip(&mut self.row).zip(heights) {
+            let higher = *new > *height;
+            *height = if higher { *new } else { *height };
+            *at = if higher { row } else { *at };
         }
     }
 }

@@ -1,100 +1,43 @@
-//! Parallel rays of a whole map, line after line along the rays: every pixel looks at all that
-//! stands between it and the lamp, and costs the same however far that is. Floor 2. The equation
-//! is in `super`.
+//! One direction of rays over a whole map, line after line along the rays: every pixel looks at all
+//! that stands between it and the lamp, and costs the same however far that is. Floor 2. The
+//! equation is in `super`.
 //!
 //! A ray that goes farther along y than along x meets every row, so the lines of a strip are read
 //! side by side, row by row from the lamp's side on, each between the two pixels that it passes. A
 //! line's height above the ray is h + rise · distance from the lamp's side: what stands highest
-//! above a pixel's ray is the greatest of these within reach, a sliding maximum. It is that since
-//! the last whole block of rows began, or that of the end of the block before (van Herk 1992).
-//! Rays that go farther along x sweep the turned map.
+//! above a pixel's ray is the greatest of these within reach, a sliding maximum (`sliding`). Rays
+//! that go farther along x sweep the turned map.
 
-use super::{Aim, HeightMaps, LampRay, fade, hidden, seen, width_at};
-use crate::math::{Size, fast, simd::prefetch, vec2};
+use super::counts::WHOLE;
+use super::sliding::{Keys, LANES, LIMIT, MOST_ROWS, ROW_BITS, SlidingKeys, higher, key};
+use super::{fade, hidden, width_at};
+use crate::math::{Vec2, fast, simd::prefetch};
 use crate::raster::Plane;
-use crate::surface::shadow::ShareMap;
-use rayon::prelude::*;
 
-/// Lines of a strip, side by side.
-pub(super) const LANES: usize = 72;
-/// Pixels between them in a row that are looked at: whole vectors of both.
-pub(super) const BETWEEN: usize = 64;
-pub(super) type LineValues = [f32; LANES];
-/// What a ray counts where it is hidden wholly.
-pub(super) const WHOLE: f32 = 1000.0;
-/// Lower than every height above a ray.
-pub(super) const NOTHING: f32 = -1e9;
+/// Pixels between the lines of a strip in a row that are looked at, a group at a time.
+const BETWEEN: usize = 112;
+const GROUP: usize = 16;
+/// Steps of height a px, at most.
+const STEPS_PER_PX: f32 = 64.0;
+/// Rows that are fetched ahead: each lies pages away from the one before.
+const AHEAD: usize = 3;
 
-/// How much rays are hidden, added up in whole numbers.
-pub(super) struct HiddenCounts {
-    size: Size,
-    upright: Option<Plane<u16>>,
-    turned: Option<Plane<u16>>,
-}
-
-impl HiddenCounts {
-    pub fn new(size: Size) -> Self {
-        Self { size, upright: None, turned: None }
-    }
-
-    /// The sums of rays that sweep the map as it lies or turned.
-    pub fn of(&mut self, is_turned: bool) -> &mut Plane<u16> {
-        let Size { width, height } = self.size;
-        match is_turned {
-            false => self.upright.get_or_insert_with(|| Plane::filled(self.size, 0)),
-            true => self.turned.get_or_insert_with(|| Plane::filled(Size::new(height, width), 0)),
-        }
-    }
-
-    pub fn plus(self, other: Self) -> Self {
-        let sum = |a: Option<Plane<u16>>, b: Option<Plane<u16>>| match (a, b) {
-            (Some(mut a), Some(b)) => {
-                a.values_mut().iter_mut().zip(b.values()).for_each(|(a, b)| *a += b);
-                Some(a)
-            }
-            (a, b) => a.or(b),
-        };
-        let (upright, turned) = (sum(self.upright, other.upright), sum(self.turned, other.turned));
-        Self { size: self.size, upright, turned }
-    }
-
-    /// What each pixel sees of the lamp that so many rays go to.
-    pub fn visible_shares(self, rays: u32) -> ShareMap {
-        let per_count = 1.0 / (WHOLE * rays as f32);
-        let turned = self.turned.map(|plane| turned(&plane));
-        let mut counts = match (self.upright, turned) {
-            (Some(a), Some(b)) => a.updated(|x, y, v| v + b.at(x, y)),
-            (a, b) => a.or(b).unwrap_or_else(|| Plane::filled(self.size, 0)),
-        };
-        let steps: Vec<u16> = (0..=(WHOLE * rays as f32) as u32)
-            .map(|count| (seen(count as f32 * per_count) * f32::from(u16::MAX) + 0.5) as u16)
-            .collect();
-        counts = counts.updated(|_, _, v| steps.get(usize::from(v)).copied().unwrap_or(0));
-        ShareMap::from_steps(counts, 1.0)
-    }
-}
-
-/// A plane with its columns as rows.
-pub(super) fn turned<T: Copy + Send + Sync + Default>(plane: &Plane<T>) -> Plane<T> {
-    const SIDE: usize = 32;
-    let (w, h) = (plane.width(), plane.height());
-    let mut values = Plane::filled(Size::new(h as u32, w as u32), T::default());
-    values.values_mut().par_chunks_mut((h * SIDE).max(1)).enumerate().for_each(|(band, rows)| {
-        let x0 = band * SIDE;
-        for y0 in (0..h).step_by(SIDE) {
-            for (x, row) in rows.chunks_exact_mut(h).enumerate() {
-                for (y, value) in (y0..).zip(&mut row[y0..(y0 + SIDE).min(h)]) {
-                    *value = plane.at(x0 + x, y);
-                }
-            }
-        }
-    });
-    values
-}
-
-/// Whole rows of a window, in a map of so many.
-pub(super) fn rows_of(window: f32, height: usize) -> usize {
-    (window.max(1.0) as usize).clamp(1, height.max(1))
+/// What rays meet between two distances.
+pub(super) struct Sweep<'a> {
+    pub heights: &'a Plane<f32>,
+    /// The highest of them, px.
+    pub highest: f32,
+    /// The side of the map's pixels, px.
+    pub px: f32,
+    /// Way in the map, unit; px of rise for each px, and half-width, as those of a ray.
+    pub way: Vec2,
+    pub rise: f32,
+    pub spread: f32,
+    pub from_px: f32,
+    pub to_px: f32,
+    /// Whether what is beyond half of `to_px` fades out. Then near, low things hide as well as far,
+    /// high ones.
+    pub is_fading: bool,
 }
 
 /// Lines of one direction over a map.
@@ -102,260 +45,271 @@ struct ParallelLines<'a> {
     heights: &'a Plane<f32>,
     /// Rows are counted from the lamp's side: from the last one up.
     is_reversed: bool,
-    /// From row to row away from the lamp, px along it.
+    /// From row to row away from the lamp, pixels along it.
     slope: f32,
     /// px along a line from row to row.
     length: f32,
     rise: f32,
     spread: f32,
-    reach_px: f32,
-    /// What stands lower than this above a ray hides nothing of it, px.
-    least_above: f32,
+    /// Rows next to a pixel that it does not look at, and those up to where what is met fades.
+    skipped: usize,
+    unfaded: usize,
+    /// Where what is met begins to fade, and where it is gone, px.
+    fading_px: (f32, f32),
+    steps_per_px: f32,
+    /// What stands lower than this above a ray hides nothing of it, as a key.
+    least_above: i32,
 }
 
-/// Adds how much a ray is hidden from every pixel.
-pub(super) fn add(heights: &HeightMaps, ray: &LampRay, counts: &mut HiddenCounts) {
-    let Aim::Along { way, rise } = ray.aim else { return };
-    let is_turned = way.x.abs() > way.y.abs();
-    let (map, way) = match is_turned {
-        false => (&heights.upright, way),
-        true => (&heights.turned, vec2(way.y, way.x)),
-    };
-    let length = 1.0 / way.y.abs().max(1e-3);
-    let reach = rows_of(0.5 * ray.reach_px / length, map.height());
-    let lines = ParallelLines {
-        heights: map,
-        is_reversed: way.y > 0.0,
-        slope: -way.x * length,
-        length,
-        rise,
-        spread: ray.spread,
-        reach_px: ray.reach_px,
-        least_above: -0.5 * width_at(ray.reach_px + length, rise, ray.spread),
-    };
-    let counts = counts.of(is_turned);
-    let mut kept = SlidingHighest::of(reach);
-    // The lines of the first and of the last row.
-    let ends = [0.0, lines.slope * map.height() as f32];
-    let first = (ends[0].min(-ends[1]) - 2.0).floor() as i64;
-    let last = (ends[0].max(-ends[1]) + map.width() as f32 + 2.0) as i64;
-    for line in (first..last).step_by(BETWEEN) {
-        add_strip(&lines, line, &mut kept, counts);
-    }
+/// What is kept from row to row of a strip.
+struct Kept {
+    near: SlidingKeys,
+    /// Where it fades, if that is looked at.
+    far: Option<SlidingKeys>,
+    /// The rows that are not looked at yet.
+    waiting: Vec<Keys>,
 }
 
-/// What strips keep of their rows: the greatest of those that a row looks back at, however many
-/// these are.
-pub(super) struct SlidingHighest {
-    /// Of this block, the heights of its rows, and the highest since it began.
-    block: Vec<LineValues>,
-    since: Highest,
-    in_block: usize,
-    /// The highest of a row of the block before or of those after it.
-    before: Vec<Highest>,
-    /// The highest that the last rows looked back at, and that this one does.
-    last: Vec<Highest>,
-    near: Highest,
-}
-
-impl SlidingHighest {
-    /// For rows that look back at `reach` others, `≥ 1`.
-    pub fn of(reach: usize) -> Self {
-        Self {
-            block: vec![[NOTHING; LANES]; reach],
-            since: Highest::NONE,
-            in_block: 0,
-            before: vec![Highest::NONE; reach],
-            last: vec![Highest::NONE; reach],
-            near: Highest::NONE,
-        }
-    }
-
-    /// Forgets the rows of another strip.
-    #[inline(always)]
-    pub fn leave(&mut self) {
-        (self.since, self.in_block) = (Highest::NONE, 0);
-        self.before.fill(Highest::NONE);
-        self.last.fill(Highest::NONE);
-    }
-
-    /// The highest of the rows that the next one looks back at, and of as many before these.
-    #[inline(always)]
-    pub fn highest(&mut self) -> [&Highest; 2] {
-        let (since, before) = (&self.since, &self.before[self.in_block]);
-        for i in 0..LANES {
-            // Values, not places: the compiler would choose between addresses.
-            let (a, b) = (before.height[i], since.height[i]);
-            let (row_a, row_b) = (before.row[i], since.row[i]);
-            self.near.height[i] = if a > b { a } else { b };
-            self.near.row[i] = if a > b { row_a } else { row_b };
-        }
-        // Rows are as many as a block's: this one's place holds the row a block before.
-        [&self.near, &self.last[self.in_block]]
-    }
-
-    /// Goes on to the next row, after [`SlidingHighest::highest`]: `heights` of row number `turn`.
-    #[inline(always)]
-    pub fn take(&mut self, heights: &LineValues, turn: usize) {
-        let reach = self.block.len();
-        self.last[self.in_block] = self.near;
-        self.since.take(heights, turn as f32);
-        self.block[self.in_block] = *heights;
-        self.in_block += 1;
-        if self.in_block == reach {
-            let (mut after, first) = (Highest::NONE, turn + 1 - reach);
-            for k in (0..reach).rev() {
-                after.take(&self.block[k], (first + k) as f32);
-                self.before[k] = after;
+impl Sweep<'_> {
+    /// Adds how much a ray is hidden from every pixel.
+    pub fn add(&self, counts: &mut Plane<u16>) {
+        let (lines, all) = self.lines();
+        let is_far = all > lines.unfaded;
+        let waiting = if is_far { lines.unfaded } else { lines.skipped };
+        let mut kept = Kept {
+            near: SlidingKeys::of(lines.unfaded - lines.skipped),
+            far: is_far.then(|| SlidingKeys::of(all - lines.unfaded)),
+            waiting: vec![[0; LANES]; waiting.max(1)],
+        };
+        let (width, height) = (self.heights.width() as f32, self.heights.height() as f32);
+        // The lines of the first and of the last row.
+        let end = lines.slope * height;
+        let first = ((-end).min(0.0) - 2.0).floor() as i64;
+        let last = ((-end).max(0.0) + width + 2.0) as i64;
+        for line in (first..last).step_by(BETWEEN) {
+            match is_far {
+                true => add_far_strip(&lines, line, &mut kept, counts),
+                false => add_near_strip(&lines, line, &mut kept, counts),
             }
-            (self.since, self.in_block) = (Highest::NONE, 0);
         }
+    }
+
+    /// And how many rows there are up to the last one that is looked at.
+    fn lines(&self) -> (ParallelLines<'_>, usize) {
+        let length = self.px / self.way.y.abs().max(1e-3);
+        let skipped = ((self.from_px / length) as usize).min(MOST_ROWS / 2);
+        // Nothing is higher than the highest.
+        let needed = (self.highest + 8.0) / (self.rise * length) + 1.0;
+        let most = (MOST_ROWS - 1).min(self.heights.height() + skipped).max(skipped + 1);
+        let rows_to = |px: f32| (fast::min(px / length, needed) as usize).clamp(skipped + 1, most);
+        let all = rows_to(self.to_px);
+        let unfaded = if self.is_fading { rows_to(0.5 * self.to_px) } else { all };
+        let top = self.highest + self.heights.height() as f32 * self.rise * length;
+        let steps_per_px = fast::min(STEPS_PER_PX, ((LIMIT >> (ROW_BITS + 1)) - 2) as f32 / top);
+        let least = -0.5 * width_at(self.to_px + length, self.rise, self.spread);
+        let lines = ParallelLines {
+            heights: self.heights,
+            is_reversed: self.way.y > 0.0,
+            slope: -self.way.x / self.way.y.abs().max(1e-3),
+            length,
+            rise: self.rise,
+            spread: self.spread,
+            skipped,
+            unfaded,
+            fading_px: (0.5 * self.to_px, self.to_px),
+            steps_per_px,
+            least_above: key(fast::max(least * steps_per_px, -1e5) as i32 - 1, 0),
+        };
+        (lines, all)
     }
 }
 
-/// What stands highest on each line, and in which row.
-#[derive(Clone, Copy)]
-pub(super) struct Highest {
-    pub height: LineValues,
-    pub row: LineValues,
+/// A row of a strip.
+struct StripRow<'a> {
+    /// Its number, from the strip's first one on.
+    turn: usize,
+    /// The heights of its pixels, px.
+    h: &'a [f32; LANES + 1],
+    /// What its distance from the first row adds to a height, steps.
+    gain: i32,
+    /// How far each line lies to the right of the pixel before it.
+    between: f32,
+    /// The column of the pixel between the first two lines.
+    x0: i64,
 }
-
-impl Highest {
-    const NONE: Self = Self { height: [NOTHING; LANES], row: [0.0; LANES] };
-
-    #[inline(always)]
-    fn take(&mut self, heights: &LineValues, row: f32) {
-        for ((height, at), new) in self.height.iter_mut().zip(&mut self.row).zip(heights) {
-            let higher = *new > *height;
-            *height = if higher { *new } else { *height };
-            *at = if higher { row } else { *at };
-        }
-    }
-}
-
-/// The rows of a strip that lie in the picture.
-fn rows_inside(lines: &ParallelLines, line: i64) -> std::ops::Range<usize> {
-    let (width, height) = (lines.heights.width() as f32, lines.heights.height());
-    let inside = |r: usize| {
-        let x = line as f32 + lines.slope * r as f32;
-        x > -(LANES as f32) - 1.0 && x < width + 1.0
-    };
-    let Some(first) = (0..height).find(|r| inside(*r)) else { return 0..0 };
-    let last = (first..height).rfind(|r| inside(*r)).unwrap_or(first);
-    first..last + 1
-}
-
-/// Rows that are fetched ahead: each lies pages away from the one before.
-const AHEAD: usize = 3;
 
 impl ParallelLines<'_> {
+    /// The rows of a strip that lie in the picture.
+    fn rows_inside(&self, line: i64) -> std::ops::Range<usize> {
+        let (width, height) = (self.heights.width() as f32, self.heights.height());
+        let inside = |r: usize| {
+            let x = line as f32 + self.slope * r as f32;
+            x > -(LANES as f32) - 1.0 && x < width + 1.0
+        };
+        let Some(first) = (0..height).find(|r| inside(*r)) else { return 0..0 };
+        let last = (first..height).rfind(|r| inside(*r)).unwrap_or(first);
+        first..last + 1
+    }
+
+    /// The number of a row, counted from the lamp's side, in the map.
+    #[inline(always)]
+    fn row(&self, r: usize) -> usize {
+        if self.is_reversed { self.heights.height() - 1 - r } else { r }
+    }
+
     #[inline(always)]
     fn prefetch(&self, x0: i64, r: usize, counts: &Plane<u16>) {
         let (width, height) = (self.heights.width(), self.heights.height());
         if r < height {
-            let y = if self.is_reversed { height - 1 - r } else { r };
             let first = (x0.max(0) as usize).min(width);
             let columns = first..(first + LANES).min(width);
-            prefetch(&self.heights.row(y)[columns.clone()]);
-            prefetch(&counts.row(y)[columns]);
+            prefetch(&self.heights.row(self.row(r))[columns.clone()]);
+            prefetch(&counts.row(self.row(r))[columns]);
         }
+    }
+
+    #[inline(always)]
+    fn steps(&self, px: f32) -> i32 {
+        fast::whole(px * self.steps_per_px)
+    }
+
+    /// `FAR`: looks at a second window, which fades.
+    #[inline(always)]
+    fn add_strip<const FAR: bool>(&self, line: i64, kept: &mut Kept, counts: &mut Plane<u16>) {
+        let width = self.heights.width() as i64;
+        kept.near.leave();
+        kept.far.iter_mut().for_each(SlidingKeys::leave);
+        for (turn, r) in self.rows_inside(line).enumerate() {
+            let x = line as f32 + self.slope * r as f32;
+            let (x0, between) = (x.floor() as i64, x - x.floor());
+            let (y, mut edge) = (self.row(r), [0.0; LANES + 1]);
+            let row = self.heights.row(y);
+            self.prefetch(x0, r + AHEAD, counts);
+            let inside = usize::try_from(x0).ok().and_then(|x| row.get(x..)?.first_chunk());
+            let h = inside.unwrap_or_else(|| {
+                for (x, h) in (x0..).zip(&mut edge) {
+                    *h = if (0..width).contains(&x) { row[x as usize] } else { 0.0 };
+                }
+                &edge
+            });
+            let gain = self.steps(turn as f32 * self.rise * self.length);
+            let strip_row = StripRow { turn, h, gain, between, x0: x0 + 1 };
+            if turn > self.skipped {
+                let near = kept.near.highest();
+                let far = if FAR { kept.far.as_mut().map(SlidingKeys::highest) } else { None };
+                self.add_row::<FAR>(&strip_row, [near, far.unwrap_or(near)], counts.row_mut(y));
+            }
+            self.keep(&strip_row, kept);
+        }
+    }
+
+    /// Takes the heights on the lines of a row, once it is to be looked at.
+    #[inline(always)]
+    fn keep(&self, row: &StripRow, kept: &mut Kept) {
+        let mut keys = [0; LANES];
+        for i in 0..LANES {
+            let h = row.h[i] + row.between * (row.h[i + 1] - row.h[i]);
+            keys[i] = key(self.steps(h) + row.gain, row.turn);
+        }
+        let waiting = kept.waiting.len();
+        if self.skipped == 0 {
+            kept.near.take(&keys);
+        } else if row.turn >= self.skipped {
+            kept.near.take(&kept.waiting[(row.turn - self.skipped) % waiting]);
+        }
+        let place = &mut kept.waiting[row.turn % waiting];
+        if let (true, Some(far)) = (row.turn >= self.unfaded, &mut kept.far) {
+            far.take(place);
+        }
+        for i in 0..LANES {
+            place[i] = keys[i];
+        }
+    }
+
+    /// Adds how much the ray is hidden from the pixels of a row.
+    #[inline(always)]
+    fn add_row<const FAR: bool>(
+        &self,
+        row: &StripRow,
+        [near, far]: [&Keys; 2],
+        counts: &mut [u16],
+    ) {
+        for first in (0..BETWEEN).step_by(GROUP) {
+            let (mut own, mut above) = ([0; GROUP], 0);
+            for i in 0..GROUP {
+                own[i] = key(self.steps(row.h[first + i + 1]) + row.gain, 0);
+            }
+            for i in 0..GROUP {
+                let at = first + i;
+                let mut highest = higher(near[at], near[at + 1]);
+                if FAR {
+                    highest = higher(highest, higher(far[at], far[at + 1]));
+                }
+                above |= i32::from(highest.wrapping_sub(own[i]) > self.least_above);
+            }
+            // Most pixels lie in the light.
+            if above == 0 {
+                continue;
+            }
+            let mut shares = [[0.0; GROUP]; 2];
+            let (from, to) = self.fading_px;
+            for (side, shares) in shares.iter_mut().enumerate() {
+                let at = first + side;
+                for i in 0..GROUP {
+                    shares[i] = self.hidden(near[at + i], own[i], row.turn).0;
+                }
+                if FAR {
+                    for i in 0..GROUP {
+                        let (hidden, distance) = self.hidden(far[at + i], own[i], row.turn);
+                        shares[i] = fast::max(shares[i], hidden * fade(distance, from, to));
+                    }
+                }
+            }
+            // The pixel lies 1 − between right of its left line.
+            let ([left, right], mut added) = (&shares, [0; GROUP]);
+            for i in 0..GROUP {
+                let share = right[i] + (left[i] - right[i]) * row.between;
+                added[i] = fast::whole(share * WHOLE) as u16;
+            }
+            add_counts(&added, row.x0 + first as i64, counts);
+        }
+    }
+
+    /// How much of a pixel's ray what stands highest hides, and how far away that is.
+    #[inline(always)]
+    fn hidden(&self, highest: i32, own: i32, turn: usize) -> (f32, f32) {
+        let above = (highest.wrapping_sub(own) >> ROW_BITS) as f32 / self.steps_per_px;
+        let rows = (turn as i32).wrapping_sub(highest) & MOST_ROWS as i32;
+        let distance = rows as f32 * self.length;
+        (hidden(above, distance, self.rise, self.spread), distance)
+    }
+}
+
+/// Adds counts to those from column `x` on that lie in the picture.
+#[inline(always)]
+fn add_counts(added: &[u16; GROUP], x: i64, counts: &mut [u16]) {
+    let inside = usize::try_from(x).ok().and_then(|x| counts.get_mut(x..)?.first_chunk_mut());
+    if let Some(sums) = inside {
+        let sums: &mut [u16; GROUP] = sums;
+        for i in 0..GROUP {
+            sums[i] += added[i];
+        }
+        return;
+    }
+    for (x, added) in (x..).zip(added) {
+        let sum = usize::try_from(x).ok().and_then(|x| counts.get_mut(x));
+        sum.into_iter().for_each(|sum| *sum += added);
     }
 }
 
 crate::widest! {
     /// Adds how much the ray is hidden from the pixels between the lines of a strip.
-    fn add_strip(lines: &ParallelLines, line: i64, kept: &mut SlidingHighest, counts: &mut Plane<u16>) {
-        let (width, height) = (lines.heights.width() as i64, lines.heights.height());
-        let rows = rows_inside(lines, line);
-        let per_row = lines.rise * lines.length;
-        kept.leave();
-        for (i, r) in rows.enumerate() {
-            let x = line as f32 + lines.slope * r as f32;
-            let whole = x.floor();
-            let (x0, between) = (whole as i64, x - whole);
-            let y = if lines.is_reversed { height - 1 - r } else { r };
-            let row = lines.heights.row(y);
-            lines.prefetch(x0, r + AHEAD, counts);
-            let mut h = [0.0; LANES + 1];
-            if x0 >= 0 && x0 + (LANES as i64) < width {
-                h.copy_from_slice(&row[x0 as usize..x0 as usize + LANES + 1]);
-            } else {
-                for (k, h) in h.iter_mut().enumerate() {
-                    *h = if (0..width).contains(&(x0 + k as i64)) { row[(x0 + k as i64) as usize] } else { 0.0 };
-                }
-            }
-            // Counted from where the strip begins, so that numbers stay small.
-            let (turn, gain) = (i as f32, i as f32 * per_row);
-            add_row(lines, &h, kept.highest(), (turn, gain, between), x0, counts.row_mut(y));
-            let mut heights = [0.0; LANES];
-            for k in 0..LANES {
-                heights[k] = h[k] + between * (h[k + 1] - h[k]) + gain;
-            }
-            kept.take(&heights, i);
-        }
+    fn add_near_strip(lines: &ParallelLines, line: i64, kept: &mut Kept, counts: &mut Plane<u16>) {
+        lines.add_strip::<false>(line, kept, counts);
     }
-}
 
-/// Adds how much the ray is hidden from the pixels of one row.
-///
-/// * `highest`: near and far.
-/// * `at`: rows since the strip's first one, the gain of a line's height over them, and how far
-///   each line lies to the right of its pixel.
-#[inline(always)]
-fn add_row(
-    lines: &ParallelLines,
-    h: &[f32; LANES + 1],
-    highest: [&Highest; 2],
-    at: (f32, f32, f32),
-    x0: i64,
-    row: &mut [u16],
-) {
-    let (turn, gain, between) = at;
-    let mut own = [0.0; BETWEEN];
-    for (own, h) in own.iter_mut().zip(&h[1..]) {
-        *own = h + gain;
-    }
-    // Most rows lie in the light.
-    let mut counts = [0; 2];
-    for (count, highest) in counts.iter_mut().zip(highest) {
-        for (i, own) in own.iter().enumerate() {
-            let over = fast::max(highest.height[i], highest.height[i + 1]) - own;
-            *count += u32::from(over > lines.least_above);
-        }
-    }
-    if counts == [0, 0] {
-        return;
-    }
-    // The pixel lies 1 − between right of its left line.
-    let (mut added, mut share) = ([0u16; BETWEEN], [[0.0; BETWEEN]; 2]);
-    if counts[0] > 0 {
-        for (k, share) in share.iter_mut().enumerate() {
-            for i in 0..BETWEEN {
-                let distance = (turn - highest[0].row[i + k]) * lines.length;
-                let above = highest[0].height[i + k] - own[i];
-                share[i] = hidden(above, distance, lines.rise, lines.spread);
-            }
-        }
-    }
-    if counts[1] > 0 {
-        for (k, share) in share.iter_mut().enumerate() {
-            for i in 0..BETWEEN {
-                let distance = (turn - highest[1].row[i + k]) * lines.length;
-                let above = highest[1].height[i + k] - own[i];
-                let far = hidden(above, distance, lines.rise, lines.spread);
-                share[i] = fast::max(share[i], far * fade(distance, lines.reach_px));
-            }
-        }
-    }
-    let [left, right] = &share;
-    for i in 0..BETWEEN {
-        added[i] = fast::whole((right[i] + (left[i] - right[i]) * between) * WHOLE) as u16;
-    }
-    let first = (x0 + 1).max(0);
-    let skipped = (first - x0 - 1) as usize;
-    let start = (first as usize).min(row.len());
-    let row = &mut row[start..];
-    if skipped < BETWEEN {
-        row.iter_mut().zip(&added[skipped..BETWEEN]).for_each(|(sum, added)| *sum += added);
+    /// The same with a second window, which fades.
+    fn add_far_strip(lines: &ParallelLines, line: i64, kept: &mut Kept, counts: &mut Plane<u16>) {
+        lines.add_strip::<true>(line, kept, counts);
     }
 }

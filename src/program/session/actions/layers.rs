@@ -21,10 +21,11 @@ use crate::paint::{
     ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment, Text,
 };
 use crate::raster::Plane;
+use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
-use crate::shading::Model;
+use crate::shading::{Model, PixelShading};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{self, mapped};
 use flattening::bake_displacement;
@@ -66,10 +67,15 @@ actions! {
         "write" Write { text: Text, at: Vec2 }
         /// A look that comes with the program, by its key, on top of all layers.
         "look" Look { name: String }
+        /// A material that comes with the program, by its key, on a part by its id, on what is selected
+        /// or on the whole surface; shown only, until it is `done`.
+        "material" Material { name: String, part: Option<String>, done: bool }
         /// A ball that comes with the program, by its key, for a layer of lit spheres.
         "painted ball" PaintedBall { layer: LayerPath, name: String, hollows: bool }
         /// Opens a ball of a layer of lit spheres as a document of its own.
         "paint ball" PaintBall { layer: LayerPath, hollows: bool }
+        /// A painter's light lights in tones of the colors of the picture beneath it.
+        "pixel colors" PixelColors { layer: LayerPath }
         /// A layer that adjusts the colors beneath it.
         "add adjustment" AddAdjustment { adjustment: ColorAdjustment }
         /// The paint of layers is adjusted for good, within the selection; shown only, until it is
@@ -157,6 +163,13 @@ impl LayerAction {
             open.forget_preview();
             let written = texts::write(open, text, *at);
             return session.said.extend(written.err().map(|why| why.to_string()));
+        }
+        if let LayerAction::Material { name, part, done } = self {
+            if let Some(why) = self.refusal(open.document()) {
+                open.forget_preview();
+                return session.say(why);
+            }
+            return looks::give_material(open, name, part.as_deref(), *done);
         }
         if let LayerAction::Adjust { layer, adjustment, done } = self {
             return adjust(session, layer, adjustment, *done);
@@ -276,6 +289,7 @@ impl LayerAction {
                 let layer = layer(path)?;
                 looks::with_ball(document, &layer, name, *hollows)?
             }
+            LayerAction::PixelColors { layer: path } => toned(document, layer(path)?.as_ref())?,
             LayerAction::AddAdjustment { adjustment } => {
                 let name = document.free_layer_name(adjustment.label());
                 added(open, Layer::new(name, adjustment.clone()))?
@@ -376,6 +390,7 @@ impl LayerAction {
             | LayerAction::Solo { .. }
             | LayerAction::OnMask { .. }
             | LayerAction::Adjust { .. }
+            | LayerAction::Material { .. }
             | LayerAction::Unadjust {}
             | LayerAction::TakeAlong { .. }
             | LayerAction::Pivot { .. }
@@ -394,6 +409,19 @@ fn added(open: &OpenDocument, new: Layer) -> Option<EditStep> {
     let new = selecting(document, new);
     let id = new.id;
     Some(("Add layer", document.with_inserted(new, above(open))?, vec![id]))
+}
+
+/// A painter's light in tones of the picture beneath it; in three tones if light was smooth.
+fn toned(document: &Document, layer: &Layer) -> Option<EditStep> {
+    let Content::Shading(live) = &layer.content else { return None };
+    let mut shading = live.params().clone();
+    shading.pixel.colors = colors_beneath(document, layer.id)?;
+    if !shading.pixel.is_on() {
+        shading.pixel.bands = PixelShading::USUAL_BANDS;
+    }
+    let content = Content::Shading(Live::new(shading));
+    let next = document.with_layer(layer.id, |layer| layer.content = content)?;
+    Some(("Pixel shading", next, vec![layer.id]))
 }
 
 fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) -> Result<()> {
@@ -457,14 +485,19 @@ fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bo
 /// Where a new layer goes: above the selected one; into it, on top, if it is a group.
 pub fn above(open: &OpenDocument) -> LayerSlot {
     let document = open.document();
+    let highest = document.below_top_ink();
     let Some(layer) = open.selected.and_then(|id| document.layer(id)) else {
-        return LayerSlot::top_level(usize::MAX);
+        return LayerSlot::top_level(highest);
     };
     if layer.content.group().is_some() {
         return LayerSlot::in_group(layer.id, usize::MAX);
     }
-    let place = document.place_of(layer.id).unwrap_or(LayerSlot::top_level(usize::MAX));
-    LayerSlot { index: place.index.saturating_add(1), ..place }
+    let place = document.place_of(layer.id).unwrap_or(LayerSlot::top_level(highest));
+    let index = place.index.saturating_add(1);
+    match place.group {
+        None => LayerSlot::top_level(index.min(highest)),
+        Some(_) => LayerSlot { index, ..place },
+    }
 }
 
 /// The layer at a place, or the group it is in.

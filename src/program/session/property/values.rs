@@ -11,7 +11,8 @@ use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
 use crate::shading::{
-    BallStrokes, Features, Light, Model, Mood, Painter, Projection, Scaling, Shadows, Term,
+    BallStrokes, Features, Light, Model, Mood, Painter, PixelShading, Projection, Scaling, Shadows,
+    Term,
 };
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
@@ -29,7 +30,7 @@ names!(Mood);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
 as_in_recipes!(ColorAdjustment, Text);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
-as_in_recipes!(Shadows, Painter, BallStrokes);
+as_in_recipes!(Shadows, Painter, PixelShading, BallStrokes);
 as_in_recipes!(LineSettings, HatchSettings, DrawingHand);
 
 /// As documents write it.

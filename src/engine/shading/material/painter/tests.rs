@@ -2,6 +2,7 @@ use super::*;
 use crate::math::Size;
 use crate::math::srgb::Color;
 use crate::raster::{Plane, TileAt};
+use crate::shading::radiance::Exactness;
 use crate::shading::{Light, LightKind, Model};
 use crate::surface::{Maps, Scene};
 
@@ -100,6 +101,34 @@ fn straight_ahead() -> Shading {
     shading.lights = vec![Light { kind, ..Light::default() }];
     shading.painter.beneath = true;
     shading
+}
+
+#[test]
+fn pixel_shading_has_as_many_tones_as_bands_and_nothing_between() {
+    let scene = ball(Size::new(64, 64), true);
+    let own = [0xd0, 0x88, 0x58];
+    let mut shading = Shading::new(Model::Painter);
+    shading.painter.beneath = true;
+    shading.pixel.bands = 4;
+    let tones: Vec<[u8; 3]> = (-2..=1).map(|step| shading.pixel.tone(own, step)).collect();
+    for exactness in [Exactness::Fast, Exactness::Exact] {
+        let mut tile = crate::raster::PlanarTile::transparent();
+        tile.rows_mut().iter_mut().for_each(|row| {
+            row.rgb = own.map(|c| [f32::from(c) / 255.0; TILE]);
+            row.a = [1.0; TILE];
+        });
+        shading.light_tile(&scene, TileAt::new(0, 0), exactness, &mut tile);
+        let mut found: Vec<[u8; 3]> = tile
+            .rows()
+            .iter()
+            .flat_map(|row| (0..TILE).map(|x| row.rgb.map(|c| crate::math::srgb::quantize(c[x]))))
+            .collect();
+        assert_eq!(found[0], own, "a level part keeps its color");
+        found.sort_unstable();
+        found.dedup();
+        assert!(found.len() >= 3, "{found:?}");
+        assert!(found.iter().all(|tone| tones.contains(tone)), "{found:?} of {tones:?}");
+    }
 }
 
 #[test]

@@ -1,9 +1,10 @@
-//! Looks and painted balls that come with the program, put into a document.
-//! Floor 6. Not here: what they are (`io::recipe::looks`).
+//! Looks, materials and painted balls that come with the program, put into a document.
+//! Floor 6. Not here: what they are (`io::recipe::looks` and `materials`).
 
 use super::steps::EditStep;
 use crate::document::{Content, Document, Layer, Live};
-use crate::io::recipe::{LiveLook, PaintedBall};
+use crate::io::recipe::{LiveLook, PaintedBall, PartMaterial};
+use crate::session::OpenDocument;
 use crate::shading::{LitSphere, Model};
 
 /// The step that puts a document in a look: its name, the document, and what is chosen then.
@@ -12,6 +13,20 @@ pub(super) fn apply_look(document: &Document, name: &str) -> Option<EditStep> {
     let next = LiveLook::of_key(name)?.on(document).ok()?;
     let chosen = next.layers.last().map(|layer| layer.id);
     Some(("Look", next, chosen.into_iter().collect()))
+}
+
+/// Gives a part, or what is selected, a material: a step, or a preview of one.
+pub(super) fn give_material(open: &mut OpenDocument, name: &str, part: Option<&str>, done: bool) {
+    let given = PartMaterial::of_key(name).and_then(|of| of.on(open.document(), part).ok());
+    match given {
+        Some((next, layer)) if done => {
+            if open.commit("Material", next) {
+                open.choose_layers(vec![layer]);
+            }
+        }
+        Some((next, _)) => open.show("Material", next),
+        None => open.forget_preview(),
+    }
 }
 
 /// The step that gives a layer a ball, whose strokes stay whole from then on.

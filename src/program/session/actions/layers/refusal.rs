@@ -3,8 +3,9 @@
 
 use super::LayerAction;
 use super::steps::homed;
+use crate::document::parts::forms::visible_place;
 use crate::document::{Content, Document, Layer, LayerId, LayerLock, Mesh};
-use crate::io::recipe::{LiveLook, PaintedBall};
+use crate::io::recipe::{LiveLook, PaintedBall, PartMaterial};
 use crate::session::LayerPaths;
 use crate::shading::Model;
 use std::sync::Arc;
@@ -61,6 +62,17 @@ impl LayerAction {
             LayerAction::Look { name } if LiveLook::of_key(name).is_none() => {
                 Err("No look has this name.")
             }
+            LayerAction::Material { .. } if document.surface.is_none() => {
+                Err("A material needs a shape: give the drawing one first.")
+            }
+            LayerAction::Material { name, .. } if PartMaterial::of_key(name).is_none() => {
+                Err("No material has this name.")
+            }
+            LayerAction::Material { part: Some(part), .. }
+                if visible_place(document, part).is_none() =>
+            {
+                Err("There is no part of this name, or nothing of it is seen.")
+            }
             LayerAction::PaintedBall { name, .. } if PaintedBall::of_key(name).is_none() => {
                 Err("No painted ball has this name.")
             }
@@ -81,6 +93,16 @@ impl LayerAction {
                     None => Err("Select a layer of form lines or hatching first."),
                     Some(layer) if layer.lock == LayerLock::All => Err("The layer is locked."),
                     Some(_) => Ok(()),
+                }
+            }
+            LayerAction::PixelColors { layer } => {
+                let lights = |layer: &Arc<Layer>| match &layer.content {
+                    Content::Shading(live) => live.params().is_lighting_beneath(),
+                    _ => false,
+                };
+                match layer.find(document).is_some_and(lights) {
+                    true => Ok(()),
+                    false => Err("Select a painter's light that lights what is beneath first."),
                 }
             }
             LayerAction::Home { layer, part } => {

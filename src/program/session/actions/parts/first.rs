@@ -6,6 +6,7 @@ use super::{PartRefusal, free_id, new};
 use crate::document::parts::Part;
 use crate::document::parts::drawing::{DrawingTraits, FigureBackground, without_background};
 use crate::document::parts::from_flats::{FlatParts, PartFor, parts_of_flats};
+use crate::document::parts::pixel_art::pixel_art_colors;
 use crate::document::{
     Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress,
 };
@@ -13,7 +14,7 @@ use crate::math::srgb::Color;
 use crate::raster::TileGrid;
 use crate::session::OpenDocument;
 use crate::session::drawing::render_layer_with_progress;
-use crate::shading::{Model, Shading};
+use crate::shading::{Model, PixelShading, Shading};
 use std::sync::Arc;
 
 /// A document whose drawing has a shape.
@@ -92,7 +93,7 @@ pub fn shape_layer(
     // Its edge is the surface's: clipping as well would make it thinner.
     let next =
         document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);
-    let base = base(&next);
+    let base = base(&next, &tiles);
     let id = base.id;
     let place = next
         .place_of(layer)
@@ -170,10 +171,14 @@ pub(super) fn with_paint(
     })
 }
 
-/// The layer that shows the form: a painter's light on the drawing.
-fn base(document: &Document) -> Layer {
+/// The layer that shows the form: a painter's light on the drawing, in a few tones of its own colors
+/// if it was drawn pixel by pixel.
+fn base(document: &Document, drawing: &TileGrid) -> Layer {
     let mut shading = Shading::fitting(Model::Painter, document.size);
     shading.painter.beneath = true;
+    if let Some(colors) = pixel_art_colors(drawing, document.size) {
+        shading.pixel = PixelShading { bands: PixelShading::USUAL_BANDS, dither: 0.0, colors };
+    }
     let content = Content::Shading(Live::new(shading));
     Layer::new(document.free_layer_name("Base"), content)
 }

@@ -3,7 +3,7 @@
 //! (`parts`), the pen (`gestures`).
 
 use super::facts::Facts;
-use crate::io::recipe::{LiveLook, PaintedBall};
+use crate::io::recipe::{LiveLook, PaintedBall, PartMaterial};
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::session::{LayerPath, LayerPaths};
 use std::path::PathBuf;
@@ -244,6 +244,7 @@ impl Drawn for String {
             ("keep" | "take" | "forget", _) => ["a", "b", "sky"].map(str::to_owned).to_vec(),
             ("overlay", _) => facts.views.clone(),
             ("look", _) => LiveLook::keys().map(str::to_owned).collect(),
+            ("material", "name") => PartMaterial::keys().map(str::to_owned).collect(),
             ("painted ball", _) => PaintedBall::all().map(|ball| ball.key.to_owned()).collect(),
             _ => Vec::new(),
         };

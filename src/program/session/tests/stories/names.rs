@@ -79,6 +79,8 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         ShadingModel { .. } | Lights { .. } | InMood { .. } | Shadowed { .. } => &["material"],
         Ambient { .. } | Diffuse { .. } | Specular { .. } | Painted { .. } => &["material"],
         Shininess { .. } | Bands { .. } | Exponent { .. } => &["material"],
-        Anisotropy { .. } | RefractiveIndex { .. } | BallMarks { .. } => &["material"],
+        Anisotropy { .. } | RefractiveIndex { .. } | BallMarks { .. } | Pixeled { .. } => {
+            &["material"]
+        }
     }
 }

@@ -19,8 +19,8 @@ use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
 use crate::shading::{
-    BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, Reference,
-    Scaling, Shadows, Term,
+    BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, PixelShading,
+    Reference, Scaling, Shadows, Term,
 };
 use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
 use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
@@ -302,6 +302,14 @@ impl Drawn for Painter {
     fn drawn(dice: &mut Dice) -> Self {
         let numbers = settings(dice, Painter::SETTINGS, Painter::DEFAULT);
         Painter { beneath: dice.is(50), fill_color: dice.value(dice.word, "color"), ..numbers }
+    }
+}
+
+impl Drawn for PixelShading {
+    fn drawn(dice: &mut Dice) -> Self {
+        let bands = [0, 2, 3, 4, 5][dice.below(5)];
+        let colors = (0..dice.below(4)).map(|_| dice.value(dice.word, "color")).collect();
+        Self { bands, dither: dice.within(0.0, 1.0), colors }
     }
 }
 

@@ -78,6 +78,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
             "bounces",
             "shadows",
             "painter",
+            "pixels",
             "ball strokes",
             "mood",
             "model",
