@@ -100,8 +100,11 @@ fn lab(color: [u8; 3]) -> [f32; 3] {
     oklab::from_linear(color.map(srgb::decode_u8))
 }
 
+/// Other hues are farther away than other lightness: a red cap does not shine like skin.
 fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
-    (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum::<f32>().sqrt()
+    const HUE: f32 = 2.0;
+    let off = |i: usize, by: f32| (by * (a[i] - b[i])).powi(2);
+    (off(0, 1.0) + off(1, HUE) + off(2, HUE)).sqrt()
 }
 
 /// A color some steps lighter and warmer, or darker and cooler.
@@ -167,6 +170,13 @@ mod tests {
         assert_eq!(with(vec![near]).tone(SKIN, -1), [near.r, near.g, near.b]);
         let far = with(vec![Color::rgb(0x20, 0xa0, 0x30)]);
         assert_eq!(far.tone(SKIN, -1), pixel(3).tone(SKIN, -1));
+    }
+
+    #[test]
+    fn red_does_not_become_skin_in_the_light() {
+        let with_skin = PixelShading { colors: vec![Color::rgb(240, 190, 150)], ..pixel(3) };
+        let red = [200, 60, 60];
+        assert_eq!(with_skin.tone(red, 1), pixel(3).tone(red, 1));
     }
 
     #[test]
