@@ -73,6 +73,7 @@ pub const LOOKS: &[(&str, &str)] = &table!["looks/":
     "pencil-sketch",
     "charcoal",
     "ink",
+    "engraving",
     "comic",
     "marker",
     "cel-rim",

@@ -4,7 +4,6 @@
 //! `room` measures how densely they lie. Not here: tone, and strokes along them
 //! (`paint::form_drawing`).
 
-mod comb;
 mod directions;
 mod room;
 mod streamlines;

@@ -2,7 +2,6 @@
 //! is and comb_cross to one family, or the slope, or an angle on the paper. Floor 2. Angles are in the
 //! tangent plane, in the frame that S takes from the picture without turning it (MATH 8).
 
-use super::comb::comb_cross;
 use super::{HatchSettings, HatchWay};
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::Plane;
@@ -11,14 +10,15 @@ use crate::surface::unwrap::metric::stretch;
 use crate::surface::{Surface, links};
 use std::f32::consts::FRAC_PI_2;
 
+/// What is added to the doubled direction everywhere, per px.
+const HINT: f32 = 1e-5;
+
 /// The field that lines follow.
 pub struct DirectionField<'s> {
     surface: &'s Surface,
     normals: &'s SmoothNormals,
-    /// cos 4θ and sin 4θ of the cross at each pixel, of any length.
-    cross: [Plane<f32>; 2],
-    /// The angle of the first family at each pixel.
-    first: Plane<f32>,
+    /// cos 2θ and sin 2θ of the first family at each pixel, of any length.
+    doubled: [Plane<f32>; 2],
 }
 
 /// The principal directions at a pixel.
@@ -26,7 +26,7 @@ pub struct DirectionField<'s> {
 pub struct Principal {
     /// Of the direction in which the surface bends most, in the tangent plane.
     pub angle: f32,
-    /// Half the difference of the curvatures, per px.
+    /// How clear that is: half of how much more it bends there than across, per px.
     pub directed: f32,
 }
 
@@ -45,19 +45,19 @@ pub fn principal(slopes: [Vec2; 2], root: Mat2) -> Principal {
     let larger = 0.5 * xy.atan2(half);
     // The larger eigenvalue is the one that bends more if the mean is positive.
     let angle = if mean >= 0.0 { larger } else { larger + FRAC_PI_2 };
-    Principal { angle, directed: half.hypot(xy) }
+    // Half the difference of the absolute curvatures: nothing is clear on a symmetric saddle.
+    Principal { angle, directed: half.hypot(xy).min(mean.abs()) }
 }
 
 impl<'s> DirectionField<'s> {
     pub fn of(surface: &'s Surface, normals: &'s SmoothNormals, settings: &HatchSettings) -> Self {
         let turned = settings.angle.to_radians();
-        let known = |angle: &(dyn Fn(usize, usize) -> f32 + Sync)| {
-            let first = Plane::from_fn(surface.size(), angle);
-            let cross = [f32::cos, f32::sin].map(|of| first.map(move |angle| of(4.0 * angle)));
-            (cross, first)
+        let of_angle = |angle: &(dyn Fn(usize, usize) -> f32 + Sync)| {
+            let angles = Plane::from_fn(surface.size(), angle);
+            [f32::cos, f32::sin].map(|of| angles.map(move |angle| of(2.0 * angle)))
         };
-        let (cross, first) = match settings.way {
-            HatchWay::Paper => known(&|x, y| {
+        let doubled = match settings.way {
+            HatchWay::Paper => of_angle(&|x, y| {
                 // y down: counter-clockwise as seen is negative.
                 let way = vec2(turned.cos(), -turned.sin());
                 let on_surface = root(normals, x, y) * way;
@@ -66,21 +66,17 @@ impl<'s> DirectionField<'s> {
             HatchWay::Slope => {
                 let nbar = |i: usize| diffuse_copy(&normals.planes[i], surface, settings.spread);
                 let [nx, ny] = [nbar(0), nbar(1)];
-                known(&|x, y| ny.at(x, y).atan2(nx.at(x, y)) - turned)
+                of_angle(&|x, y| ny.at(x, y).atan2(nx.at(x, y)) - turned)
             }
-            HatchWay::Around | HatchWay::Along => of_form(surface, normals, settings, turned),
+            HatchWay::Around => of_form(surface, normals, settings, -turned),
+            HatchWay::Along => of_form(surface, normals, settings, FRAC_PI_2 - turned),
         };
-        Self { surface, normals, cross, first }
+        Self { surface, normals, doubled }
     }
 
     /// S at a pixel.
     pub fn root(&self, x: usize, y: usize) -> Mat2 {
         root(self.normals, x, y)
-    }
-
-    /// The direction of a family at a pixel, unit, in the tangent plane.
-    pub fn seed(&self, x: usize, y: usize, family: u8) -> Vec2 {
-        Vec2::from_angle(self.first.at(x, y) + f32::from(family) * FRAC_PI_2)
     }
 
     /// Whether a pixel and the one that a step leads to are of one piece.
@@ -107,15 +103,15 @@ impl<'s> DirectionField<'s> {
         self.surface.coverage(x, y) >= 128
     }
 
-    /// The branch of the cross at a place that is nearest to a direction, in the tangent plane.
-    pub fn branch(&self, at: Vec2, near: Vec2) -> Vec2 {
+    /// The direction of a family at a place, unit, in the tangent plane: of both, the one nearer to
+    /// `near`.
+    pub fn direction(&self, at: Vec2, family: u8, near: Vec2) -> Vec2 {
         let [c, s] = self.between(at);
-        let angle = 0.25 * s.atan2(c);
-        let quarter = ((near.y.atan2(near.x) - angle) / FRAC_PI_2).round();
-        Vec2::from_angle(angle + quarter * FRAC_PI_2)
+        let way = Vec2::from_angle(0.5 * s.atan2(c) + f32::from(family) * FRAC_PI_2);
+        if way.dot(near) < 0.0 { -way } else { way }
     }
 
-    /// The cross between pixels, of those that are linked to the nearest.
+    /// The doubled direction between pixels, of those that are linked to the nearest.
     fn between(&self, at: Vec2) -> [f32; 2] {
         let size = self.surface.size();
         let (w, h) = (size.width as i32, size.height as i32);
@@ -130,7 +126,7 @@ impl<'s> DirectionField<'s> {
             let (px, py) = ((x + dx).clamp(0, w - 1), (y + dy).clamp(0, h - 1));
             let there = (px as usize, py as usize);
             let from = if self.is_joined(own, there) { there } else { own };
-            let (c, s) = (self.cross[0].at(from.0, from.1), self.cross[1].at(from.0, from.1));
+            let (c, s) = (self.doubled[0].at(from.0, from.1), self.doubled[1].at(from.0, from.1));
             let scale = weight / c.hypot(s).max(1e-12);
             sum[0] += scale * c;
             sum[1] += scale * s;
@@ -144,14 +140,14 @@ fn root(normals: &SmoothNormals, x: usize, y: usize) -> Mat2 {
     stretch(normals.nbar(x, y), normals.nz(x, y), 1.0)
 }
 
-/// The cross of principal directions, e^{4iθ} weighted by how directed the form is and diffuse_copy, and
-/// the angle of the first family.
+/// e^{2iθ} of the direction in which the form bends most, weighted by how clear it is and diffused;
+/// then turned.
 fn of_form(
     surface: &Surface,
     normals: &SmoothNormals,
     settings: &HatchSettings,
     turned: f32,
-) -> ([Plane<f32>; 2], Plane<f32>) {
+) -> [Plane<f32>; 2] {
     let found = Plane::from_fn(surface.size(), |x, y| {
         let linked = surface.links_plane().at(x, y);
         if linked == 0 {
@@ -160,24 +156,11 @@ fn of_form(
         let slopes = [0, 1].map(|i| gradient_of(&normals.planes[i], linked, x, y));
         principal(slopes, root(normals, x, y))
     });
-    let weighted = |of: fn(f32) -> f32| found.map(move |p| of(4.0 * p.angle) * p.directed);
+    // Where nothing is clear, as on a ball, lines lie level: a hint that weighs next to nothing.
+    let weighted = |of: fn(f32) -> f32| {
+        found.map(move |p| of(2.0 * (p.angle + turned)) * p.directed + of(2.0 * turned) * HINT)
+    };
     let spread = |plane: Plane<f32>| diffuse_copy(&plane, surface, settings.spread);
     let (c, s) = rayon::join(|| spread(weighted(f32::cos)), || spread(weighted(f32::sin)));
-    let angle = Plane::from_fn(surface.size(), |x, y| 0.25 * s.at(x, y).atan2(c.at(x, y)));
-    let sure = Plane::from_fn(surface.size(), |x, y| c.at(x, y).hypot(s.at(x, y)));
-    let across = if settings.way == HatchWay::Along { FRAC_PI_2 } else { 0.0 };
-    let most = found.map(move |p| [p.angle + across, p.directed]);
-    let first = comb_cross(&angle, &sure, surface, &most);
-    // Turned in the tangent plane; y down.
-    let first = first.map(move |angle| angle - turned);
-    let eighth = 4.0 * turned;
-    let cross = [
-        Plane::from_fn(surface.size(), |x, y| {
-            c.at(x, y) * eighth.cos() + s.at(x, y) * eighth.sin()
-        }),
-        Plane::from_fn(surface.size(), |x, y| {
-            s.at(x, y) * eighth.cos() - c.at(x, y) * eighth.sin()
-        }),
-    ];
-    (cross, first)
+    [c, s]
 }

@@ -109,9 +109,11 @@ impl<'f> Streamlines<'f> {
 
     /// A line through a place, if there is room for one of some length.
     fn try_line(&mut self, at: Vec2, level: u8, apart: f32) -> bool {
-        let Some((x, y)) = self.pixel(at) else { return false };
+        if self.pixel(at).is_none() {
+            return false;
+        }
         let line = self.lines.len() as u32;
-        let way = self.field.branch(at, self.field.seed(x, y, self.family));
+        let way = self.field.direction(at, self.family, Vec2::X);
         if self.is_crowded(at, way, START * apart, (line, 0)) {
             return false;
         }
@@ -143,7 +145,7 @@ impl<'f> Streamlines<'f> {
             if !self.field.is_joined(pixel, middle) {
                 break;
             }
-            let turned = self.field.branch(half, way);
+            let turned = self.field.direction(half, self.family, way);
             let next = at + self.step(middle, turned);
             let Some(there) = self.pixel(next) else { break };
             let is_sharp = turned.dot(way) < SHARPEST;
