@@ -30,7 +30,7 @@ use crate::Error;
 use crate::math::{Affine2, Rect, Vec2, vec2};
 use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
-use crate::session::{Action, CanvasView, Session};
+use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{corners, on_screen, quad};
@@ -148,17 +148,7 @@ impl Canvas {
             return show_sentence(ui, rect, "Unwrapping the surface…");
         }
         let size = open.shown_size();
-        // A canvas that is wholly visible stays so when the window is resized.
-        if area_before_pt != self.area_pt && view == CanvasView::fitting(size, area_before_pt) {
-            actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
-            ui.ctx().request_repaint();
-        }
-        // So it does when its own size changes.
-        let last =
-            self.wanted.as_ref().filter(|_| self.key == Some(open.key)).map(|(last, _)| last.size);
-        if last.is_some_and(|last| {
-            last != open.document().size && view == CanvasView::fitting(last, self.area_pt)
-        }) {
+        if self.has_to_fit(open, &view, area_before_pt) {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
         }
@@ -176,12 +166,7 @@ impl Canvas {
         let canvas = size.rect();
         let shadow = corners(canvas).map(|(x, y)| on_screen(screen_from_canvas, x, y));
         self.draw_checker(ui, &painter, shadow);
-        let in_front = match &layout {
-            Some(_) => &self.sheet.shown,
-            None if self.is_draft_in_front => &self.draft,
-            None => &self.whole,
-        };
-        in_front.draw(&painter, screen_from_canvas, size);
+        self.texture_in_front(layout.is_some()).draw(&painter, screen_from_canvas, size);
         if let Some(wobble) = self.wobble.as_mut().filter(|_| layout.is_none()) {
             if wobble.is_going_on(ui, open.shown_document()) {
                 return wobble.draw(&painter, screen_from_canvas);
@@ -204,20 +189,18 @@ impl Canvas {
         let under = pointer.map(|p| inverse.transform_point2(vec2(p.x, p.y)));
         self.under = under.filter(|p| canvas.contains(p.x.floor() as i32, p.y.floor() as i32));
         let tool = self.hand.tool(session);
-        let to_screen = |p: Vec2| {
-            let p = screen_from_canvas.transform_point2(p);
-            pos2(p.x, p.y)
-        };
         if let Some((layout, surface)) = layout.as_ref().zip(open.document().surface.as_ref()) {
             self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
             let on_sheet = OnSheet { layout, surface };
-            guides::draw_unwrapped(&painter, session, on_sheet, &to_screen);
+            guides::draw_unwrapped(&painter, session, on_sheet, &to_screen(screen_from_canvas));
             self.ants.draw_unwrapped(&painter, session, on_sheet, screen_from_canvas);
             marks::draw_unwrapped(&painter, session, layout, screen_from_canvas, under, tool);
         } else {
-            guides::draw(&painter, session, &to_screen, visible_rect(&view, rect), view.zoom);
+            let visible = visible_rect(&view, rect);
+            let place = to_screen(screen_from_canvas);
+            guides::draw(&painter, session, &place, visible, view.zoom);
             rulers::draw(ui, session, rect, screen_from_canvas, under);
-            self.ants.draw(&painter, session, screen_from_canvas, visible_rect(&view, rect));
+            self.ants.draw(&painter, session, screen_from_canvas, visible);
             marks::draw(&painter, session, screen_from_canvas, under, tool);
             self.parts.draw(&painter, session, screen_from_canvas, under, tool);
         }
@@ -229,6 +212,27 @@ impl Canvas {
         }
         if response.hovered() || self.hand.is_looking() {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
+        }
+    }
+
+    /// Whether a canvas that was wholly visible is so no more: the window, or it, has another size.
+    fn has_to_fit(&self, open: &OpenDocument, view: &CanvasView, area_before_pt: Vec2) -> bool {
+        let is_of_open = self.key == Some(open.key);
+        let last = self.wanted.as_ref().filter(|_| is_of_open).map(|(last, _)| last.size);
+        let is_window_resized = area_before_pt != self.area_pt
+            && *view == CanvasView::fitting(open.shown_size(), area_before_pt);
+        let is_resized = last.is_some_and(|last| {
+            last != open.document().size && *view == CanvasView::fitting(last, self.area_pt)
+        });
+        is_window_resized || is_resized
+    }
+
+    /// What is drawn of the picture: the planes of its surface, a draft of it, or all of it.
+    fn texture_in_front(&self, is_unwrapped: bool) -> &TileSheet {
+        match () {
+            () if is_unwrapped => &self.sheet.shown,
+            () if self.is_draft_in_front => &self.draft,
+            () => &self.whole,
         }
     }
 
@@ -323,6 +327,14 @@ fn invite(ui: &Ui, area: egui::Rect) {
         area,
         "Drop a picture, a normal map or a project here, or open one from the File menu",
     );
+}
+
+/// Where points of the canvas are on the screen.
+fn to_screen(screen_from_canvas: Affine2) -> impl Fn(Vec2) -> egui::Pos2 {
+    move |p| {
+        let p = screen_from_canvas.transform_point2(p);
+        pos2(p.x, p.y)
+    }
 }
 
 /// A sentence in place of a picture.

@@ -3,7 +3,7 @@
 //! forms are combined (`whole`).
 
 use super::body::{PlacedOutline, SolvedOutline, joined_rim, parts_with_lost_outlines};
-use super::form_cache::{MadePart, NewForm, Stages};
+use super::form_cache::{MadePart, NewForm, PartCache, Stages};
 use super::modifiers::{ResumePoint, with_lines, with_modifier};
 use super::outlines::OutlineKey;
 use super::unchanged::{
@@ -13,11 +13,120 @@ use super::whole::Whole;
 use super::{Part, PartKind, Parts};
 use crate::document::{Document, Progress};
 use crate::math::Affine2;
+use crate::raster::Plane;
 use crate::shape::Form;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Stages of forms with more pixels than this are not kept.
 const MOST_KEPT_PX: usize = 1 << 24;
+
+/// What the form of a part is made of.
+struct PartInputs {
+    part: Arc<Part>,
+    /// The visible parts that lie on it.
+    modifiers: Vec<Arc<Part>>,
+    source: Option<OutlineKey>,
+    /// The ink of the lines on it.
+    inks: Vec<OutlineKey>,
+    /// Its matrix without the whole pixels that it was moved by, and those.
+    still: Affine2,
+    moved: (i32, i32),
+    /// Its outline in its place.
+    standing: Option<PlacedOutline>,
+    /// The outlines in front that overlap it.
+    met: Vec<PlacedOutline>,
+    is_lost: bool,
+}
+
+impl PartInputs {
+    /// Whether a form was made from the very same source.
+    fn is_of_source(&self, made: &MadePart) -> bool {
+        match (&made.source, &self.source) {
+            (Some(a), Some(b)) => a.is_same(b),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+
+    /// Whether a form was made from the same outline: paint may change without it.
+    fn is_of_outline(&self, made: &MadePart) -> bool {
+        let both = self.standing.as_ref().map(|own| &own.outline).zip(made.outline.as_ref());
+        matches!(self.source, Some(OutlineKey::Layer(..)))
+            && both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))
+    }
+
+    /// Where the rim of what is inflated is free.
+    fn free_rim(&self) -> Option<Arc<Plane<bool>>> {
+        let own = self.standing.as_ref().filter(|_| has_rim(&self.part));
+        own.and_then(|own| joined_rim(&own.outline, &self.met)).map(Arc::new)
+    }
+
+    /// What was made of the same outline in the same place with the same free rim, and that rim as
+    /// far as it is known.
+    fn split_known(
+        &self,
+        made: Option<MadePart>,
+    ) -> (Option<MadePart>, Option<Option<Arc<Plane<bool>>>>) {
+        let same_place = |made: &MadePart| split_whole_px(made.part.matrix).0 == self.still;
+        let same_source = |made: &MadePart| self.is_of_source(made) || self.is_of_outline(made);
+        match made.filter(|made| same_source(made) && same_place(made)) {
+            // Where it is free follows from what it met: then as it was, though it may not be kept.
+            Some(made) if made.met == self.met => {
+                let free = made.kept.as_ref().map(|kept| kept.body.joined.clone());
+                (Some(made), free)
+            }
+            known => {
+                let free = self.free_rim();
+                let is_same = |made: &MadePart| {
+                    made.kept.as_ref().is_some_and(|kept| kept.body.joined == free)
+                };
+                (known.filter(is_same), Some(free))
+            }
+        }
+    }
+
+    /// Whether a form is the same but for where it is.
+    fn is_of_same_form(&self, made: &MadePart) -> bool {
+        is_same_shape(&made.part, &self.part)
+            && are_same_parts(&made.modifiers, &self.modifiers)
+            && are_same_inks(&made.inks, &self.inks)
+    }
+
+    /// The same form where the part is now.
+    fn moved_since(self, made: &MadePart, cache: &PartCache) -> MadePart {
+        let is_same_part = Arc::ptr_eq(&made.part, &self.part);
+        if made.moved == self.moved && is_same_part && self.is_of_source(made) {
+            return made.clone();
+        }
+        let by = (self.moved.0 - made.moved.0, self.moved.1 - made.moved.1);
+        let Self { part, moved, source, met, is_lost, .. } = self;
+        let next = MadePart { part, moved, source, met, is_lost, ..made.clone() }.moved_by(by);
+        cache.remember(next.clone());
+        next
+    }
+
+    /// The form before the last part on it was applied, and where to resume that, if nothing else
+    /// changed.
+    fn last_stage(
+        &self,
+        made: &MadePart,
+        beneath: &[Arc<Part>],
+        plain: &Arc<Form>,
+    ) -> Option<(Arc<Form>, ResumePoint)> {
+        let stages = made.kept.as_ref()?.stages.clone()?;
+        let as_many = made.modifiers.len() == self.modifiers.len()
+            && are_same_parts(&made.modifiers[..beneath.len()], beneath);
+        let is_same =
+            as_many && Arc::ptr_eq(&stages.plain, plain) && are_same_inks(&made.inks, &self.inks);
+        let resume =
+            std::mem::take(&mut *made.resume.lock().unwrap_or_else(PoisonError::into_inner));
+        is_same.then_some((stages.before_last, resume))
+    }
+}
+
+/// Only what is inflated has a rim that can be free.
+fn has_rim(part: &Part) -> bool {
+    matches!(part.kind, PartKind::Inflate { .. })
+}
 
 impl Document {
     /// As [`Document::reshaped_with_progress`], made even if nothing changed: then what is known costs
@@ -33,8 +142,8 @@ impl Document {
             if progress.is_canceled() {
                 return None;
             }
-            if let Some((made, form)) = self.made_now(part, outlines[i].clone(), &outlines[i + 1..])
-            {
+            let (own, in_front) = (outlines[i].clone(), &outlines[i + 1..]);
+            if let Some((made, form)) = self.derive_part(part, own, in_front) {
                 whole.add(made, form);
             }
             progress.step();
@@ -63,128 +172,112 @@ impl Document {
     ///
     /// * `standing`: its outline in its place, if it has one.
     /// * `in_front`: those of the parts nearer to the viewer.
-    fn made_now(
+    fn derive_part(
         &self,
         part: &Arc<Part>,
         standing: Option<PlacedOutline>,
         in_front: &[Option<PlacedOutline>],
     ) -> Option<(MadePart, Option<Arc<Form>>)> {
         let cache = &self.parts.cache;
-        let modifiers = self.modifiers_of(part);
-        let known = cache.get(&part.id);
-        let is_edited = known.is_some();
-        let source = OutlineKey::of_part(self, part)?;
-        let inks: Vec<OutlineKey> =
-            modifiers.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
-        let (still, moved) = split_whole_px(part.matrix);
-        let is_unchanged = |made: &MadePart| match (&made.source, &source) {
-            (Some(a), Some(b)) => a.is_same(b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        // Paint may change without the outline.
-        let same_outline = |made: &MadePart| {
-            let both = standing.as_ref().map(|own| &own.outline).zip(made.outline.as_ref());
-            matches!(source, Some(OutlineKey::Layer(..)))
-                && both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))
-        };
-        let same_source = |made: &MadePart| is_unchanged(made) || same_outline(made);
-        let same_place = |made: &MadePart| split_whole_px(made.part.matrix).0 == still;
-        let known = known.filter(|made| same_source(made) && same_place(made));
-        // Only what is inflated has a rim that can be free.
-        let own = standing.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
-        let met = own.map(|own| own.overlapping(in_front)).unwrap_or_default();
-        let found = || own.and_then(|own| joined_rim(&own.outline, &met)).map(Arc::new);
-        // Where it is free follows from what it met: then as it was, though it may not be kept.
-        let (known, free) = match known {
-            Some(made) if made.met == met => {
-                let free = made.kept.as_ref().map(|kept| kept.body.joined.clone());
-                (Some(made), free)
-            }
-            known => {
-                let free = found();
-                let is_same = |made: &MadePart| {
-                    made.kept.as_ref().is_some_and(|kept| kept.body.joined == free)
-                };
-                (known.filter(is_same), Some(free))
-            }
-        };
-        let is_lost = standing.as_ref().is_some_and(|own| own.is_lost);
-        if let Some(made) = known.as_ref().filter(|made| {
-            is_same_shape(&made.part, part)
-                && are_same_parts(&made.modifiers, &modifiers)
-                && are_same_inks(&made.inks, &inks)
-        }) {
-            if made.moved == moved && Arc::ptr_eq(&made.part, part) && is_unchanged(made) {
-                return Some((made.clone(), None));
-            }
-            let by = (moved.0 - made.moved.0, moved.1 - made.moved.1);
-            let next = MadePart { part: part.clone(), moved, source, met, is_lost, ..made.clone() }
-                .moved_by(by);
-            cache.remember(next.clone());
-            return Some((next, None));
+        let now = self.part_inputs(part, standing, in_front)?;
+        let made_before = cache.get(&part.id);
+        let is_edited = made_before.is_some();
+        let (known, free) = now.split_known(made_before);
+        if let Some(made) = known.as_ref().filter(|made| now.is_of_same_form(made)) {
+            return Some((now.moved_since(made, cache), None));
         }
-        let free = free.unwrap_or_else(found);
-        let outline = standing.map(|own| own.outline);
-        let is_kind = known.as_ref().is_some_and(|made| is_same_kind(&made.part.kind, &part.kind));
-        let kept = known.as_ref().and_then(|made| made.kept.clone());
-        let staged =
-            kept.as_ref().filter(|_| is_kind).and_then(|kept| Some((kept, kept.stages.as_ref()?)));
-        let (body, plain) = match staged {
-            Some((kept, stages)) => (kept.body.clone(), stages.plain.clone()),
-            None => {
-                let body = kept.as_ref().map(|kept| kept.body.clone());
-                let (body, form) =
-                    self.solve_form(part, (outline.clone(), source.as_ref()), free, still, body)?;
-                (body, Arc::new(form))
-            }
-        };
-        // What lies beneath the last part on it is mostly known: the user works on the last.
-        let last = modifiers.len().saturating_sub(1);
-        let stages = kept.and_then(|kept| kept.stages.clone());
-        let beneath = known.zip(stages).and_then(|(made, stages)| {
-            let as_many = made.modifiers.len() == modifiers.len()
-                && are_same_parts(&made.modifiers[..last], &modifiers[..last]);
-            let is_same =
-                as_many && Arc::ptr_eq(&stages.plain, &plain) && are_same_inks(&made.inks, &inks);
-            let resume =
-                std::mem::take(&mut *made.resume.lock().unwrap_or_else(PoisonError::into_inner));
-            is_same.then_some((stages.before_last, resume))
-        });
-        let is_small = plain.height.size().area() <= MOST_KEPT_PX;
-        let nowhere = || ResumePoint::nowhere(is_small && cache.is_draft);
-        let (before_last, mut resume) = beneath.unwrap_or_else(|| {
-            (self.with_modifiers(plain.clone(), &body, &modifiers[..last], still), nowhere())
-        });
-        let form = match modifiers.last() {
-            Some(other) => self.with_modifier_of(&before_last, &body, other, still, &mut resume),
-            None => Form::clone(&before_last),
-        };
-        let form = Arc::new(in_place(form, part, moved));
-        let stages = is_small.then_some(Stages { plain, before_last });
-        let resume = if is_small { resume } else { ResumePoint::default() };
+        let free = free.unwrap_or_else(|| now.free_rim());
+        let (body, plain) = self.plain_form(&now, known.as_ref(), free)?;
+        let (stages, resume, form) = self.modified_form(&now, known, &body, plain);
         let new = NewForm { body, stages, form: form.clone() };
-        let (area, part, resume) = (new.area(), part.clone(), Arc::new(Mutex::new(resume)));
         let mut made = MadePart {
-            part,
-            modifiers,
-            inks,
-            source,
-            outline,
-            met,
-            is_lost,
-            moved,
-            area,
+            part: part.clone(),
+            modifiers: now.modifiers,
+            inks: now.inks,
+            source: now.source,
+            outline: now.standing.map(|own| own.outline),
+            met: now.met,
+            is_lost: now.is_lost,
+            moved: now.moved,
+            area: new.area(),
             kept: None,
-            resume,
+            resume: Arc::new(Mutex::new(resume)),
         };
         cache.remember_form(&mut made, new, is_edited);
         Some((made, Some(form)))
     }
 
+    /// What the form of a part is made of; `None` if the part has no outline yet.
+    fn part_inputs(
+        &self,
+        part: &Arc<Part>,
+        standing: Option<PlacedOutline>,
+        in_front: &[Option<PlacedOutline>],
+    ) -> Option<PartInputs> {
+        let modifiers = self.modifiers_of(part);
+        let source = OutlineKey::of_part(self, part)?;
+        let inks: Vec<OutlineKey> =
+            modifiers.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
+        let (still, moved) = split_whole_px(part.matrix);
+        let rim = standing.as_ref().filter(|_| has_rim(part));
+        let met = rim.map(|own| own.overlapping(in_front)).unwrap_or_default();
+        let is_lost = standing.as_ref().is_some_and(|own| own.is_lost);
+        let part = part.clone();
+        Some(PartInputs { part, modifiers, source, inks, still, moved, standing, met, is_lost })
+    }
+
+    /// The form of a part without what lies on it, and its outline with what was solved for it; the
+    /// last ones where they still hold.
+    fn plain_form(
+        &self,
+        now: &PartInputs,
+        known: Option<&MadePart>,
+        free: Option<Arc<Plane<bool>>>,
+    ) -> Option<(Arc<SolvedOutline>, Arc<Form>)> {
+        let is_kind = known.is_some_and(|made| is_same_kind(&made.part.kind, &now.part.kind));
+        let kept = known.and_then(|made| made.kept.clone());
+        let staged =
+            kept.as_ref().filter(|_| is_kind).and_then(|kept| Some((kept, kept.stages.as_ref()?)));
+        if let Some((kept, stages)) = staged {
+            return Some((kept.body.clone(), stages.plain.clone()));
+        }
+        let body = kept.as_ref().map(|kept| kept.body.clone());
+        let outline = now.standing.as_ref().map(|own| own.outline.clone());
+        let of = (outline, now.source.as_ref());
+        let (body, form) = self.solve_form(&now.part, of, free, now.still, body)?;
+        Some((body, Arc::new(form)))
+    }
+
+    /// A form with what lies on its part, in its place, and what is kept to make it again soon.
+    fn modified_form(
+        &self,
+        now: &PartInputs,
+        known: Option<MadePart>,
+        body: &SolvedOutline,
+        plain: Arc<Form>,
+    ) -> (Option<Stages>, ResumePoint, Arc<Form>) {
+        // What lies beneath the last part on it is mostly known: the user works on the last.
+        let beneath = &now.modifiers[..now.modifiers.len().saturating_sub(1)];
+        let is_small = plain.height.size().area() <= MOST_KEPT_PX;
+        let nowhere = || ResumePoint::nowhere(is_small && self.parts.cache.is_draft);
+        let known = known.and_then(|made| now.last_stage(&made, beneath, &plain));
+        let (before_last, mut resume) = known.unwrap_or_else(|| {
+            (self.with_modifiers(plain.clone(), body, beneath, now.still), nowhere())
+        });
+        let form = match now.modifiers.last() {
+            Some(other) => self.with_modifier_of(&before_last, body, other, now.still, &mut resume),
+            None => Form::clone(&before_last),
+        };
+        let form = Arc::new(in_place(form, &now.part, now.moved));
+        let stages = is_small.then_some(Stages { plain, before_last });
+        let resume = if is_small { resume } else { ResumePoint::default() };
+        (stages, resume, form)
+    }
+
     /// The form of a part that was made before and not kept.
     pub(super) fn remade(&self, made: &MadePart) -> Option<Arc<Form>> {
         let (part, (still, moved)) = (&made.part, split_whole_px(made.part.matrix));
-        let own = made.outline.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
+        let own = made.outline.as_ref().filter(|_| has_rim(part));
         let free = own.and_then(|own| joined_rim(own, &made.met)).map(Arc::new);
         let (body, plain) =
             self.solve_form(part, (made.outline.clone(), made.source.as_ref()), free, still, None)?;

@@ -12,15 +12,12 @@ pub use new::NewLayer;
 pub(super) use steps::copy_layer;
 
 use crate::Result;
-use crate::document::{
-    Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress,
-};
+use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live, Progress};
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{
     ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment, Text,
 };
-use crate::raster::Plane;
 use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
@@ -30,8 +27,10 @@ use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{self, mapped};
 use flattening::bake_displacement;
 use new::{lit_layer, make_layer, selecting};
-use std::sync::Arc;
-use steps::{EditStep, clear_layers, duplicate, homed, moves, selection_after_move, ungroup};
+use steps::{
+    EditStep, clear_layers, delete, duplicate, group, homed, moves, paint_mask,
+    selection_after_move, ungroup,
+};
 
 actions! {
     /// `layer` is always the path before the action; if several are possible, the layers of a group
@@ -296,28 +295,9 @@ impl LayerAction {
             }
             LayerAction::PaintMask { layer: path, hides } => {
                 let layer = layer(path)?;
-                let mask = match &layer.mask {
-                    Some(mask) => mask.as_picture(&document.scene()),
-                    None => {
-                        let coverage = Plane::filled(document.size, if *hides { 0 } else { 255 });
-                        LayerMask::new(MaskKind::File {
-                            file: String::new(),
-                            coverage: Arc::new(coverage),
-                        })
-                    }
-                };
-                let id = layer.id;
-                ("Layer mask", document.with_layer(id, |layer| layer.mask = Some(mask))?, vec![id])
+                paint_mask(document, &layer, *hides)?
             }
-            LayerAction::Delete { layer } => {
-                let ids = chosen(layer)?;
-                let place = document.place_of(*ids.first()?)?;
-                let next = document.without_layers(&ids)?;
-                let neighbor =
-                    sibling(&next, LayerSlot { index: place.index.saturating_sub(1), ..place });
-                let label = if ids.len() > 1 { "Delete layers" } else { "Delete layer" };
-                (label, next, neighbor.into_iter().collect())
-            }
+            LayerAction::Delete { layer } => delete(document, &chosen(layer)?)?,
             LayerAction::Duplicate { layer } => duplicate(document, &chosen(layer)?)?,
             LayerAction::Move { layer: paths, group, index } => {
                 let group = group
@@ -339,47 +319,28 @@ impl LayerAction {
             }
             LayerAction::Mirror { layer, upright } => {
                 let mirror = transform::mirror(*upright);
-                (
-                    "Mirror layer",
-                    transform::transform_about_middle(document, &chosen(layer)?, mirror)?,
-                    Vec::new(),
-                )
+                let next = transform::transform_about_middle(document, &chosen(layer)?, mirror)?;
+                ("Mirror layer", next, Vec::new())
             }
             LayerAction::Turn { layer, degrees } => {
                 let turn: PlaneMap = transform::turn(f64::from(*degrees))?;
-                (
-                    "Turn layer",
-                    transform::transform_about_middle(document, &chosen(layer)?, turn)?,
-                    Vec::new(),
-                )
+                let next = transform::transform_about_middle(document, &chosen(layer)?, turn)?;
+                ("Turn layer", next, Vec::new())
             }
             LayerAction::ApplyTransform { layer } => {
-                let applied =
-                    |next: Document, id| bake_displacement(&next, id, &Progress::default());
-                (
-                    "Apply transform",
-                    chosen(layer)?.into_iter().try_fold(document.clone(), applied)?,
-                    Vec::new(),
-                )
+                let apply = |next: Document, id| bake_displacement(&next, id, &Progress::default());
+                let next = chosen(layer)?.into_iter().try_fold(document.clone(), apply)?;
+                ("Apply transform", next, Vec::new())
             }
             LayerAction::Mesh { layer, columns, rows } => {
-                let ids = chosen(layer)?;
-                let meshed =
-                    |next: Document, id| transform::mesh::meshed(&next, id, *columns, *rows);
-                ("Mesh", ids.into_iter().try_fold(document.clone(), meshed)?, Vec::new())
+                let mesh = |next: Document, id| transform::mesh::meshed(&next, id, *columns, *rows);
+                let next = chosen(layer)?.into_iter().try_fold(document.clone(), mesh)?;
+                ("Mesh", next, Vec::new())
             }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
                 return self.perform_long(document, &Progress::default());
             }
-            LayerAction::Group { layer } => {
-                let ids = chosen(layer)?;
-                let layers = ids.iter().filter_map(|id| document.layer(*id).cloned()).collect();
-                let group = Content::Group(Group { layers, pass_through: false });
-                let group = Layer::new(document.free_layer_name("Group"), group);
-                let id = group.id;
-                let label = if ids.len() > 1 { "Group layers" } else { "Group layer" };
-                (label, document.with_one_for(&ids, group)?, vec![id])
-            }
+            LayerAction::Group { layer } => group(document, &chosen(layer)?)?,
             LayerAction::Ungroup { layer } => ungroup(document, &chosen(layer)?)?,
             LayerAction::Home { layer, part } => {
                 homed(document, &layer.find(document)?, part.as_deref()).ok()?

@@ -1,6 +1,8 @@
 //! Steps of several layers: the resulting document, and which layers are chosen then. Floor 6.
 
-use crate::document::{Document, Layer, LayerId, LayerSlot};
+use super::sibling;
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, MaskKind};
+use crate::raster::Plane;
 use crate::session::OpenDocument;
 use std::sync::Arc;
 
@@ -14,6 +16,38 @@ pub(super) fn moves(ids: &[LayerId]) -> &'static str {
 /// What was moved is chosen; if it was already, the primary one stays the same.
 pub(super) fn selection_after_move(open: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
     if open.outermost_chosen() == ids { Vec::new() } else { ids }
+}
+
+/// A layer's mask as a picture to paint on; a new one hides or shows everything.
+pub(super) fn paint_mask(document: &Document, layer: &Layer, hides: bool) -> Option<EditStep> {
+    let mask = match &layer.mask {
+        Some(mask) => mask.as_picture(&document.scene()),
+        None => {
+            let coverage = Arc::new(Plane::filled(document.size, if hides { 0 } else { 255 }));
+            LayerMask::new(MaskKind::File { file: String::new(), coverage })
+        }
+    };
+    let next = document.with_layer(layer.id, |layer| layer.mask = Some(mask))?;
+    Some(("Layer mask", next, vec![layer.id]))
+}
+
+/// Without some layers; then the one beneath the lowest of them is selected.
+pub(super) fn delete(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
+    let place = document.place_of(*ids.first()?)?;
+    let next = document.without_layers(ids)?;
+    let neighbor = sibling(&next, LayerSlot { index: place.index.saturating_sub(1), ..place });
+    let label = if ids.len() > 1 { "Delete layers" } else { "Delete layer" };
+    Some((label, next, neighbor.into_iter().collect()))
+}
+
+/// Layers in a new group.
+pub(super) fn group(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
+    let layers = ids.iter().filter_map(|id| document.layer(*id).cloned()).collect();
+    let content = Content::Group(Group { layers, pass_through: false });
+    let group = Layer::new(document.free_layer_name("Group"), content);
+    let id = group.id;
+    let label = if ids.len() > 1 { "Group layers" } else { "Group layer" };
+    Some((label, document.with_one_for(ids, group)?, vec![id]))
 }
 
 /// Copies above the topmost layer.
