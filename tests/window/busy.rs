@@ -1,7 +1,7 @@
 //! Keys pressed while the window is busy, undo, and what the window says of strokes that it does
 //! not keep.
 
-use super::{Story, command, key, layers, session, steps, stroke, until, window};
+use super::{Story, act_until, command, key, layers, session, steps, stroke, until, window};
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_program::tools::ToolKind;
@@ -63,16 +63,15 @@ fn a_name_typed_during_an_edit_stays_in_its_field_and_switches_no_tool() {
     // A command that the pointer gave; the field keeps the keyboard.
     command_under(&mut harness, "Flatten picture");
     // Also after the row, and the field in it, are gone.
-    let mut left = 5;
-    for _ in 0..3000 {
-        letter(&mut harness, Key::G, "g");
+    let type_g = |harness: &mut Story| {
+        letter(harness, Key::G, "g");
         harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        left -= i32::from(layers(&harness).len() == 1);
-        if left == 0 {
-            break;
-        }
-    }
+    };
+    let mut frames_after = 0;
+    act_until(&mut harness, type_g, |harness| {
+        frames_after += i32::from(layers(harness).len() == 1);
+        frames_after == 5
+    });
     assert_eq!(layers(&harness), ["Picture"]);
     assert_eq!(session(&harness).tool, ToolKind::Brush);
 }

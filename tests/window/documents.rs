@@ -103,14 +103,8 @@ fn shows(harness: &super::Story, label: &str) -> bool {
 
 /// Makes a document of the maps, as soon as they are read as the dialog says.
 fn create(harness: &mut super::Story) {
-    for _ in 0..300 {
-        super::key(harness, Modifiers::NONE, Key::Enter);
-        if session(harness).open_documents.len() == 2 {
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
-    panic!("the maps were never read");
+    let confirm = |harness: &mut super::Story| super::key(harness, Modifiers::NONE, Key::Enter);
+    super::act_until(harness, confirm, |harness| session(harness).open_documents.len() == 2);
 }
 
 /// A ball's normals and depth, as 8-bit pictures with a flat border.
@@ -136,13 +130,17 @@ fn ball(folder: &Path) -> [PathBuf; 2] {
 /// it.
 fn still(harness: &mut super::Story, name: &str) {
     let place = |harness: &super::Story| harness.get_all_by_label(name).next().unwrap().rect();
-    let mut still = 0;
-    while still < 10 {
-        let before = place(harness);
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        harness.step();
-        still = if place(harness) == before { still + 1 } else { 0 };
-    }
+    let (mut before, mut still) = (place(harness), 0);
+    super::act_until(
+        harness,
+        |harness| harness.step(),
+        |harness| {
+            let now = place(harness);
+            still = if now == before { still + 1 } else { 0 };
+            before = now;
+            still == 10
+        },
+    );
 }
 
 #[test]

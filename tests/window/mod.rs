@@ -26,6 +26,10 @@ use egui_kittest::kittest::Queryable;
 use rilievo_window::MainWindow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long a slow machine may take for what is waited for.
+const LONGEST_WAIT: Duration = Duration::from_secs(60);
 
 type Story = Harness<'static, Option<MainWindow>>;
 
@@ -74,14 +78,26 @@ fn click(harness: &mut Story, label: &str) {
 /// Steps until something is so, which other threads may have to do first.
 #[track_caller]
 fn until(harness: &mut Story, is_so: impl Fn(&Story) -> bool) {
-    for _ in 0..600 {
-        harness.step();
+    act_until(harness, |harness| harness.step(), is_so);
+    steps(harness);
+}
+
+/// Does something again and again until something is so, and lets other threads work in between.
+#[track_caller]
+fn act_until(
+    harness: &mut Story,
+    mut act: impl FnMut(&mut Story),
+    mut is_so: impl FnMut(&Story) -> bool,
+) {
+    let began = Instant::now();
+    loop {
+        act(harness);
         if is_so(harness) {
-            return steps(harness);
+            return;
         }
-        std::thread::sleep(std::time::Duration::from_millis(20));
+        assert!(began.elapsed() < LONGEST_WAIT, "what is waited for did not happen");
+        std::thread::sleep(Duration::from_millis(10));
     }
-    panic!("what is waited for did not happen in 12 seconds");
 }
 
 /// By its whole name.
@@ -98,14 +114,8 @@ fn key(harness: &mut Story, modifiers: Modifiers, key: Key) {
 /// By its name, typed into the palette of commands.
 fn command(harness: &mut Story, name: &str) {
     // While an edit is under way there is no palette.
-    for tries in 0..1500 {
-        assert!(tries < 1499, "there is no palette to type “{name}” into");
-        key(harness, Modifiers::COMMAND, Key::K);
-        if harness.query_by_label("Command").is_some() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+    let open = |harness: &mut Story| key(harness, Modifiers::COMMAND, Key::K);
+    act_until(harness, open, |harness| harness.query_by_label("Command").is_some());
     harness.get_by_label("Command").type_text(name);
     steps(harness);
     key(harness, Modifiers::NONE, Key::Enter);

@@ -1,6 +1,6 @@
 //! Every panel next to the canvas, in a window of its own, and hidden.
 
-use super::{Story, click, command, key, press, session, steps, window};
+use super::{Story, click, command, key, press, session, steps, until, window};
 use eframe::egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, pos2, vec2,
 };
@@ -119,8 +119,7 @@ fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
     let wheel = Event::MouseWheel { unit, delta, phase, source, modifiers: Modifiers::NONE };
     harness.input_mut().events.push(wheel);
     // The wheel is followed smoothly.
-    (0..60).for_each(|_| harness.step());
-    assert!(ends(&harness) < 1020.0, "{}", ends(&harness));
+    until(&mut harness, |harness| ends(harness) < 1020.0);
 }
 
 #[test]
