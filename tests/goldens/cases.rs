@@ -21,7 +21,7 @@ use std::path::Path;
 /// Sums, products, quotients and roots.
 const EXACT: u8 = 0;
 /// And functions of the platform.
-const ROUNDED: u8 = 1;
+pub const ROUNDED: u8 = 1;
 
 /// The canvas of a blend mode.
 const SMALL: Size = Size::new(48, 48);
@@ -73,6 +73,8 @@ enum Subject {
     Layers(Size, Option<Shape>, Value),
     /// Brushes rubbed over painted tiles.
     Retouched(Vec<(BrushMode, [f32; 4])>),
+    /// Whatever makes a picture.
+    Made(Box<dyn Fn() -> RgbaImage + Send + Sync>),
 }
 
 impl Case {
@@ -86,6 +88,16 @@ impl Case {
         }
     }
 
+    /// A picture that is made in its own way.
+    pub fn made(
+        name: String,
+        place: Place,
+        tolerance: u8,
+        make: impl Fn() -> RgbaImage + Send + Sync + 'static,
+    ) -> Self {
+        Self { name, place, tolerance, subject: Subject::Made(Box::new(make)) }
+    }
+
     pub fn rendered(&self) -> RgbaImage {
         match &self.subject {
             Subject::Layers(size, shape, layers) => {
@@ -95,6 +107,7 @@ impl Case {
                 as_image(&picture, *size)
             }
             Subject::Retouched(strokes) => as_image(&retouched(strokes), SIZE),
+            Subject::Made(make) => make(),
         }
     }
 }
@@ -113,10 +126,11 @@ pub fn all() -> Vec<Case> {
     all.extend(tips());
     all.push(stroke());
     all.push(retouch());
+    all.extend(super::sheets::all());
     all
 }
 
-fn read(size: Size, layers: &Value) -> Document {
+pub fn read(size: Size, layers: &Value) -> Document {
     let recipe =
         json!({ "canvas": { "width": size.width, "height": size.height }, "layers": layers });
     let source = RecipeSource {
@@ -128,7 +142,7 @@ fn read(size: Size, layers: &Value) -> Document {
     recipe::read_value(&recipe, source).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn as_image(picture: &TileGrid, size: Size) -> RgbaImage {
+pub fn as_image(picture: &TileGrid, size: Size) -> RgbaImage {
     RgbaImage::from_raw(size.width, size.height, picture.to_straight_rgba(size.rect())).unwrap()
 }
 

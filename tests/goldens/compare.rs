@@ -75,6 +75,11 @@ impl Place {
         Self { file: sheet.to_owned(), tile: Some((index, side)) }
     }
 
+    /// Whether it is a square of a sheet.
+    pub fn is_tile(&self) -> bool {
+        self.tile.is_some()
+    }
+
     fn path(&self, references: &Path) -> PathBuf {
         references.join(format!("{}.png", self.file))
     }
