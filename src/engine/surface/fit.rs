@@ -96,16 +96,38 @@ impl Surface {
         if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {
             return MeanTexel::default();
         }
-        let smooth = self.mean_over(center, Vec2::splat(0.5));
         let (low, high) = ((center - half).max(Vec2::ZERO), (center + half).min(border));
         let coverage = (255.0 * contours.coverage(low, high)).round() as u8;
         // What counted as covered still does.
         let is_held = self.coverage(center.x as usize, center.y as usize) > 0;
         let coverage = coverage.max(is_held.into());
-        match contours.reading(center) {
+        let reading = contours.reading(center).or_else(|| self.cubic(contours, center));
+        match reading {
             Some((normal, depth)) => MeanTexel { normal, depth, coverage },
-            None => MeanTexel { coverage, ..smooth },
+            None => MeanTexel { coverage, ..self.mean_over(center, Vec2::splat(0.5)) },
         }
+    }
+
+    /// The normal and depth at a point of the map, interpolated cubically; `None` where the 4 × 4
+    /// pixels around it are not one piece, or reach beyond the map.
+    fn cubic(&self, contours: &EnlargedContours, at: Vec2) -> Option<(Vec3, f32)> {
+        let low = (at - 0.5).floor();
+        let way = at - 0.5 - low;
+        let (x, y) = (low.x as i32, low.y as i32);
+        let inner = [(0, 0), (1, 0), (0, 1), (1, 1)];
+        if !inner.iter().all(|(dx, dy)| contours.is_inner(x + dx, y + dy)) {
+            return None;
+        }
+        let (across, down) = (cubic_weights(way.x), cubic_weights(way.y));
+        let (mut normal, mut depth) = (Vec3::ZERO, 0.0);
+        for (j, row_weight) in (y as usize - 1..).zip(down) {
+            for (i, weight) in (x as usize - 1..).zip(across) {
+                let weight = weight * row_weight;
+                normal += weight * self.normal(i, j);
+                depth += weight * self.depth(i, j);
+            }
+        }
+        Some((normal, depth.clamp(0.0, 1.0)))
     }
 
     /// The mean over the box of half sides `half` around a point of the map, cut at its border;
@@ -160,6 +182,17 @@ impl Surface {
         let distance = ((a.0 - b.0) as f32).hypot((a.1 - b.1) as f32);
         (za - zb).abs() <= 1.5 + 1.5 * sa.max(sb) * distance
     }
+}
+
+/// Catmull-Rom: what the four values around count at `t` of the way from the second to the third.
+fn cubic_weights(t: f32) -> [f32; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [
+        0.5 * (2.0 * t2 - t - t3),
+        0.5 * (2.0 - 5.0 * t2 + 3.0 * t3),
+        0.5 * (t + 4.0 * t2 - 3.0 * t3),
+        0.5 * (t3 - t2),
+    ]
 }
 
 /// What a new pixel reads; no surface by default.

@@ -66,6 +66,12 @@ impl<'m> EnlargedContours<'m> {
         row.binary_search_by_key(&x, |pixel| pixel.x).ok().map(|i| &row[i])
     }
 
+    /// Whether the pixels around one are all of its piece of the surface.
+    pub fn is_inner(&self, x: i32, y: i32) -> bool {
+        let is_covered = self.maps.coverage.get(x, y).is_some_and(|coverage| coverage > 0);
+        is_covered && self.at(x, y).is_none()
+    }
+
     /// The share of a box that the surface covers, `[0, 1]`: exact on contour pixels whose line is
     /// known.
     ///

@@ -142,3 +142,31 @@ fn a_crease_stays_one_between_two_planes() {
     let mixed = mixed.count();
     assert!(mixed < 6, "{mixed} normals lie between both planes'");
 }
+
+#[test]
+fn bumps_keep_most_of_their_slope_in_a_larger_map() {
+    let size = Size::new(48, 48);
+    // Along one axis, 6 px long; depth as the normals say.
+    let slope = |x: usize| 0.2 * (1.047 * (x as f32 + 0.5)).sin();
+    let height = |x: usize| -0.2 / 1.047 * (1.047 * (x as f32 + 0.5)).cos();
+    let bumpy = Surface::new(Maps {
+        normals: Plane::from_fn(size, |x, _| vec3(slope(x), 0.0, 1.0).normalize()),
+        depth: Plane::from_fn(size, |x, _| 0.5 + height(x) / 48.0),
+        coverage: Plane::filled(size, 255),
+    })
+    .unwrap();
+    assert_eq!(bumpy.contours().pixels().len(), 0);
+    for factor in [2usize, 3, 4] {
+        let side = 48 * factor as u32;
+        let large = bumpy.stretched(Size::new(side, side)).unwrap();
+        let (mut lost, mut all) = (0.0, 0.0);
+        for x in 4..44 {
+            let parts = (0..factor).map(|i| large.nbar(x * factor + i, 24 * factor).x);
+            let own = bumpy.nbar(x, 24).x;
+            lost += (own - parts.sum::<f32>() / factor as f32).abs();
+            all += own.abs();
+        }
+        // Interpolated between two pixels, an eighth would be lost.
+        assert!(lost < 0.06 * all, "{factor} times: {}", lost / all);
+    }
+}
