@@ -46,6 +46,7 @@ pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u
         .enumerate()
         .for_each(|(y, row)| maps.flags_of_row(y, row));
     keep_chains(&mut steps, links);
+    maps.close_corners(&mut steps);
     if steps.values().iter().all(|&flags| flags & ANY_CREASE == 0) {
         return None;
     }
@@ -139,6 +140,22 @@ fn is_at_jump(links: &Plane<u8>, (x, y): (i32, i32)) -> bool {
         || is_jump((x, y - 1), links::DOWN, (x, y))
 }
 
+/// Whether the step after a pixel is cut.
+fn is_cut(steps: &Plane<u8>, (x, y): (usize, usize), axis: Axis) -> bool {
+    steps.at(x, y) >> axis.shift() & CREASE != 0
+}
+
+/// Whether a crease ends at a corner of pixels, or passes it.
+fn is_at_crease(steps: &Plane<u8>, (x, y): (i32, i32)) -> bool {
+    let is_cut = |x: i32, y: i32, axis: Axis| {
+        steps.get(x, y).is_some_and(|flags| flags >> axis.shift() & CREASE != 0)
+    };
+    is_cut(x - 1, y - 1, Axis::Across)
+        || is_cut(x - 1, y, Axis::Across)
+        || is_cut(x - 1, y - 1, Axis::Down)
+        || is_cut(x, y - 1, Axis::Down)
+}
+
 /// What a step from one pixel to the next is judged by.
 struct NormalSteps<'m> {
     links: &'m Plane<u8>,
@@ -160,6 +177,36 @@ crate::widest! {
 }
 
 impl NormalSteps<'_> {
+    /// Cuts what turns as far as a crease between the ends of two: where three and more sides meet
+    /// in a corner, no step has even ones before and after it.
+    fn close_corners(&self, steps: &mut Plane<u8>) {
+        let width = steps.width();
+        let flagged = (0..steps.values().len()).filter(|&i| steps.values()[i] != 0);
+        let around = |i: usize| {
+            let (x, y) = ((i % width) as i32, (i / width) as i32);
+            (-1..=1).flat_map(move |dy| (-1..=1).map(move |dx| (x + dx, y + dy)))
+        };
+        let mut near: Vec<(i32, i32)> = flagged.flat_map(around).collect();
+        near.sort_unstable();
+        near.dedup();
+        let mut closed = Vec::new();
+        for (x, y) in near.into_iter().filter(|&(x, y)| steps.get(x, y).is_some()) {
+            let at = (x as usize, y as usize);
+            for (axis, start) in [(Axis::Across, (x + 1, y)), (Axis::Down, (x, y + 1))] {
+                let turns = |next| self.nbar(at).distance(self.nbar(next)) >= CERTAIN.least;
+                if !is_cut(steps, at, axis)
+                    && [start, (x + 1, y + 1)].into_iter().all(|end| is_at_crease(steps, end))
+                    && self.after(at, axis).is_some_and(turns)
+                {
+                    closed.push((at, CREASE << axis.shift()));
+                }
+            }
+        }
+        for ((x, y), flag) in closed {
+            steps.set(x, y, steps.at(x, y) | flag);
+        }
+    }
+
     /// The flags of the steps after the pixels of a row.
     fn flags_of_row(&self, y: usize, row: &mut [u8]) {
         let w = row.len();
@@ -320,6 +367,22 @@ mod tests {
     fn a_ridge_that_a_renderer_mixed_in_a_pixel_is_cut_at_its_longer_half() {
         let roof = |x: usize, _| vec3([-0.5, -0.2, 0.5][(x + 1).clamp(19, 21) - 19], 0.0, 1.0);
         assert_eq!(cut(roof), (0..30).map(|y| (19, y)).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn creases_that_meet_are_cut_up_to_their_corner() {
+        let pyramid = |x: usize, y: usize| {
+            let p = vec2(x as f32 - 19.2, y as f32 - 14.7).rotate(Vec2::from_angle(0.3));
+            let across = p.x.abs() > p.y.abs();
+            vec3(
+                if across { p.x.signum() } else { 0.0 },
+                if across { 0.0 } else { p.y.signum() },
+                1.6,
+            )
+        };
+        let turns = |&(x, y): &(usize, usize)| pyramid(x, y) != pyramid(x + 1, y);
+        let at = (0..30).flat_map(|y| (0..39).map(move |x| (x, y)));
+        assert_eq!(cut(pyramid), at.filter(turns).collect::<Vec<_>>());
     }
 
     #[test]

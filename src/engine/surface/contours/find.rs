@@ -318,7 +318,9 @@ fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
             line.is_separating(across.own, window.inside, 0.0, CREASE_TOLERANCE_PX, EXPLAINED_PX)
         };
         let guess = ContourLine::of_mask(across.own, window.inside).filter(is_edge)?;
-        let line = ContourLine::of_depths(window, across.own, across.other).unwrap_or(guess);
+        let line = ContourLine::of_depths(window, across.own, across.other)
+            .or_else(|| by_slopes(window, across))
+            .unwrap_or(guess);
         return Some(Shared::by(line.with_center(true), true));
     }
     let near = if across.is_near { across.own } else { across.other };
@@ -327,6 +329,15 @@ fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
     let guess = ContourLine::of_mask(near, known)?;
     let line = ContourLine::of_normals(window, near, known, guess).unwrap_or(guess);
     Some(Shared::by(line.with_center(across.is_near), across.is_near))
+}
+
+/// The line of a crease by how steeply both its sides lie.
+fn by_slopes(window: &PixelWindow, Across { own, other, .. }: Across) -> Option<ContourLine> {
+    let slope = |members: u64| {
+        let nbar = Continued::from(window, members)?.nbar(Vec2::ZERO);
+        Some(nbar / nz_of(nbar).max(0.05))
+    };
+    ContourLine::of_slopes(own, other, [slope(own)?, slope(other)?])
 }
 
 /// The middle pixel's own reading, where its normal is mixed of both sides'.

@@ -154,6 +154,32 @@ impl ContourLine {
             .find(|line| line.is_separating(own, own | other, 0.0, TOLERANCE_PX, EXPLAINED_PX))
     }
 
+    /// The line along which two pieces of surface meet at a crease that depth does not show, from
+    /// how steeply they lie: along it both are equally high, so that it is perpendicular to the
+    /// difference of their slopes. It passes midway between the pixels of both that lie nearest to
+    /// it. `None` where they lie on no two sides of such a line.
+    ///
+    /// * `own`, `other`: bits of the window; the nearer side of the line is `own`.
+    /// * `slopes`: of both at the middle pixel, px of depth per px, image axes.
+    pub fn of_slopes(own: u64, other: u64, slopes: [Vec2; 2]) -> Option<Self> {
+        let across = (slopes[0] - slopes[1]).try_normalize()?;
+        let between = |toward_near: Vec2, reach_px: f32| {
+            let height = |i: u32| toward_near.dot(offset_of(i));
+            let within = |members: u64| {
+                bits(members).filter(|&i| offset_of(i).length() <= reach_px).map(height)
+            };
+            let nearest = within(own).fold(f32::MAX, f32::min);
+            let farthest = within(other).fold(-f32::MAX, f32::max);
+            let line = Self { distance_px: -0.5 * (nearest + farthest), toward_near };
+            let is_known = nearest < f32::MAX && farthest > -f32::MAX;
+            (is_known && farthest - nearest <= 2.0 * TOLERANCE_PX).then_some(line)
+        };
+        let reaches = [WINDOW_PX, EXPLAINED_PX].into_iter();
+        reaches
+            .flat_map(|reach| [(across, reach), (-across, reach)])
+            .find_map(|(v, r)| between(v, r))
+    }
+
     /// Pixels within `reach_px` of the middle one lie on their side of the line, but for a little.
     ///
     /// * `bend`: the contour's curvature, as far as it is known, per px.
@@ -318,6 +344,25 @@ mod tests {
     fn quantiles_are_those_of_the_table() {
         for (p, z) in [(0.5, 0.0), (0.841_345, 1.0), (0.022_750, -2.0), (0.999, 3.090_232)] {
             assert!((normal_quantile(p) - z).abs() < 5e-4, "{p}: {}", normal_quantile(p));
+        }
+    }
+
+    #[test]
+    fn slopes_of_both_sides_of_a_crease_give_its_line() {
+        for turn in 0..60 {
+            let (v, d) = (Vec2::from_angle(turn as f32 * 0.21), 0.5 - turn as f32 / 60.0);
+            let line = ContourLine { distance_px: d.max(0.0), toward_near: v };
+            let own =
+                bits(ALL).filter(|&i| line.height(offset_of(i)) >= 0.0).fold(0, |a, i| a | 1 << i);
+            // Whatever both have in common does not matter.
+            let slopes = [vec2(0.2, -0.1) + 0.7 * v, vec2(0.2, -0.1) - 0.4 * v];
+            for slopes in [slopes, [slopes[1], slopes[0]]] {
+                let found = ContourLine::of_slopes(own, ALL & !own, slopes).unwrap();
+                assert!((found.toward_near - v).length() < 1e-5, "{found:?} for {line:?}");
+                let off = (found.near_share() - line.near_share()).abs();
+                assert!(off < 0.26, "{found:?} for {line:?}");
+            }
+            assert!(ContourLine::of_slopes(own, ALL & !own, [vec2(0.1, 0.3); 2]).is_none());
         }
     }
 }
