@@ -199,6 +199,18 @@ pub fn ramp(
     inks.sort_by(|a, b| a.t.total_cmp(&b.t));
     opacities.sort_by(|a, b| a.t.total_cmp(&b.t));
     inks.first()?;
+    // Straight between colors that have their opacities beside them: stops as they are here.
+    let is_stop = |(ink, opacity): (&Mark<[f32; 3]>, &Mark<[f32; 1]>)| {
+        ink.t == opacity.t && ink.middle == 0.5 && opacity.middle == 0.5
+    };
+    if inks.len() == opacities.len() && inks.iter().zip(&opacities).all(is_stop) {
+        let stop = |(ink, opacity): (Mark<[f32; 3]>, Mark<[f32; 1]>)| {
+            let ([r, g, b], [a]) = (ink.value, opacity.value);
+            let [r, g, b, a] = [r, g, b, a].map(srgb::quantize);
+            GradientStop { t: ink.t, color: Color { r, g, b, a } }
+        };
+        return Some(inks.into_iter().zip(opacities).map(stop).collect());
+    }
     let mut places: Vec<f32> =
         [0.0, 1.0].into_iter().chain(inks.iter().map(|mark| mark.t)).collect();
     places.extend(opacities.iter().map(|mark| mark.t));

@@ -57,14 +57,15 @@ fn whole_numbers_come_back_as_they_were() {
 
 #[test]
 fn stops_of_a_gradient_map_come_back_where_they_were() {
-    let stop = |t, r| GradientStop { t, color: Color { r, g: 7, b: 200, a: 255 } };
-    let map =
-        GradientMap { stops: vec![stop(0.0, 9), stop(0.25, 250), stop(1.0, 90)], reverse: true };
-    let Some(ColorAdjustment::GradientMap(read)) = back(&ColorAdjustment::GradientMap(map.clone()))
-    else {
-        panic!("it is no gradient map");
-    };
-    assert!(read.reverse && map.stops.iter().all(|stop| read.stops.contains(stop)), "{read:?}");
+    let stop = |t, r, a| GradientStop { t, color: Color { r, g: 7, b: 200, a } };
+    for stops in [
+        vec![stop(0.0, 9, 255), stop(0.25, 250, 255), stop(1.0, 90, 255)],
+        // Neither begins at 0, two at one place, not opaque.
+        vec![stop(0.453125, 109, 255), stop(1.0, 45, 90), stop(1.0, 90, 255)],
+    ] {
+        let map = ColorAdjustment::GradientMap(GradientMap { stops, reverse: true });
+        assert_eq!(back(&map), Some(map));
+    }
 }
 
 #[test]
