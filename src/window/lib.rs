@@ -32,6 +32,7 @@ mod settings;
 mod swatches;
 mod theme;
 mod thumbnails;
+mod typed_range;
 mod usage;
 mod widgets;
 mod window;

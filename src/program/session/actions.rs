@@ -5,6 +5,7 @@
 pub mod canvas;
 pub mod clipboard;
 pub mod edit;
+pub(in crate::session) mod file_names;
 pub mod files;
 pub mod guides;
 pub mod hand;

@@ -1,7 +1,7 @@
 //! *Paint the ball*: the ball of a lit-sphere layer as a document of its own, whose every step
 //! repaints the layer. Floor 6. Not here: how the ball lies on the figure (`shading`).
 
-use super::actions::placing::free_file;
+use super::actions::file_names::free_file;
 use super::{OpenDocument, Session, is_same};
 use crate::document::{Content, Document, Layer, LayerId, Live, PixelLayer, Progress, flatten};
 use crate::io::recipe::{RecipeSource, read_value};

@@ -5,9 +5,9 @@ use crate::document::Content;
 use crate::io::text::{self, Caret};
 use crate::math::{Vec2, vec2};
 use crate::paint::{PlacedImage, Text};
-use crate::panels::text::{TypedRange, typed_range};
 use crate::session::Session;
 use crate::surface::Operator;
+use crate::typed_range::{TypedRange, typed_range};
 use eframe::egui::{Color32, Id, Painter, Pos2, Shape, Stroke};
 use std::sync::Arc;
 

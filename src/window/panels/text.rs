@@ -11,26 +11,12 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, Property, Session, Writing};
 use crate::tools::ToolKind;
+use crate::typed_range::{TypedRange, typed_range};
 use crate::widgets::{NumberField, check, name, set_accessible_name};
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, ComboBox, Id, Rect, TextEdit, Ui, UiBuilder, vec2};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// The letters between the ends of the selection in the field, while it is typed in.
-#[derive(Clone, PartialEq)]
-pub struct TypedRange {
-    pub layer: LayerId,
-    /// Bytes of the text.
-    pub bytes: Range<usize>,
-    /// The end that moves.
-    pub caret: usize,
-}
-
-/// Where the field says what is selected in it.
-pub fn typed_range() -> Id {
-    Id::unique("typed range of a text")
-}
 
 pub fn show(ui: &mut Ui, layer: LayerId, words: &Text, setter: &mut LayerSetter) {
     let id = Id::unique(("words of a layer", layer));

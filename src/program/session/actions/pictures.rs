@@ -1,7 +1,8 @@
 //! Pictures that layers use, chosen from the user's files: read on any thread, then put into the
 //! layer. Floor 6. Not here: reading files (`io`).
 
-use super::placing::{free_file, read_picture};
+use super::file_names::free_file;
+use super::placing::read_picture;
 use crate::Result;
 use crate::document::source::NormalConvention;
 use crate::document::{

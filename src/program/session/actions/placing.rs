@@ -7,6 +7,7 @@ use crate::io::{Budget, files::read_file, picture};
 use crate::math::Vec2;
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
+use crate::session::actions::file_names::free_file;
 use crate::session::actions::layers::above;
 use crate::session::{OpenDocument, Session, storage};
 use crate::surface::operator::{MapValues, reflection};
@@ -101,21 +102,4 @@ pub fn of_picture(name: &str, picture: Picture) -> Document {
         layers: vec![Arc::new(storage::flat_image(&stem, name, picture, size))],
         ..Document::empty(size)
     }
-}
-
-/// A file name that no other picture of the document has.
-pub(in crate::session) fn free_file(document: &Document, name: &str) -> String {
-    let taken =
-        |name: &str| document.walk().iter().any(|(_, layer)| layer.content.files().contains(&name));
-    let path = Path::new(name);
-    let (stem, extension) =
-        (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
-    let mut free = name.to_owned();
-    for i in 2.. {
-        if !taken(&free) {
-            break;
-        }
-        free = format!("{}-{i}.{}", stem.to_string_lossy(), extension.to_string_lossy());
-    }
-    free
 }

@@ -8,7 +8,7 @@ use crate::io::{Budget, text};
 use crate::math::{Size, Vec2};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement, Text, TextStyle};
 use crate::raster::Outside;
-use crate::session::actions::placing::free_file;
+use crate::session::actions::file_names::free_file;
 use crate::session::{OpenDocument, Session, Writing};
 use crate::surface::{Anchor, Bend};
 use std::sync::Arc;

@@ -52,6 +52,7 @@ pub const PROPERTIES: &[&str] = &[
         "scaling":{"alpha":#,"gamma_convex":#,"gamma_concave":1}}}"##,
     r#"{"do":"shininess","to":#}"#,
     r##"{"do":"shadows","shadows":{"on":true,"strength":#,"softness":#,"reach":200,"color":"#102030"}}"##,
+    r##"{"do":"pixels","pixel":{"bands":3,"dither":#,"colors":["#301020","#d04030"]}}"##,
     r##"{"do":"painter","painter":{"warmth":#,"fill":#,"rim":#,"rim_color":"#405060"}}"##,
     r#"{"do":"ball strokes","strokes":{"size":#,"chunk":#,"follow":#,"seams":#}}"#,
     r#"{"do":"lines","lines":{"of":["outlines","wires"],"smooth":#,"detail":#,
