@@ -104,15 +104,21 @@ pub struct PictureSource {
     pub adjust: Adjust,
     /// The words that it shows, if it is a text.
     pub text: Option<Arc<Text>>,
-    texture: Arc<OnceLock<Texture>>,
-    /// The texture of a drawing that is drawn 2, 4 and 8 times as large; `None` where it cannot be.
-    enlarged: Arc<[OnceLock<Option<Texture>>; 3]>,
-    /// The same in floats, as long as it is in use.
-    deep: Arc<Mutex<Weak<DeepTexture>>>,
+    derived: Arc<DerivedTextures>,
     /// How closely it is read if it is antialiased.
     rule: TapRule,
+}
+
+/// What is made of a picture when it is read for the first time.
+#[derive(Default)]
+struct DerivedTextures {
+    texture: OnceLock<Texture>,
+    /// The texture of a drawing that is drawn 2, 4 and 8 times as large; `None` where it cannot be.
+    enlarged: [OnceLock<Option<Texture>>; 3],
+    /// The texture in floats, as long as it is in use.
+    deep: Mutex<Weak<DeepTexture>>,
     /// The stamps made from it if it is a brush's tip.
-    stamps: Arc<StampCache>,
+    stamps: StampCache,
 }
 
 impl PartialEq for PictureSource {
@@ -132,9 +138,7 @@ impl From<Picture> for PictureSource {
 impl PictureSource {
     /// A picture under its name in the document, and what is done to it.
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
-        let (texture, deep, stamps) = (Arc::default(), Arc::default(), Arc::default());
-        let (text, enlarged, rule) = (None, Arc::default(), TapRule::AT_REST);
-        Self { file, picture, adjust, text, texture, enlarged, deep, rule, stamps }
+        Self { file, picture, adjust, text: None, derived: Arc::default(), rule: TapRule::AT_REST }
     }
 
     /// The same picture with other adjustments.
@@ -166,22 +170,23 @@ impl PictureSource {
     /// fewer texels.
     pub fn coarser(&self, levels: u32) -> Self {
         let texture = OnceLock::from(self.texture().coarser(levels));
-        Self { texture: Arc::new(texture), ..self.clone() }
+        let derived = Arc::new(DerivedTextures { texture, ..DerivedTextures::default() });
+        Self { derived, ..self.clone() }
     }
 
     /// Bytes of the textures that were made.
     pub fn texture_bytes(&self) -> u64 {
-        let enlarged = self.enlarged.iter().filter_map(|texture| texture.get()?.as_ref());
-        self.texture.get().into_iter().chain(enlarged).map(Texture::bytes).sum()
+        let enlarged = self.derived.enlarged.iter().filter_map(|texture| texture.get()?.as_ref());
+        self.derived.texture.get().into_iter().chain(enlarged).map(Texture::bytes).sum()
     }
 
     /// The picture as a tip, with a softness in `[0, 1]`.
     pub(super) fn stamp(&self, softness: f32) -> Arc<TipStamp> {
-        self.stamps.stamp(self.texture(), softness)
+        self.derived.stamps.stamp(self.texture(), softness)
     }
 
     pub(super) fn stamps(&self) -> &StampCache {
-        &self.stamps
+        &self.derived.stamps
     }
 
     /// The adjusted texture, of a drawing at the size at which a pixel reads no less than a texel.
@@ -190,10 +195,11 @@ impl PictureSource {
     ///
     /// An enlarged texture that cannot be had is the next smaller one.
     pub fn texture_of(&self, texels_per_px: f32) -> &Texture {
-        if self.picture.drawing.is_none() || !(texels_per_px > 0.0) {
+        if self.picture.drawing.is_none() || texels_per_px.is_nan() || texels_per_px <= 0.0 {
             return self.texture();
         }
-        let steps = (-texels_per_px.log2() - 1e-3).ceil().max(0.0).min(self.enlarged.len() as f32);
+        let steps =
+            (-texels_per_px.log2() - 1e-3).ceil().max(0.0).min(self.derived.enlarged.len() as f32);
         let made = (1..=steps as u32).rev().find_map(|step| self.enlarged(step));
         made.unwrap_or_else(|| self.texture())
     }
@@ -206,7 +212,7 @@ impl PictureSource {
             let adjust = Adjust { blur: blur.min(*Adjust::BLUR.end()), ..self.adjust };
             Some(Texture::new(&adjust.apply(&picture)))
         };
-        self.enlarged[step as usize - 1].get_or_init(make).as_ref()
+        self.derived.enlarged[step as usize - 1].get_or_init(make).as_ref()
     }
 
     /// The adjusted texture.
@@ -214,7 +220,7 @@ impl PictureSource {
     /// Made by the calling thread alone: a worker that waited for others here could be given a tile
     /// that waits for this same texture.
     pub fn texture(&self) -> &Texture {
-        self.texture.get_or_init(|| Texture::new(&self.adjust.apply(&self.picture)))
+        self.derived.texture.get_or_init(|| Texture::new(&self.adjust.apply(&self.picture)))
     }
 }
 

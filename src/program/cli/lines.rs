@@ -65,11 +65,11 @@ pub fn run(args: &LinesArgs) -> Result<()> {
 fn drawing_of(document: &Document) -> FormDrawing {
     let layers = document.walk();
     let shown = layers.iter().filter(|(_, layer)| layer.visible);
-    let drawing = shown.filter_map(|(_, layer)| match &layer.content {
+    let mut drawing = shown.filter_map(|(_, layer)| match &layer.content {
         Content::FormDrawing(live) => Some(live.params()),
         _ => None,
     });
-    let lines = drawing.filter(|drawing| matches!(drawing.pattern, FormPattern::Lines(_))).next();
+    let lines = drawing.find(|drawing| matches!(drawing.pattern, FormPattern::Lines(_)));
     let plain = || FormDrawing::new(FormPattern::Lines(LineSettings::DEFAULT));
     lines.cloned().unwrap_or_else(plain)
 }

@@ -17,6 +17,9 @@ use crate::raster::Plane;
 use crate::shape::Form;
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Where the rim of what is inflated is free; none: nowhere.
+type FreeRim = Option<Arc<Plane<bool>>>;
+
 /// Stages of forms with more pixels than this are not kept.
 const MOST_KEPT_PX: usize = 1 << 24;
 
@@ -55,17 +58,14 @@ impl PartInputs {
     }
 
     /// Where the rim of what is inflated is free.
-    fn free_rim(&self) -> Option<Arc<Plane<bool>>> {
+    fn free_rim(&self) -> FreeRim {
         let own = self.standing.as_ref().filter(|_| has_rim(&self.part));
         own.and_then(|own| joined_rim(&own.outline, &self.met)).map(Arc::new)
     }
 
     /// What was made of the same outline in the same place with the same free rim, and that rim as
     /// far as it is known.
-    fn split_known(
-        &self,
-        made: Option<MadePart>,
-    ) -> (Option<MadePart>, Option<Option<Arc<Plane<bool>>>>) {
+    fn split_known(&self, made: Option<MadePart>) -> (Option<MadePart>, Option<FreeRim>) {
         let same_place = |made: &MadePart| split_whole_px(made.part.matrix).0 == self.still;
         let same_source = |made: &MadePart| self.is_of_source(made) || self.is_of_outline(made);
         match made.filter(|made| same_source(made) && same_place(made)) {

@@ -110,8 +110,9 @@ impl DrawingHand {
         from: usize,
     ) -> Arc<Stroke> {
         let last = points.len().saturating_sub(1);
-        let kept =
-            |(i, _): &(usize, &LinePoint)| (from + i) % SAMPLE_EVERY == 0 || *i == 0 || *i == last;
+        let kept = |(i, _): &(usize, &LinePoint)| {
+            (from + i).is_multiple_of(SAMPLE_EVERY) || *i == 0 || *i == last
+        };
         let every: Vec<LinePoint> =
             points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
         self.draw(drawing, &self.extend_ends(every), [self.taper; 2], |point, _| point.strength)

@@ -14,7 +14,7 @@ use std::sync::{Arc, PoisonError};
 impl PictureSource {
     /// The adjusted texture in floats; made again when it is no longer in use.
     pub fn deep_texture(&self) -> Arc<DeepTexture> {
-        let held = || self.deep.lock().unwrap_or_else(PoisonError::into_inner);
+        let held = || self.derived.deep.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = held().upgrade() {
             return known;
         }

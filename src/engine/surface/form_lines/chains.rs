@@ -110,9 +110,11 @@ pub fn pair_crossings<T: Copy>(crossings: &[T], apart: impl Fn(T, T) -> f32) -> 
     }
 }
 
-/// The sides of the cell whose upper left pixel is (x, y), in order around it: from which pixel to
-/// which, and the key of the place between them.
-pub fn sides(x: usize, y: usize, width: usize) -> [((usize, usize), (usize, usize), u64); 4] {
+/// A side of a cell: from which pixel to which, and the key of the place between them.
+pub type CellSide = ((usize, usize), (usize, usize), u64);
+
+/// The sides of the cell whose upper left pixel is (x, y), in order around it.
+pub fn sides(x: usize, y: usize, width: usize) -> [CellSide; 4] {
     let across = |x: usize, y: usize| ((x, y), (x + 1, y), 2 * (y * width + x) as u64);
     let down = |x: usize, y: usize| ((x, y), (x, y + 1), 2 * (y * width + x) as u64 + 1);
     [across(x, y), down(x + 1, y), across(x, y + 1), down(x, y)]

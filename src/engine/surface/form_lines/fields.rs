@@ -272,7 +272,7 @@ fn wire_steps(plane: &Plane<f32>, spacing: f32, (x, y): (usize, usize), out: &mu
     let values = corners.map(|(x, y)| plane.at(x, y) / spacing);
     let [low, high] = [f32::min, f32::max].map(|end| values.into_iter().fold(values[0], end));
     // A step of more than a few wires is no surface.
-    if !(high - low < 4.0) {
+    if (high - low).is_nan() || high - low >= 4.0 {
         return;
     }
     for level in low.ceil() as i32..=high.floor() as i32 {

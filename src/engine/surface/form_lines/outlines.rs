@@ -2,7 +2,7 @@
 //! at the places that contours know between pixels. Floor 2. Not here: curves of smooth forms
 //! (`fields`).
 
-use super::chains::{Chain, LineStep, join_steps, sides};
+use super::chains::{CellSide, Chain, LineStep, join_steps, sides};
 use super::tidy::RawLine;
 use super::{LineKind, LinePoint, LineSettings};
 use crate::math::{Vec2, vec2};
@@ -234,7 +234,7 @@ impl Partings<'_> {
     /// The crossings that bound the nearest of the forms that meet in a cell, and the others.
     fn foremost(
         &self,
-        sides: &[((usize, usize), (usize, usize), u64); 4],
+        sides: &[CellSide; 4],
         crossings: &[LinkCrossing],
     ) -> (Vec<LinkCrossing>, Vec<LinkCrossing>) {
         // Corners in order around the cell; side i joins corner i to the next one.

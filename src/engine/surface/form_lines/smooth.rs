@@ -72,7 +72,7 @@ pub(in crate::surface) fn diffuse(plane: &mut Plane<f32>, links: &Plane<u8>, sig
     /// Steps of a pixel: more are taken over several pixels.
     const MOST_STEPS: f32 = 24.0;
     let steps = sigma_px * sigma_px / (2.0 * SHARE);
-    if !(steps > 0.0) {
+    if steps.is_nan() || steps <= 0.0 {
         return;
     }
     let mut other = Plane::filled(plane.size(), 0.0f32);

@@ -321,9 +321,10 @@ fn without_doubles(line: FormLine, known: &NearPoints, settings: &LineSettings) 
     let is_double = |i: usize, point: &LinePoint| {
         known.has_within(point.at, near_px, |other: &NearPoint| {
             let reach = if other.kind == line.kind { DOUBLE_PX } else { near_px };
-            let is_wire = other.kind == LineKind::Wire || line.kind == LineKind::Wire;
-            !other.is_end
-                && !(is_wire && other.kind != line.kind)
+            let has_wire = other.kind == LineKind::Wire || line.kind == LineKind::Wire;
+            let is_comparable = other.kind == line.kind || !has_wire;
+            is_comparable
+                && !other.is_end
                 && other.at.distance(point.at) < reach
                 && other.along.dot(along[i]).abs() >= DOUBLE_COS
         })

@@ -58,8 +58,8 @@ fn around<T: Copy + Default>(row: &[T], x: usize) -> [T; HALF + 8] {
 
 /// The rows of half the size above and below a row, and the share of the lower one.
 fn rows_around(y: usize, height: usize) -> (usize, usize, f32) {
-    let above = (y + 1) / 2;
-    let down = if y % 2 == 0 { 0.75 } else { 0.25 };
+    let above = y.div_ceil(2);
+    let down = if y.is_multiple_of(2) { 0.75 } else { 0.25 };
     (above.max(1).min(height) - 1, above.min(height - 1), down)
 }
 
@@ -143,11 +143,11 @@ fn add_group(
             let (above, below, _) = rows_around(y, sum.height());
             let rows = [above, below].map(|y| around(sum.row(y), x0 / 2));
             let mut lit = 0;
-            for i in 0..HALF {
-                lit |= near[0][i] | near[1][i];
+            for (even, odd) in near[0].iter().zip(&near[1]) {
+                lit |= even | odd;
             }
-            for i in 0..HALF + 2 {
-                lit |= rows[0][i] | rows[1][i];
+            for (above, below) in rows[0].iter().zip(&rows[1]) {
+                lit |= above | below;
             }
             // Most pixels lie in the light.
             if lit == 0 {

@@ -93,7 +93,7 @@ impl RayGroups {
     pub fn counts(&self, heights: &HeightMaps) -> HiddenCounts {
         let size = heights.upright.whole.size();
         let mut counts = HiddenCounts::new(size);
-        let held = (HELD_PX / size.area().max(1) as usize).max(rayon::current_num_threads());
+        let held = (HELD_PX / size.area().max(1)).max(rayon::current_num_threads());
         for turned in [false, true] {
             let groups: Vec<&RayGroup> =
                 self.groups.iter().filter(|group| group.is_turned == turned).collect();

@@ -207,9 +207,9 @@ impl ParallelLines<'_> {
     #[inline(always)]
     fn keep(&self, row: &StripRow, kept: &mut Kept) {
         let mut keys = [0; LANES];
-        for i in 0..LANES {
-            let h = row.h[i] + row.between * (row.h[i + 1] - row.h[i]);
-            keys[i] = key(self.steps(h) + row.gain, row.turn);
+        for (key_of, pair) in keys.iter_mut().zip(row.h.windows(2)) {
+            let h = pair[0] + row.between * (pair[1] - pair[0]);
+            *key_of = key(self.steps(h) + row.gain, row.turn);
         }
         let waiting = kept.waiting.len();
         if self.skipped == 0 {
@@ -221,9 +221,7 @@ impl ParallelLines<'_> {
         if let (true, Some(far)) = (row.turn >= self.unfaded, &mut kept.far) {
             far.take(place);
         }
-        for i in 0..LANES {
-            place[i] = keys[i];
-        }
+        *place = keys;
     }
 
     /// Adds how much the ray is hidden from the pixels of a row.
@@ -236,16 +234,16 @@ impl ParallelLines<'_> {
     ) {
         for first in (0..BETWEEN).step_by(GROUP) {
             let (mut own, mut above) = ([0; GROUP], 0);
-            for i in 0..GROUP {
-                own[i] = key(self.steps(row.h[first + i + 1]) + row.gain, 0);
+            for (own, h) in own.iter_mut().zip(&row.h[first + 1..]) {
+                *own = key(self.steps(*h) + row.gain, 0);
             }
-            for i in 0..GROUP {
+            for (i, own) in own.iter().enumerate() {
                 let at = first + i;
                 let mut highest = higher(near[at], near[at + 1]);
                 if FAR {
                     highest = higher(highest, higher(far[at], far[at + 1]));
                 }
-                above |= i32::from(highest.wrapping_sub(own[i]) > self.least_above);
+                above |= i32::from(highest.wrapping_sub(*own) > self.least_above);
             }
             // Most pixels lie in the light.
             if above == 0 {
