@@ -60,6 +60,10 @@ pub(super) fn lines(text: &Text) -> Result<Vec<Line>> {
         let reason = format!("{letters} letters; a text has {} at most", Text::MOST_LETTERS);
         return Err(Error::too_large(Path::new(super::FILE), reason));
     }
+    if text.runs.len() > Text::MOST_RUNS {
+        let reason = format!("{} pieces; a text has {} at most", text.runs.len(), Text::MOST_RUNS);
+        return Err(Error::too_large(Path::new(super::FILE), reason));
+    }
     let mut lines = Vec::new();
     for paragraph in paragraphs(text) {
         if text.width > 0.0 && text.arc == 0.0 {

@@ -117,6 +117,9 @@ fn an_empty_text_a_long_one_and_one_without_its_font_are_no_failures() {
     assert!(layout(&lost).size.x > 10.0, "nothing stands in for it");
     let long = text(&"x".repeat(Text::MOST_LETTERS + 1));
     assert!(lay_out(&long, &Budget::default()).unwrap_err().to_string().contains("letters"));
+    let run = text("x").runs[0].clone();
+    let many = Text { runs: vec![run; Text::MOST_RUNS + 1], ..Text::default() };
+    assert!(lay_out(&many, &Budget::default()).unwrap_err().to_string().contains("pieces"));
     assert!(families().contains(&"Hack".to_owned()));
 }
 

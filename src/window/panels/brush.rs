@@ -289,7 +289,7 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     stabilized.or(blended).or(erases).or(keeps)
 }
 
-/// The hints of a brush's mixing_and_stylus, in their order.
+/// The hints of how a brush mixes and follows the stylus, in their order.
 fn mixing_and_stylus(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to = brush.clone();
     let mut changed = false;

@@ -1,4 +1,4 @@
-//! Normals that were diffuse_copy along links, and their derivatives. Floor 2. Nothing crosses a broken
+//! Normals diffused along links, and their derivatives. Floor 2. Nothing crosses a broken
 //! link.
 
 use crate::math::{Vec2, vec2};
@@ -55,7 +55,7 @@ impl SmoothNormals {
     }
 }
 
-/// A map diffuse_copy along the links of a surface, as wide as a Gaussian of σ px.
+/// A map diffused along the links of a surface, as wide as a Gaussian of σ px.
 pub(in crate::surface) fn diffuse_copy(
     plane: &Plane<f32>,
     surface: &Surface,
@@ -67,7 +67,7 @@ pub(in crate::surface) fn diffuse_copy(
 }
 
 /// Diffuses a map along links, as wide as a Gaussian of σ px: a step adds variance 2 · 0.2 px² on
-/// each axis. Wide ones are diffuse_copy on steps of several pixels first.
+/// each axis. Wide ones are diffused on steps of several pixels first.
 pub(in crate::surface) fn diffuse(plane: &mut Plane<f32>, links: &Plane<u8>, sigma_px: f32) {
     /// Steps of a pixel: more are taken over several pixels.
     const MOST_STEPS: f32 = 24.0;

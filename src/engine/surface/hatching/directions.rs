@@ -1,5 +1,5 @@
-//! Which way hatching lines go: the cross of principal directions, diffuse_copy by how directed the form
-//! is and comb_cross to one family, or the slope, or an angle on the paper. Floor 2. Angles are in the
+//! Which way hatching lines go: the cross of principal directions, diffused by how directed the form
+//! is and combed to one family, or the slope, or an angle on the paper. Floor 2. Angles are in the
 //! tangent plane, in the frame that S takes from the picture without turning it (MATH 8).
 
 use super::{HatchSettings, HatchWay};

@@ -127,8 +127,8 @@ pub(super) fn retyped(
         let (image, old) = (live.params(), live.params().source.text.clone());
         let image = with_text(image, canvas, file.clone(), laid.clone());
         layer.content = Content::Image(Live::new(image));
-        if old.is_some_and(|old| layer.name == name(&old)) {
-            layer.name = name(text);
+        if old.is_some_and(|old| layer.name == name(&old)) && layer.name != name(text) {
+            layer.name = document.free_layer_name(&name(text));
         }
     }))
 }
