@@ -23,6 +23,7 @@ mod panels;
 mod part_pictures;
 mod pen;
 mod pending;
+mod program_icon;
 mod recovery;
 mod render_thread;
 mod requests;
@@ -63,6 +64,10 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         .with_inner_size([1280.0, 820.0])
         .with_min_inner_size([720.0, 480.0])
         .with_drag_and_drop(true);
+    let viewport = match program_icon::program_icon() {
+        Some(icon) => viewport.with_icon(icon),
+        None => viewport,
+    };
     // Clipboard shortcuts arrive as keys: see `clipboard`. Nothing is drawn in more than eight
     // bits, so there is nothing to dither, and dithering takes time at every pixel of every frame.
     let options = eframe::NativeOptions {
