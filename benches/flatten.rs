@@ -143,7 +143,7 @@ fn ten_layers(bencher: Bencher, depth: &str) {
     let grid = |seed: u32| {
         let straight: Vec<[u16; 4]> =
             (0..w * h).map(|i| [0, 1, 2, 3].map(|c| value(seed, i, c))).collect();
-        TileGrid::from_straight_deep(&straight, w as usize, h as usize, 0, 0)
+        TileGrid::from_straight16(&straight, w as usize, h as usize, 0, 0)
     };
     let layer = |i: u32| {
         let tiles = in_bytes_if(depth == "bytes", grid(i));

@@ -109,11 +109,12 @@ pub mod surface {
 pub mod paint {
     #[doc(inline)]
     pub use rilievo_engine::paint::{
-        ActiveRetouching, ActiveStrokes, Adjust, Backdrop, Brush, BrushMode, ColorJitter, Curve,
-        Cycle, DabInputs, DistanceMetric, Drive, Dynamics, Falloff, Fill, Gradient, GradientStop,
-        HomeFrame, ImageFilter, Input, Offset, Pickup, PictureSource, PlacedImage, Placement,
-        Property, Rate, Sample, Selection, Spread, StabilizedPen, Stabilizer, Stroke, StrokeFrame,
-        StrokeHome, StrokeSelection, StylusFilter, Text, TextAlign, TextRun, TextStyle, Tip,
+        ActiveRetouching, ActiveStrokes, Adjust, Attachment, Backdrop, Brush, BrushMode,
+        ColorJitter, Curve, Cycle, DabInputs, DistanceMetric, Drive, Dynamics, Falloff, Fill,
+        Gradient, GradientStop, ImageFilter, Input, Offset, Pickup, PictureSource, PlacedImage,
+        Placement, Property, Rate, Sample, Selection, Spread, StabilizedPen, Stabilizer, Stroke,
+        StrokeAttachment, StrokeFrame, StrokeSelection, StylusFilter, Text, TextAlign, TextRun,
+        TextStyle, Tip,
         grain::{BrushGrain, GrainSource, GrainSpace},
         tip::{Bristles, Hose, Noise},
     };
@@ -152,7 +153,7 @@ pub mod document {
         Content, DerivedMask, DetailSource, Document, Group, Highlights, History, Layer, LayerId,
         LayerLabel, LayerLock, LayerMask, LayerSlot, LayerTransform, Live, MaskKind, Mesh,
         MeshFrame, NamedSelection, NormalLayer, PixelLayer, PreparedDocument, Progress, StrokeList,
-        TransformShape, diff, flatten, flatten_deep, flatten_layer, flatten_layers,
+        TransformShape, diff, flatten, flatten_layer, flatten_layers, flatten_to_floats,
     };
 }
 

@@ -148,7 +148,7 @@ fn light_becomes_a_paint_layer_a_few_rows_at_a_time() {
         picture::to_tiles(&picture::decode(&file, &bytes, &Budget::default()).unwrap(), 0, 0);
     // Its 16 bits take 12 a pixel, bytes 4.
     let little = Budget { memory_bytes: 11 * size.area() as u64, ..Budget::default() };
-    for (budget, most, is_deep) in [(Budget::default(), 15, true), (little, 7, false)] {
+    for (budget, most, is_16_bit) in [(Budget::default(), 15, true), (little, 7, false)] {
         let (opened, peak) = watched(|| open(&file, &budget).unwrap());
         let taken = peak.saturating_sub(bytes.len());
         assert!(
@@ -163,8 +163,8 @@ fn light_becomes_a_paint_layer_a_few_rows_at_a_time() {
             whole.iter().all(|(at, tile)| pixels.tiles.tile(at).unwrap().bytes() == tile.bytes())
         );
         assert_eq!(
-            (pixels.tiles.is_deep_in(size.rect()), opened.notes.len()),
-            (is_deep, usize::from(!is_deep))
+            (pixels.tiles.is_16_bit_in(size.rect()), opened.notes.len()),
+            (is_16_bit, usize::from(!is_16_bit))
         );
     }
 }

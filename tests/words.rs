@@ -20,7 +20,9 @@ const REPLACED: &[(&str, Named, &str)] = &[
     ("brought", Named::Function, "a verb"),
     ("came", Named::Function, "resume"),
     ("caught", Named::Function, "catch_…"),
+    ("chosen", Named::Function, "selected_…"),
     ("copied", Named::Function, "copy_…"),
+    ("deep", Named::Function, "rows16, …_floats"),
     ("dress", Named::Function, "apply_…"),
     ("duplicated", Named::Function, "duplicate"),
     ("emit", Named::Function, "write, encode"),
@@ -29,6 +31,9 @@ const REPLACED: &[(&str, Named, &str)] = &[
     ("goes", Named::Function, "moves_with_…"),
     ("hear", Named::Function, "read_event"),
     ("heard", Named::Function, "a verb"),
+    ("home", Named::Function, "attachment"),
+    ("homed", Named::Function, "attach"),
+    ("homes", Named::Function, "attachments"),
     ("kept", Named::Function, "what is kept: …_after, load_…"),
     ("known", Named::Function, "get, or what is cached"),
     ("laid", Named::Function, "place_…, with_…"),
@@ -51,11 +56,15 @@ const REPLACED: &[(&str, Named, &str)] = &[
     ("upon", Named::Function, "modifiers_of"),
     ("alone", Named::Module, "isolation"),
     ("came", Named::Module, "resume point"),
+    ("chosen", Named::Module, "selected_layers"),
+    ("deep", Named::Module, "sixteen_bit, floats, high_depth"),
     ("dress", Named::Module, "what it does"),
     ("emit", Named::Module, "write"),
     ("grow", Named::Module, "nearest_feature"),
     ("habits", Named::Module, "brush_options"),
     ("hear", Named::Module, "what it does"),
+    ("home", Named::Module, "attachment"),
+    ("homes", Named::Module, "attachments"),
     ("judge", Named::Module, "compare"),
     ("laid", Named::Module, "what lies there"),
     ("look", Named::Module, "layer_preview"),
@@ -65,6 +74,7 @@ const REPLACED: &[(&str, Named, &str)] = &[
     ("springs", Named::Module, "poisson"),
     ("standing", Named::Module, "placed_outlines"),
     ("sway", Named::Module, "wobble"),
+    ("told", Named::Module, "messages, notes"),
     ("through", Named::Module, "transformed"),
     ("upon", Named::Module, "modifiers"),
     ("yields", Named::Module, "constrained"),
@@ -114,7 +124,12 @@ const RETURN_BOOL: &[&str] = &[
 ];
 
 /// What a suffix of functions was replaced by.
-const SUFFIXES: &[(&str, &str)] = &[("_telling", "_with_progress")];
+const SUFFIXES: &[(&str, &str)] = &[
+    ("_telling", "_with_progress"),
+    ("_deep", "…16, …_floats"),
+    ("_chosen", "…_selected"),
+    ("_homes", "…_attachments"),
+];
 
 /// Roots of words that are spelled otherwise in American English.
 const BRITISH: &[&str] = &[

@@ -4,22 +4,22 @@
 mod adjusted;
 mod apply_transform;
 pub mod assistants;
+mod attachments;
 pub mod canvas_change;
 mod compose;
 pub mod conventions;
 mod count_memory;
 pub mod cut;
-mod deep;
 pub mod diff;
 pub mod edit;
 mod far_side;
 mod fit;
 pub mod flatten;
+mod floats;
 mod frame_box;
 pub mod guides;
 mod histogram;
 pub mod history;
-mod homes;
 mod ink_layers;
 mod layer;
 pub mod mask;
@@ -39,17 +39,17 @@ mod strokes;
 pub mod view;
 mod weight;
 
-pub use crate::paint::{HomeFrame, StrokeHome};
+pub use crate::paint::{Attachment, StrokeAttachment};
 pub use assistants::{Assistant, AssistantKind};
 pub use canvas_change::CanvasChange;
-pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::singles::SingleLayers;
 pub use flatten::{
-    flatten, flatten_deep, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_paint,
-    flatten_whole,
+    flatten, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_floats,
+    flatten_to_paint, flatten_whole,
 };
+pub use floats::Highlights;
 pub use frame_box::FrameBox;
 pub use guides::Guides;
 pub use histogram::Histogram;

@@ -3,6 +3,7 @@
 
 pub mod adjust;
 pub mod adjustment;
+pub mod attachment;
 pub mod brush;
 pub mod brush_options;
 mod curve;
@@ -13,7 +14,6 @@ pub mod fill;
 pub mod form_drawing;
 pub mod gradient;
 pub mod grain;
-pub mod home;
 pub mod image;
 pub mod liquify;
 mod patches;
@@ -41,6 +41,7 @@ pub mod tip;
 
 pub use adjust::Adjust;
 pub use adjustment::{ColorAdjustment, LiveAdjustment};
+pub use attachment::{Attachment, StrokeAttachment};
 pub use brush::{Brush, BrushMode, ColorJitter, Stabilizer, StrokeFrame, Tip};
 pub use brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
@@ -49,7 +50,6 @@ pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use fill::Fill;
 pub use form_drawing::{DrawingHand, FormDrawing, FormPattern};
 pub use gradient::{Gradient, GradientStop};
-pub use home::{HomeFrame, StrokeHome};
 pub use image::{PictureSource, PlacedImage, Placement};
 pub use liquify::{LiquifySettings, LiquifyStroke, LiquifyTool};
 pub use retouch::ActiveRetouching;

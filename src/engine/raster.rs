@@ -30,6 +30,6 @@ pub use lattice::Lattice;
 pub use picture::{Picture, VectorDrawing};
 pub use planar::PlanarTile;
 pub use plane::Plane;
-pub use texture::{DeepTexture, Outside, Texture};
+pub use texture::{FloatTexture, Outside, Texture};
 pub use tile::{TILE, Tile, TileAt};
 pub use warp::Resampling;

@@ -29,7 +29,7 @@ pub struct Budget {
     pub memory_bytes: u64,
     /// Whether paint has 16 bits a channel where its file has more than 8. It takes three times the
     /// memory.
-    pub deep_paint: bool,
+    pub sixteen_bit_paint: bool,
     /// Bytes of any one file.
     pub file_bytes: u64,
     /// Bytes read from all entries of a zip together.
@@ -65,7 +65,7 @@ impl Default for Budget {
             document_px: 1 << 31,
             region_px: Document::MOST_REGION_PX,
             memory_bytes: super::machine::UNKNOWN_BYTES,
-            deep_paint: true,
+            sixteen_bit_paint: true,
             file_bytes: 2 << 30,
             unpacked_bytes: 8 << 30,
             // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes
@@ -122,7 +122,7 @@ impl Budget {
 
     /// Bytes that a pixel of paint takes at most.
     pub fn paint_bytes(&self) -> u64 {
-        Tile::most_bytes_a_pixel(self.deep_paint)
+        Tile::most_bytes_a_pixel(self.sixteen_bit_paint)
     }
 
     /// With so much memory.

@@ -1,7 +1,8 @@
 //! Writes pictures: PNG, JPEG, WebP, TIFF and EXR, each completely or not at all. Floor 5. Not
-//! here: flattening (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
+//! here: flattening (`document::flatten`), more than 8 bits (`high_depth`), layers of an EXR
+//! (`layers`).
 
-pub mod deep;
+pub mod high_depth;
 pub mod layers;
 pub mod shape;
 
@@ -148,7 +149,7 @@ impl OutputFile {
         progress: &Progress,
     ) -> Result<()> {
         let Some(document) = document.reshaped_with_progress(progress) else { return Ok(()) };
-        let bytes = deep::encode_document(&self.named, &document, options, budget, progress)?;
+        let bytes = high_depth::encode_document(&self.named, &document, options, budget, progress)?;
         bytes.map_or(Ok(()), |bytes| self.replace(&bytes))
     }
 
@@ -230,7 +231,7 @@ fn lay_on(rgba: &mut [u8], background: Color) {
 
 fn tiff(file: &Path, rgba: Vec<u8>, size: Size) -> Result<Vec<u8>> {
     let image = image::RgbaImage::from_raw(size.width, size.height, rgba);
-    deep::tiff(file, image.map(image::DynamicImage::ImageRgba8))
+    high_depth::tiff(file, image.map(image::DynamicImage::ImageRgba8))
 }
 
 /// Pixels a meter.
@@ -300,7 +301,7 @@ fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
 }
 
 fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
-    deep::exr(size, 16, |i| {
+    high_depth::exr(size, 16, |i| {
         let [r, g, b, a] = std::array::from_fn(|c| rgba[4 * i + c]);
         let alpha = f32::from(a) / 255.0;
         let light = |c: u8| srgb::decode_u8(c) * alpha;

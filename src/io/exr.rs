@@ -99,8 +99,8 @@ impl<'a> ExrFile<'a> {
 
     /// The horizontal field of view in degrees, if the header has it.
     pub fn fov_degrees(&self) -> Option<f32> {
-        let told = self.meta.headers.iter().find_map(|h| h.own_attributes.horizontal_field_of_view);
-        told.filter(|fov| *fov > 0.0 && *fov < 180.0)
+        let fov = self.meta.headers.iter().find_map(|h| h.own_attributes.horizontal_field_of_view);
+        fov.filter(|fov| *fov > 0.0 && *fov < 180.0)
     }
 
     /// Decodes some channels (indices into [`Self::channels`]) over the display window; NaN outside

@@ -7,7 +7,7 @@ use super::files::{RecipeFolder, TrackedFiles, read_file};
 use super::project::{self, Archive, ProjectContents};
 use super::recipe::{self, RecipeSource};
 use super::replace::FileStamp;
-use super::{Budget, aseprite, clip, deep_paint, json, picture, psd};
+use super::{Budget, aseprite, clip, json, picture, psd, sixteen_bit_paint};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::raster::Asset;
 use crate::{Error, Result};
@@ -95,7 +95,7 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
         |read: ProjectContents| ProjectContents { document: read.document.reshaped(), ..read };
     let read = |budget: &Budget| read(budget).map(shaped);
     let (read, rounded) =
-        deep_paint::read_within_budget(file, budget, read, |read| &read.document)?;
+        sixteen_bit_paint::read_within_budget(file, budget, read, |read| &read.document)?;
     let ProjectContents { document, mut notes, is_whole, picture } = read;
     let is_whole = is_whole && rounded.is_none();
     notes.extend(rounded);

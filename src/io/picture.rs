@@ -49,8 +49,8 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
 /// * `file`: for messages.
 pub fn encode(file: &Path, picture: &Picture) -> Result<(Asset, &'static str)> {
     let size = picture.size;
-    match (&picture.texels, &picture.deep) {
-        (Texels::Srgb8(_), Some(deep)) => Ok((pixels::encode_deep(file, deep, size)?, "png")),
+    match (&picture.texels, &picture.texels16) {
+        (Texels::Srgb8(_), Some(texels16)) => Ok((pixels::encode16(file, texels16, size)?, "png")),
         (Texels::Srgb8(texels), None) => Ok((pixels::encode_texels(file, texels, size)?, "png")),
         (Texels::Linear(light), _) => Ok((exr::encode_light(file, size, light)?.into(), "exr")),
     }
@@ -110,15 +110,15 @@ fn is_light(image: &DynamicImage) -> bool {
 
 /// The byte nearest to a value of 16 bits.
 fn byte(v: u16) -> u8 {
-    tile::deep::byte_of(v)
+    tile::sixteen_bit::byte_of(v)
 }
 
 /// A picture as the tiles of a paint layer, its corner at a canvas pixel, of 16 bits where it has
 /// more than 8; light beyond white is clipped, as a texture clips it.
 pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
     let (w, h) = (picture.size.width as usize, picture.size.height as usize);
-    match (&picture.texels, &picture.deep) {
-        (Texels::Srgb8(_), Some(deep)) => TileGrid::from_straight_deep(deep, w, h, x, y),
+    match (&picture.texels, &picture.texels16) {
+        (Texels::Srgb8(_), Some(texels16)) => TileGrid::from_straight16(texels16, w, h, x, y),
         (Texels::Srgb8(texels), None) => {
             TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y)
         }
@@ -186,7 +186,7 @@ pub fn to_srgb(size: Size, rgba: Vec<u8>, is_gray: bool, icc: &[u8]) -> Vec<u8> 
 }
 
 /// The same for straight values of 16 bits.
-pub fn to_srgb_deep(size: Size, texels: Vec<[u16; 4]>, is_gray: bool, icc: &[u8]) -> Vec<[u16; 4]> {
+pub fn to_srgb16(size: Size, texels: Vec<[u16; 4]>, is_gray: bool, icc: &[u8]) -> Vec<[u16; 4]> {
     let image = if is_gray {
         let two = texels.iter().flat_map(|[gray, .., alpha]| [*gray, *alpha]).collect();
         image::ImageBuffer::from_raw(size.width, size.height, two).map(DynamicImage::ImageLumaA16)

@@ -6,7 +6,7 @@ use crate::Budget;
 use crate::bitmap;
 use crate::document::EncodedPixels;
 use crate::math::{Rect, Size};
-use crate::raster::tile::deep::byte_of;
+use crate::raster::tile::sixteen_bit::byte_of;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::srgb_profile::{is_own_srgb, own_srgb};
 use crate::{Error, Result};
@@ -41,17 +41,17 @@ pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<Enc
 
 /// All of a rectangle as a PNG.
 pub fn encode_rect(file: &Path, tiles: &TileGrid, rect: Rect) -> Result<Asset> {
-    let is_deep = tiles.is_deep_in(rect);
-    let values = |strip: Rect| match is_deep {
+    let is_16_bit = tiles.is_16_bit_in(rect);
+    let values = |strip: Rect| match is_16_bit {
         true => tiles
-            .to_straight_deep(strip)
+            .to_straight16(strip)
             .into_flattened()
             .into_iter()
             .flat_map(u16::to_be_bytes)
             .collect(),
         false => tiles.to_straight_rgba(strip),
     };
-    let kind = if is_deep { PngKind::RGBA16 } else { PngKind::RGBA8 };
+    let kind = if is_16_bit { PngKind::RGBA16 } else { PngKind::RGBA8 };
     checked(file, || strips(rect).map(|strip| Cow::Owned(values(strip))), size_of(rect), kind)
 }
 
@@ -99,7 +99,7 @@ pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asse
 }
 
 /// The same with 16 bits a channel.
-pub fn encode_deep(file: &Path, texels: &[[u16; 4]], size: Size) -> Result<Asset> {
+pub fn encode16(file: &Path, texels: &[[u16; 4]], size: Size) -> Result<Asset> {
     let bytes = |rows: &[[u16; 4]]| -> Cow<[u8]> {
         rows.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect()
     };
@@ -180,7 +180,7 @@ fn is_stored_as<'v>(png: &[u8], strips: impl Iterator<Item = Cow<'v, [u8]>>) -> 
 }
 
 /// Whether a PNG that was encoded here holds 16 bits a channel.
-pub fn is_deep(png: &[u8]) -> bool {
+pub fn is_16_bit(png: &[u8]) -> bool {
     let reader = png::Decoder::new(std::io::Cursor::new(png)).read_info();
     reader.is_ok_and(|reader| reader.info().bit_depth == png::BitDepth::Sixteen)
 }
@@ -215,17 +215,17 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     let is_bare = bitmap::png_exif(bytes).is_none() && info.animation_control.is_none() && is_srgb;
     let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
     let (color, depth) = reader.output_color_type();
-    let is_deep = depth == png::BitDepth::Sixteen;
-    if !(is_deep || depth == png::BitDepth::Eight) || !is_bare || info.interlaced {
+    let is_16_bit = depth == png::BitDepth::Sixteen;
+    if !(is_16_bit || depth == png::BitDepth::Eight) || !is_bare || info.interlaced {
         return None;
     }
     let rect =
         Rect::new(x, y, x.checked_add(size.width as i32)?, y.checked_add(size.height as i32)?);
     let mut tiles = TileGrid::for_rect(rect);
     let (line, held) = (rect.width(), rect.width() * TILE.min(rect.height()));
-    let (mut strip, mut deep) = (
-        vec![[0; 4]; if is_deep { 0 } else { held }],
-        vec![[0; 4]; if is_deep { held } else { 0 }],
+    let (mut strip, mut pixels16) = (
+        vec![[0; 4]; if is_16_bit { 0 } else { held }],
+        vec![[0; 4]; if is_16_bit { held } else { 0 }],
     );
     let mut used_bytes = 0;
     let mut stored = vec![0; reader.output_line_size(size.width)?];
@@ -236,17 +236,17 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
         for row in 0..rows {
             reader.read_row(&mut stored).ok()??;
             let row = row * line..(row + 1) * line;
-            match is_deep {
+            match is_16_bit {
                 true => {
                     let samples: Vec<u16> =
                         stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect();
-                    to_rgba(&samples, color, u16::MAX, &mut deep[row])?;
+                    to_rgba(&samples, color, u16::MAX, &mut pixels16[row])?;
                 }
                 false => to_rgba(&stored, color, u8::MAX, &mut strip[row])?,
             }
         }
-        let part = match is_deep {
-            true => TileGrid::from_straight_deep(&deep[..rows * line], line, rows, x, top),
+        let part = match is_16_bit {
+            true => TileGrid::from_straight16(&pixels16[..rows * line], line, rows, x, top),
             false => TileGrid::from_straight_rgba(
                 strip[..rows * line].as_flattened(),
                 line,
@@ -255,7 +255,7 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
                 top,
             ),
         };
-        let part = if budget.deep_paint { part } else { part.rounded() };
+        let part = if budget.sixteen_bit_paint { part } else { part.rounded() };
         used_bytes += part.bytes() as u64;
         budget.room(Path::new(""), "a layer's pixels", used_bytes).ok()?;
         part.iter().for_each(|(at, tile)| tiles.set(at, Some(tile.clone())));
@@ -362,9 +362,9 @@ mod tests {
             }
         };
         let pixels: Vec<[u16; 4]> = (0..200 * 90).map(pixel).collect();
-        let tiles = TileGrid::from_straight_deep(&pixels, 200, 90, -8, 5);
+        let tiles = TileGrid::from_straight16(&pixels, 200, 90, -8, 5);
         let encoded = encode(Path::new("a"), &tiles, None).unwrap();
-        assert!(is_deep(encoded.file.bytes()));
+        assert!(is_16_bit(encoded.file.bytes()));
         assert!(bitmap::has_png_profile(encoded.file.bytes()), "Krita would ask for one");
         assert_eq!((encoded.x, encoded.y, encoded.size), (-8, 5, Size::new(200, 90)));
         let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default())
@@ -379,9 +379,9 @@ mod tests {
                 quick.tile(at).unwrap().is_same(tile) && slow.tile(at).unwrap().is_same(tile),
                 "{at:?}"
             );
-            assert_eq!(tile.is_deep(), at.col < 2, "{at:?}");
+            assert_eq!(tile.is_16_bit(), at.col < 2, "{at:?}");
         }
-        assert!(!is_deep(
+        assert!(!is_16_bit(
             encode(Path::new("a"), &tiles, Some(Rect::new(150, 5, 180, 9))).unwrap().file.bytes()
         ));
         let short = Budget { memory_bytes: 100_000, ..Budget::default() };

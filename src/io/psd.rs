@@ -119,11 +119,11 @@ pub struct LayerRecord {
     /// Straight RGBA of `rect`, row by row.
     pub rgba: Vec<u8>,
     /// What it was rounded from, if the file has more than 8 bits a channel; else empty.
-    pub deep: Vec<[u16; 4]>,
+    pub rgba16: Vec<[u16; 4]>,
     /// What is left out of it, and so may be missing in the picture.
     pub lost: Vec<&'static str>,
     /// What it was turned into without changing its look.
-    pub told: Vec<&'static str>,
+    pub converted: Vec<&'static str>,
 }
 
 impl LayerRecord {
@@ -135,9 +135,9 @@ impl LayerRecord {
     }
 
     /// Notes what was changed without changing the picture.
-    pub fn tell(&mut self, what: &'static str) {
-        if !self.told.contains(&what) {
-            self.told.push(what);
+    pub fn note_conversion(&mut self, what: &'static str) {
+        if !self.converted.contains(&what) {
+            self.converted.push(what);
         }
     }
 }
@@ -167,9 +167,9 @@ impl Default for LayerRecord {
             stroked: false,
             unfilled: false,
             rgba: Vec::new(),
-            deep: Vec::new(),
+            rgba16: Vec::new(),
             lost: Vec::new(),
-            told: Vec::new(),
+            converted: Vec::new(),
         }
     }
 }

@@ -170,7 +170,7 @@ pub fn read_unshaped(
     let surface_source = source.onto.map(fitted_source).or(own.map(|(own, _)| own)).map(Arc::new);
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *source.budget;
     let pictures = PictureCache::knowing(tiles);
-    let (known, homes, notes) = (HashMap::new(), Vec::new(), of_maps);
+    let (known, attachments, notes) = (HashMap::new(), Vec::new(), of_maps);
     let mut reader = LayerReader {
         source,
         size,
@@ -178,7 +178,7 @@ pub fn read_unshaped(
         samples_left,
         pictures,
         selections: known,
-        homes,
+        attachments,
         notes,
     };
     let scene = Scene { size, surface: surface.clone() };
@@ -197,7 +197,7 @@ pub fn read_unshaped(
         None => Vec::new(),
     };
     selections.extend(reader.outlined(&parts, &selections));
-    reader.homes = parts.iter().map(|part| part.id.clone()).collect();
+    reader.attachments = parts.iter().map(|part| part.id.clone()).collect();
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
     let bare = Document {
         size,
@@ -337,7 +337,7 @@ struct LayerReader<'a> {
     /// By their ids, with the names of those that are kept.
     selections: HashMap<String, (Arc<Selection>, Option<String>)>,
     /// The ids of the parts that layers and strokes may lie on.
-    homes: Vec<String>,
+    attachments: Vec<String>,
     /// What could not be carried over, a sentence each.
     notes: Vec<String>,
 }

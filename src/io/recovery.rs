@@ -92,9 +92,9 @@ impl RecoveryLog {
         let (tasks, received) = channel();
         let trouble = Arc::default();
         let worker = std::thread::Builder::new().name("recovery".into());
-        let told = Arc::clone(&trouble);
+        let shared_trouble = Arc::clone(&trouble);
         let worker = worker
-            .spawn(move || work(journal, &received, &told))
+            .spawn(move || work(journal, &received, &shared_trouble))
             .map_err(|e| Error::io(folder, e))?;
         let recovery = Self {
             tasks: Some(tasks),

@@ -12,6 +12,7 @@ mod info;
 pub mod limits;
 mod lines;
 mod manual;
+mod messages;
 mod object;
 mod open;
 mod painted;
@@ -20,7 +21,6 @@ mod render;
 mod replay;
 mod shape;
 mod thumbnail;
-mod told;
 mod values;
 mod view;
 

@@ -22,7 +22,7 @@ pub use actions::Action;
 pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
 pub use open_document::{CloneSource, Edit, OpenDocument, is_same, is_same_look};
-pub use open_document::{chosen, labels};
+pub use open_document::{labels, selected_layers};
 pub use path::{LayerPath, LayerPaths};
 pub use picture_part::PicturePart;
 pub use property::Property;
@@ -162,20 +162,20 @@ impl Session {
     /// The selected layer as shown.
     pub fn layer(&self) -> Option<&Arc<Layer>> {
         let open = self.active()?;
-        open.shown_document().layer(open.selected?)
+        open.shown_document().layer(open.primary?)
     }
 
     /// The path of the selected layer.
     pub fn layer_path(&self) -> Option<LayerPath> {
         let open = self.active()?;
-        LayerPath::of(open.document(), open.selected?)
+        LayerPath::of(open.document(), open.primary?)
     }
 
-    /// The paths of the chosen layers, without those in a group that is chosen.
+    /// The paths of the selected layers, without those in a group that is selected.
     pub fn layer_paths(&self) -> LayerPaths {
-        let chosen =
-            self.active().map(|open| LayerPaths::of(open.document(), &open.outermost_chosen()));
-        chosen.unwrap_or_default()
+        let selected =
+            self.active().map(|open| LayerPaths::of(open.document(), &open.outermost_selected()));
+        selected.unwrap_or_default()
     }
 
     /// How surfaces are unwrapped: as the current operator says, else by default.
@@ -305,7 +305,7 @@ impl Session {
         self.recent_colors.truncate(RECENT);
     }
 
-    /// The last steps are over: what is chosen now is what redo goes back to. Called before
+    /// The last steps are over: what is selected now is what redo goes back to. Called before
     /// whatever may choose.
     fn record_targets(&mut self) {
         self.open_documents.iter_mut().for_each(OpenDocument::record_target);
@@ -313,8 +313,8 @@ impl Session {
 
     /// Notes why edits were not kept, and what they did to parts.
     fn tell_refusals(&mut self) {
-        let told = |open: &mut OpenDocument| [open.refused.take(), open.noted.take()];
-        self.notes.extend(self.open_documents.iter_mut().flat_map(told).flatten());
+        let take_notes = |open: &mut OpenDocument| [open.refused.take(), open.noted.take()];
+        self.notes.extend(self.open_documents.iter_mut().flat_map(take_notes).flatten());
     }
 
     /// Updates the recovery logs to the documents; called after whatever may have changed them.

@@ -60,14 +60,14 @@ pub struct ToolContext<'a> {
     pub document: &'a Document,
     /// The settings of the tools.
     pub tools: &'a ToolSettings,
-    /// The selected layer.
+    /// The primary layer.
     pub layer: Option<LayerId>,
-    /// All chosen layers, those in a chosen group left out, bottom first; tools that make no marks
-    /// work on all of them.
+    /// All selected layers, those in a selected group left out, bottom first; tools that make no
+    /// marks work on all of them.
     pub layers: &'a [LayerId],
-    /// The strokes of the selected layer that are chosen.
+    /// The selected strokes of the primary layer.
     pub strokes: &'a [usize],
-    /// The chosen part of the shape, by its id.
+    /// The selected part of the shape, by its id.
     pub part: Option<&'a str>,
     /// What brush and eraser change.
     pub target: BrushTarget,
@@ -75,7 +75,7 @@ pub struct ToolContext<'a> {
     pub px_per_pt: f32,
     /// Where the last stroke ended.
     pub last_end: Option<Vec2>,
-    /// What the transform tool keeps about the chosen layers.
+    /// What the transform tool keeps about the selected layers.
     pub gizmo: &'a GizmoMemory,
     /// What the pen snaps to.
     pub snap: &'a SnapTargets,
@@ -102,7 +102,7 @@ impl<'a> ToolContext<'a> {
         }
     }
 
-    /// The chosen layers: if none are given, the selected one.
+    /// The selected layers: if none are given, the primary one.
     pub fn selected_layers(&self) -> &[LayerId] {
         if self.layers.is_empty() { self.layer.as_slice() } else { self.layers }
     }

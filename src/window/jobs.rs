@@ -197,7 +197,7 @@ impl<W: JobWindow> Jobs<W> {
 
     /// The current success message.
     pub fn success_message(&self) -> Option<&str> {
-        let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < TOLD)?;
+        let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < SHOWN_FOR)?;
         Some(sentence)
     }
 
@@ -232,7 +232,7 @@ impl<W: JobWindow> Jobs<W> {
 }
 
 /// How long a success message stays.
-const TOLD: Duration = Duration::from_secs(8);
+const SHOWN_FOR: Duration = Duration::from_secs(8);
 
 /// The name of a file, for lines without room for the path.
 pub fn short(file: &Path) -> String {

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// keep their defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keymap {
-    chosen: BTreeMap<String, Vec<KeyboardShortcut>>,
+    custom: BTreeMap<String, Vec<KeyboardShortcut>>,
 }
 
 /// A command or tool that can have keys.
@@ -57,7 +57,7 @@ impl KeyTarget {
 
 impl Keymap {
     pub fn of(&self, keyed: KeyTarget) -> Vec<KeyboardShortcut> {
-        self.chosen.get(keyed.name()).cloned().unwrap_or_else(|| keyed.default_keys())
+        self.custom.get(keyed.name()).cloned().unwrap_or_else(|| keyed.default_keys())
     }
 
     /// The first key of a command, which menus show.
@@ -65,21 +65,21 @@ impl Keymap {
         self.of(KeyTarget::Command(command)).first().copied()
     }
 
-    pub fn is_chosen(&self, keyed: KeyTarget) -> bool {
-        self.chosen.contains_key(keyed.name())
+    pub fn is_custom(&self, keyed: KeyTarget) -> bool {
+        self.custom.contains_key(keyed.name())
     }
 
     /// Sets the keys; default ones are not stored.
     pub fn set(&mut self, keyed: KeyTarget, keys: Vec<KeyboardShortcut>) {
         if keys == keyed.default_keys() {
-            self.chosen.remove(keyed.name());
+            self.custom.remove(keyed.name());
         } else {
-            self.chosen.insert(keyed.name().to_owned(), keys);
+            self.custom.insert(keyed.name().to_owned(), keys);
         }
     }
 
     pub fn reset(&mut self, keyed: KeyTarget) {
-        self.chosen.remove(keyed.name());
+        self.custom.remove(keyed.name());
     }
 
     /// What else has this key.
@@ -106,7 +106,7 @@ impl Keymap {
             keys.iter().map(|&keys| Value::from(written(keys))).collect()
         };
         Value::Object(
-            self.chosen
+            self.custom
                 .iter()
                 .map(|(name, keys)| (name.clone(), Value::Array(text(keys))))
                 .collect(),
@@ -119,9 +119,9 @@ impl Keymap {
         let keys = |list: &Value| -> Option<Vec<KeyboardShortcut>> {
             list.as_array()?.iter().map(|keys| read(keys.as_str()?)).collect()
         };
-        let chosen = value.iter().filter(|(name, _)| known(name));
+        let custom = value.iter().filter(|(name, _)| known(name));
         Self {
-            chosen: chosen.filter_map(|(name, list)| Some((name.clone(), keys(list)?))).collect(),
+            custom: custom.filter_map(|(name, list)| Some((name.clone(), keys(list)?))).collect(),
         }
     }
 }

@@ -101,7 +101,7 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
     };
     // Only the reason, without the library's context.
     let wrong = wrong.rsplit(": ").next().unwrap_or(&wrong).trim_end_matches(['.', ')']);
-    let told =
+    let reason =
         format!("no window can be opened here ({wrong}); “rilievo render” paints without one");
-    Err(Error::unsupported("display", told))
+    Err(Error::unsupported("display", reason))
 }

@@ -3,6 +3,7 @@
 
 pub mod adjustment;
 mod assistants;
+mod attachment;
 mod balls;
 mod brush;
 pub mod brush_mode;
@@ -13,7 +14,6 @@ mod curve;
 pub mod fill;
 mod form_drawing;
 pub mod history;
-mod home;
 pub mod layers;
 mod liquify;
 pub mod mask;

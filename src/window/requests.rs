@@ -64,7 +64,7 @@ pub enum WindowRequest {
     /// Asks first if there is unsaved work.
     Close(usize),
     Quit,
-    /// For the paint of the chosen layers.
+    /// For the paint of the selected layers.
     AdjustDialog(Box<ColorAdjustment>),
     EdgeDialog(EdgeChange),
     KeepDialog,

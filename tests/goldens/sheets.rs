@@ -6,7 +6,7 @@ use super::cases::{Case, ROUNDED, as_image, read};
 use super::compare::Place;
 use super::surfaces::{SIZE, Shape};
 use image::{Rgba, RgbaImage};
-use rilievo::document::{Highlights, flatten_deep};
+use rilievo::document::{Highlights, flatten_to_floats};
 use rilievo::files::recipe;
 use rilievo::math::{Vec2, vec2};
 use rilievo::paint::{
@@ -216,7 +216,8 @@ fn blend(mode: &str) -> (String, Make) {
     ]);
     let make = move || {
         let document = read(SIZE, &layers);
-        let pixels = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
+        let pixels =
+            flatten_to_floats(&document, Highlights::Clipped, &Progress::default()).unwrap();
         let fraction = |v: f32| {
             // A wave of period 16/255: continuous, so that a last bit does not jump.
             let t = (v * 255.0 / 16.0).fract();

@@ -64,7 +64,7 @@ fn bitmaps() -> Vec<Seed> {
     let rgba =
         Image::ImageRgba8(image::RgbaImage::from_fn(19, 11, |x, y| image::Rgba(pixel(x, y))));
     let rgb = Image::ImageRgb8(rgba.to_rgb8());
-    let deep = [
+    let rgba16 = [
         Image::ImageLuma16(rgba.to_luma16()),
         Image::ImageLumaA16(rgba.to_luma_alpha16()),
         Image::ImageRgb16(rgba.to_rgb16()),
@@ -72,12 +72,14 @@ fn bitmaps() -> Vec<Seed> {
     ];
     let gray = [Image::ImageLuma8(rgba.to_luma8()), Image::ImageLumaA8(rgba.to_luma_alpha8())];
     let float = Image::ImageRgb32F(rgba.to_rgb32f());
-    let all = || [&rgba, &rgb, &gray[0], &gray[1], &deep[0], &deep[1], &deep[2], &deep[3]];
+    let all = || [&rgba, &rgb, &gray[0], &gray[1], &rgba16[0], &rgba16[1], &rgba16[2], &rgba16[3]];
     let mut seeds: Vec<Seed> = Vec::new();
     for (i, image) in all().into_iter().enumerate() {
         seeds.push((format!("{i}.png"), encoded(image.clone(), Png)));
     }
-    for (i, image) in [&rgb, &rgba, &gray[0], &deep[0], &deep[2], &float].into_iter().enumerate() {
+    for (i, image) in
+        [&rgb, &rgba, &gray[0], &rgba16[0], &rgba16[2], &float].into_iter().enumerate()
+    {
         seeds.push((format!("{i}.tif"), encoded(image.clone(), Tiff)));
     }
     for (name, image, format) in [

@@ -83,17 +83,17 @@ fn command_under(harness: &mut Story, name: &str) {
 }
 
 #[test]
-fn after_undo_the_layer_is_chosen_that_was_chosen_before() {
+fn after_undo_the_layer_is_selected_that_was_selected_before() {
     let mut harness = window();
     command(&mut harness, "New paint layer");
     command(&mut harness, "New paint layer");
     row(&mut harness, "Paint");
-    let chosen = |harness: &Story| session(harness).layer().unwrap().name.clone();
-    assert_eq!(chosen(&harness), "Paint");
+    let selected = |harness: &Story| session(harness).layer().unwrap().name.clone();
+    assert_eq!(selected(&harness), "Paint");
     command(&mut harness, "New gradient layer");
-    assert_eq!(chosen(&harness), "Gradient");
+    assert_eq!(selected(&harness), "Gradient");
     key(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(chosen(&harness), "Paint");
+    assert_eq!(selected(&harness), "Paint");
     let before = layers(&harness);
     stroke(&mut harness, vec2(40.0, 10.0));
     assert_eq!(layers(&harness), before, "the stroke goes to that layer");

@@ -27,7 +27,7 @@ fn a_new_document_is_painted_on_and_the_stroke_undone() {
 }
 
 #[test]
-fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
+fn a_stroke_is_selected_in_the_list_ordered_duplicated_and_deleted() {
     let mut harness = window();
     let canvas = harness.get_by_label("Canvas").rect();
     for dy in [-40.0, 40.0] {
@@ -40,7 +40,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     let heights = |harness: &Story| -> Vec<f32> {
         let open = session(harness).active().unwrap();
         open.document()
-            .strokes(open.selected.unwrap())
+            .strokes(open.primary.unwrap())
             .iter()
             .map(|stroke| stroke.samples()[0].at.y)
             .collect()
@@ -50,7 +50,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     steps(&mut harness);
     click(&mut harness, "Stroke 1 ·");
     assert_eq!(session(&harness).tool, rilievo_program::tools::ToolKind::Strokes);
-    assert_eq!(session(&harness).active().unwrap().chosen_strokes(), [0]);
+    assert_eq!(session(&harness).active().unwrap().selected_strokes(), [0]);
     harness.get_by_label("Stroke up").click();
     steps(&mut harness);
     assert_eq!(heights(&harness), [lower, upper]);
@@ -67,7 +67,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     steps(&mut harness);
     harness.drop_at(canvas.center() + vec2(0.0, 10.0));
     steps(&mut harness);
-    assert_eq!(session(&harness).active().unwrap().chosen_strokes(), [0]);
+    assert_eq!(session(&harness).active().unwrap().selected_strokes(), [0]);
     assert!(heights(&harness)[0] < lower && heights(&harness)[1] == upper);
 }
 

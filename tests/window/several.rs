@@ -16,21 +16,24 @@ fn row(harness: &mut Story, name: &str, modifiers: Modifiers) {
     steps(harness);
 }
 
-fn chosen(harness: &Story) -> Vec<String> {
+fn selected(harness: &Story) -> Vec<String> {
     let open = session(harness).active().unwrap();
-    open.chosen_layers().iter().map(|id| open.document().layer(*id).unwrap().name.clone()).collect()
+    open.selected_layers()
+        .iter()
+        .map(|id| open.document().layer(*id).unwrap().name.clone())
+        .collect()
 }
 
 #[test]
-fn layers_are_chosen_with_keys_held_and_grouped_as_one_step() {
+fn layers_are_selected_with_keys_held_and_grouped_as_one_step() {
     let mut harness = four();
     assert_eq!(layers(&harness), ["Background", "Fill", "Fill 2", "Fill 3"]);
     row(&mut harness, "Background", Modifiers::NONE);
     row(&mut harness, "Fill 3", Modifiers::COMMAND);
-    assert_eq!(chosen(&harness), ["Background", "Fill 3"]);
+    assert_eq!(selected(&harness), ["Background", "Fill 3"]);
     row(&mut harness, "Fill 2", Modifiers::NONE);
     row(&mut harness, "Background", Modifiers::SHIFT);
-    assert_eq!(chosen(&harness), ["Background", "Fill", "Fill 2"]);
+    assert_eq!(selected(&harness), ["Background", "Fill", "Fill 2"]);
     assert!(harness.query_by_label("Layer Fill 2, selected").is_some(), "a screen reader is told");
     key(&mut harness, Modifiers::COMMAND, Key::G);
     assert_eq!(layers(&harness), ["Group", "Fill 3"]);
@@ -46,12 +49,12 @@ fn layers_are_chosen_with_keys_held_and_grouped_as_one_step() {
 fn the_keys_of_pages_go_through_the_layers_and_extend_with_shift() {
     let mut harness = four();
     key(&mut harness, Modifiers::NONE, Key::PageDown);
-    assert_eq!(chosen(&harness), ["Fill 2"]);
+    assert_eq!(selected(&harness), ["Fill 2"]);
     key(&mut harness, Modifiers::SHIFT, Key::PageDown);
-    assert_eq!(chosen(&harness), ["Fill", "Fill 2"]);
+    assert_eq!(selected(&harness), ["Fill", "Fill 2"]);
     key(&mut harness, Modifiers::SHIFT, Key::PageUp);
     key(&mut harness, Modifiers::SHIFT, Key::PageUp);
-    assert_eq!(chosen(&harness), ["Fill 2", "Fill 3"], "the beginning stays");
+    assert_eq!(selected(&harness), ["Fill 2", "Fill 3"], "the beginning stays");
     command(&mut harness, "Show or hide layer");
     let document = session(&harness).active().unwrap().document();
     assert_eq!(
@@ -120,7 +123,7 @@ fn an_assistant_is_laid_and_a_stroke_beside_it_is_straight() {
     press(&mut harness, "Brush");
     drag(&mut harness, vec2(-100.0, 9.0), vec2(80.0, -14.0));
     let open = session(&harness).active().unwrap();
-    let strokes = open.document().strokes(open.selected.unwrap());
+    let strokes = open.document().strokes(open.primary.unwrap());
     let on = assistants[0].points[0].y;
     assert!(
         strokes[0].samples().iter().all(|sample| (sample.at.y - on).abs() < 0.05),

@@ -78,7 +78,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     assert_eq!(layers(&harness), ["creature", "Base"]);
     let made = parts(&harness);
     assert_eq!(made.len(), 2);
-    // The panel with the parts is in front, one of them chosen.
+    // The panel with the parts is in front, one of them selected.
     harness.get_by_label("Part Orange");
     assert!(harness.query_all_by_label("Pillow – tube").next().is_some());
     steps(&mut harness);
@@ -87,12 +87,12 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     assert_eq!(session(&harness).tool, ToolKind::Shape);
     let (head, down) = (seen(&harness, 160.0, 120.0), seen(&harness, 160.0, 180.0));
     drag(&mut harness, head, head);
-    let chosen = session(&harness).active().unwrap().part.clone().unwrap();
-    // The height handle is in the middle of the chosen part.
+    let selected = session(&harness).active().unwrap().part.clone().unwrap();
+    // The height handle is in the middle of the selected part.
     drag(&mut harness, head, down);
     let part =
         |harness: &Story, id: &str| parts(harness).into_iter().find(|part| part.id == id).unwrap();
-    let flatter = part(&harness, &chosen);
+    let flatter = part(&harness, &selected);
     assert!(puff(&flatter) < 0.5, "dragged down it is flatter: {flatter:?}");
 
     key(&mut harness, Modifiers::NONE, Key::N);
@@ -101,7 +101,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     key(&mut harness, Modifiers::NONE, Key::U);
     let (from, to) = (seen(&harness, 110.0, 280.0), seen(&harness, 200.0, 320.0));
     drag(&mut harness, from, to);
-    let body = made.iter().find(|part| part.id != chosen).unwrap().id.clone();
+    let body = made.iter().find(|part| part.id != selected).unwrap().id.clone();
     let on_body: Vec<Arc<Part>> =
         parts(&harness).into_iter().filter(|part| part.on() == Some(body.as_str())).collect();
     assert_eq!(
@@ -262,12 +262,12 @@ fn the_row_of_a_part_that_is_clicked_on_the_canvas_comes_into_sight() {
     key(&mut harness, Modifiers::NONE, Key::P);
     drag(&mut harness, vec2(50.0, -70.0), vec2(50.0, -70.0));
     steps(&mut harness);
-    assert_eq!(session(&harness).active().unwrap().chosen_part().unwrap().name, "Sphere");
+    assert_eq!(session(&harness).active().unwrap().selected_part().unwrap().name, "Sphere");
     assert!(row(&harness, "Sphere").min.y < hidden.min.y - 30.0, "scrolled to");
 }
 
 #[test]
-fn parts_are_added_chosen_ordered_hidden_and_renamed_by_their_controls() {
+fn parts_are_added_selected_ordered_hidden_and_renamed_by_their_controls() {
     let mut harness = window();
     command(&mut harness, "Sphere");
     command(&mut harness, "Box");
@@ -321,13 +321,13 @@ fn a_layer_is_carried_by_a_part_that_is_chosen_in_its_properties() {
     steps(&mut harness);
     harness.get_by_label("Sphere").click_accesskit();
     steps(&mut harness);
-    let home = |harness: &Story| {
+    let attachment = |harness: &Story| {
         let document = session(harness).active().unwrap().document();
-        document.layers.last().unwrap().on.as_ref().map(|home| home.part.to_string())
+        document.layers.last().unwrap().on.as_ref().map(|attachment| attachment.part.to_string())
     };
-    assert_eq!(home(&harness).as_deref(), Some("part-1"));
+    assert_eq!(attachment(&harness).as_deref(), Some("part-1"));
     key(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(home(&harness), None);
+    assert_eq!(attachment(&harness), None);
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn several_layers_are_turned_by_a_number_and_their_frame_turns_along() {
     let mut harness = painted();
     command(&mut harness, "Duplicate layer");
     key(&mut harness, Modifiers::SHIFT, Key::PageDown);
-    assert_eq!(session(&harness).active().unwrap().chosen_layers().len(), 2);
+    assert_eq!(session(&harness).active().unwrap().selected_layers().len(), 2);
     let before = numbers(&harness);
     for (degrees, is_back) in [("30", false), ("0", true)] {
         let field = harness.query_all_by_label("Angle").last().unwrap();
@@ -78,7 +78,7 @@ fn several_layers_are_turned_by_a_number_and_their_frame_turns_along() {
         );
         let open = session(&harness).active().unwrap();
         let stay = open
-            .chosen_layers()
+            .selected_layers()
             .iter()
             .all(|id| open.document().layer(*id).unwrap().transform.is_none());
         assert_eq!(stay, is_back);

@@ -63,7 +63,7 @@ fn adjusted(
         let adjusted = std::mem::replace(&mut after, before);
         after.mix_toward(&adjusted, &TileCoverage::FULL.times(share));
     }
-    after.to_tile(tile.is_deep()).map(Arc::new)
+    after.to_tile(tile.is_16_bit()).map(Arc::new)
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! Applies transforms for good: the frames of a layer become the canvas, so that tools can work on
 //! it as it shows. Floor 4.
 
-use super::homes::{preserve_look, transform_of};
+use super::attachments::{preserve_look, transform_of};
 use super::layer::on_canvas::seen;
 use super::{
     Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, NormalLayer,
     StrokeList,
 };
 use crate::math::{Affine2, PlaneMap, Vec2};
-use crate::paint::{PlacedImage, Placement, StrokeHome};
+use crate::paint::{PlacedImage, Placement, StrokeAttachment};
 use std::sync::Arc;
 
 impl Document {
@@ -18,7 +18,7 @@ impl Document {
     /// perspective keeps its transform. `None` if there is no such layer.
     ///
     /// What a part carries stays with it: the layer's transform becomes the inverse of where its
-    /// home is now, so that its coordinates are those of the canvas until the part moves.
+    /// attachment is now, so that its coordinates are those of the canvas until the part moves.
     pub fn with_transform_applied(&self, id: LayerId) -> Option<Document> {
         if is_in_place(self.layer(id)?, &self.map_of(id)?) {
             return Some(self.clone());
@@ -38,11 +38,11 @@ impl Document {
 /// Whether the frame of a layer and those of its strokes are the canvas, with no transform that
 /// could be dropped.
 fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
-    let is_carried = map.plane != map.without_homes();
+    let is_carried = map.plane != map.without_attachments();
     let strokes_are = || match &layer.content {
-        Content::Strokes(live) if layer.content.has_homes() => {
-            let homes = live.params().strokes.iter().filter_map(|stroke| stroke.home());
-            homes.into_iter().all(|home| map.of_stroke(home).is_none())
+        Content::Strokes(live) if layer.content.has_attachments() => {
+            let attachments = live.params().strokes.iter().filter_map(|stroke| stroke.attachment());
+            attachments.into_iter().all(|attachment| map.of_stroke(attachment).is_none())
         }
         _ => true,
     };
@@ -85,8 +85,9 @@ fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     let bare = Layer { transform, ..Layer::clone(group) };
     let now = around.within(&bare);
     let inner = group.content.group()?.layers.iter();
-    let inner: Option<Vec<Arc<Layer>>> =
-        inner.map(|layer| preserve_look(layer, (&was, &now), &|home| Some(home.clone()))).collect();
+    let inner: Option<Vec<Arc<Layer>>> = inner
+        .map(|layer| preserve_look(layer, (&was, &now), &|attachment| Some(attachment.clone())))
+        .collect();
     // Its mask is transformed once.
     let mask = seen(group, &was).mask.clone();
     let content = Content::Group(Group { layers: inner?, ..group.content.group()?.clone() });
@@ -130,7 +131,7 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
         Content::Pixels(pixels) if layer.on.is_some() && !layer.is_warped() => {
             next.content = Content::Pixels(pixels.taken_along(&map))
         }
-        Content::Strokes(own) if layer.content.has_homes() => {
+        Content::Strokes(own) if layer.content.has_attachments() => {
             match carried_on(own.params(), &seen.content, &now) {
                 Some(list) => next.content = Content::Strokes(Live::new(list)),
                 None => return layer.clone(),
@@ -141,19 +142,23 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
     Arc::new(next)
 }
 
-/// Strokes as they lie on the canvas, those with homes of their own still carried by them; `None`
-/// where that cannot be expressed.
+/// Strokes as they lie on the canvas, those with attachments of their own still carried by them;
+/// `None` where that cannot be expressed.
 ///
 /// * `now`: the map of their layer.
 fn carried_on(own: &StrokeList, seen: &Content, now: &LayerMap) -> Option<StrokeList> {
     let Content::Strokes(seen) = seen else { return None };
     let both = own.strokes.iter().zip(&seen.params().strokes);
     let strokes = both.map(|(own, seen)| {
-        let Some(home) = own.home() else { return Some(seen.clone()) };
-        let mut next = StrokeHome::new(home.frame.clone());
+        let Some(attachment) = own.attachment() else { return Some(seen.clone()) };
+        let mut next = StrokeAttachment::new(attachment.frame.clone());
         next.own = now.of_stroke(&next).plane.inverse().coefficients()?;
-        let is_same = Arc::ptr_eq(own, seen) && now.of_stroke(home).is_none();
-        Some(if is_same { own.clone() } else { Arc::new(seen.moved_home(Arc::new(next))) })
+        let is_same = Arc::ptr_eq(own, seen) && now.of_stroke(attachment).is_none();
+        Some(if is_same {
+            own.clone()
+        } else {
+            Arc::new(seen.with_moved_attachment(Arc::new(next)))
+        })
     });
     Some(StrokeList { strokes: strokes.collect::<Option<_>>()? })
 }

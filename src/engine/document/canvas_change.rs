@@ -227,7 +227,8 @@ impl Document {
                 self.assistants.iter().filter_map(|own| own.transformed(&change.map)).collect(),
             ),
         };
-        let next = if parts.is_empty() { bare } else { bare.with_parts(parts).with_homes_of(self) };
+        let next =
+            if parts.is_empty() { bare } else { bare.with_parts(parts).with_attachments_of(self) };
         if self.surface.is_some() && next.surface.is_none() {
             return Err(NOTHING_LEFT.into());
         }

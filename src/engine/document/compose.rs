@@ -2,8 +2,8 @@
 //! composes what the other sides of its contour pixels see (`far_side`). Floor 4. `prepare`
 //! selects the layers, `content` renders them, `raster::blend` mixes the pixels.
 
-use super::deep::DeepTiles;
 use super::far_side::{FarScene, FarTile};
+use super::floats::FloatTiles;
 use super::layer::adjustment::{AdjustedPlace, Adjustment};
 use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
@@ -25,7 +25,7 @@ pub(super) struct Composer<'a> {
     /// The adjustment to end at, if this is to measure what lies beneath one.
     pub sought: Option<usize>,
     /// The pixels of live layers, if not the bytes that they are rendered to.
-    pub deep: Option<&'a DeepTiles>,
+    pub floats: Option<&'a FloatTiles>,
 }
 
 impl Composer<'_> {
@@ -112,7 +112,7 @@ impl Composer<'_> {
 
     fn blend(&self, onto: &mut PlanarTile, mix: Mix, paint: TilePaint, coverage: &TileCoverage) {
         let Some(far) = self.far.filter(|_| mix.mode == BlendMode::Dissolve) else {
-            return match self.deep {
+            return match self.floats {
                 Some(_) => onto.blend_bright(mix, paint, coverage),
                 None => onto.blend(mix, paint, coverage),
             };
@@ -158,7 +158,8 @@ impl Composer<'_> {
     /// A tile of a layer alone, undisplaced: its contours mixed, not yet clipped to the surface.
     fn in_place(&self, node: &PreparedLayer, at: TileAt) -> Option<Arc<Tile>> {
         let composed = |far: Option<FarTile>| {
-            let composer = Composer { prepared: self.prepared, at, far, sought: None, deep: None };
+            let composer =
+                Composer { prepared: self.prepared, at, far, sought: None, floats: None };
             let mut pixels = composer.blank();
             match node.layer.content.role() {
                 Role::Groups(_) => drop(composer.stack(&node.children, &mut pixels)),
@@ -182,7 +183,7 @@ impl Composer<'_> {
                 None => far.mix_into(&other, &mut pixels, 1.0),
             }
         }
-        match node.has_deep_paint(at) {
+        match node.has_16_bit_paint(at) {
             true => pixels.to_tile(true),
             false => pixels.quantized(),
         }
@@ -190,8 +191,8 @@ impl Composer<'_> {
     }
 
     fn painted_in_place(&self, node: &PreparedLayer) -> TileContent {
-        if let (Some(deep), Some(marks)) = (self.deep, node.layer.content.marks()) {
-            return deep.content(node, marks, self.at, self.far);
+        if let (Some(floats), Some(marks)) = (self.floats, node.layer.content.marks()) {
+            return floats.content(node, marks, self.at, self.far);
         }
         match self.far {
             Some(far) => node.layer.content.render_far_side_tile(&node.far_scene(far)),
@@ -236,7 +237,7 @@ impl Composer<'_> {
         else {
             return ComposeFlow::Continue(());
         };
-        let exactness = self.deep.map_or(Exactness::Fast, DeepTiles::exactness);
+        let exactness = self.floats.map_or(Exactness::Fast, FloatTiles::exactness);
         let apply = |pixels: &mut PlanarTile| match &self.far {
             Some(far) => {
                 adjust_far_side(adjustment, &node.far_scene(*far), beneath, exactness, pixels)
@@ -281,31 +282,31 @@ impl Composer<'_> {
             None => mask::is_whole_on_surface(node, self.at),
         };
         // In floats a layer is rendered once, for what it shows.
-        let is_known = self.deep.is_none() || node.layer.content.marks().is_none();
+        let is_known = self.floats.is_none() || node.layer.content.marks().is_none();
         may_hide && is_known && is_whole() && self.painted(node).is_opaque()
     }
 }
 
 impl PreparedLayer {
     /// Whether its paint, or that of a layer in it or clipped to it, has 16 bits on a tile.
-    pub(super) fn has_deep_paint(&self, at: TileAt) -> bool {
+    pub(super) fn has_16_bit_paint(&self, at: TileAt) -> bool {
         let own = match &self.layer.content {
-            Content::Pixels(pixels) => pixels.tiles.tile(at).is_some_and(|tile| tile.is_deep()),
+            Content::Pixels(pixels) => pixels.tiles.tile(at).is_some_and(|tile| tile.is_16_bit()),
             _ => false,
         };
-        own || self.children.iter().chain(&self.clipped).any(|node| node.has_deep_paint(at))
+        own || self.children.iter().chain(&self.clipped).any(|node| node.has_16_bit_paint(at))
     }
 
     /// Whether a placed picture of more than 8 bits shows on a tile: its own, or one of a layer in
     /// or clipped to it.
-    pub(super) fn has_deep_picture(&self, at: TileAt) -> bool {
+    pub(super) fn has_16_bit_picture(&self, at: TileAt) -> bool {
         let own = match &self.layer.content {
-            Content::Image(live) if live.params().source.picture.is_deep() => {
+            Content::Image(live) if live.params().source.picture.is_16_bit() => {
                 !matches!(self.layer.content.render_tile(&self.scene, at), TileContent::Nothing)
             }
             _ => false,
         };
-        own || self.children.iter().chain(&self.clipped).any(|node| node.has_deep_picture(at))
+        own || self.children.iter().chain(&self.clipped).any(|node| node.has_16_bit_picture(at))
     }
 
     fn far_scene<'s>(&'s self, tile: FarTile<'s>) -> FarScene<'s> {

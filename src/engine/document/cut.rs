@@ -153,8 +153,8 @@ fn multiply_tile(
     if covered.is_whole() {
         return if share(255) == 255 { Some(tile.clone()) } else { None };
     }
-    if tile.is_deep() {
-        let mut rows = tile.deep_rows();
+    if tile.is_16_bit() {
+        let mut rows = tile.to_rows16();
         for (row, covered) in rows.iter_mut().zip(covered.bytes().as_chunks::<TILE>().0) {
             for channel in row {
                 // Rounded to nearest: at most 65535 · 255 + 127.
@@ -164,7 +164,7 @@ fn multiply_tile(
                 channel.iter_mut().zip(covered).for_each(part);
             }
         }
-        return Tile::from_deep(rows).map(Arc::new);
+        return Tile::from_rows16(rows).map(Arc::new);
     }
     let mut bytes = tile.bytes().to_vec();
     for (pixel, c) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(covered.bytes()) {

@@ -6,7 +6,7 @@
 use crate::math::srgb;
 use crate::paint::Scene;
 use crate::raster::blend::spec;
-use crate::raster::tile::deep::{self, DeepRow};
+use crate::raster::tile::sixteen_bit::{self, Row16};
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, TilePaint};
 use crate::surface::contours::{ContourPixel, TileContours, place_of};
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub struct PackedTile {
 
 enum PackedPixels {
     Bytes(Box<[u8]>),
-    Deep(Box<[DeepRow]>),
+    Rows16(Box<[Row16]>),
 }
 
 /// What a layer sees behind a contour, and before it.
@@ -95,7 +95,7 @@ impl<'c> FarTile<'c> {
     }
 
     /// The same for pixels that are not rounded to bytes.
-    pub fn packed_deep(
+    pub fn packed16(
         &self,
         on_far_side: Option<&PlanarTile>,
         bare: Option<&PlanarTile>,
@@ -121,18 +121,18 @@ impl<'c> FarTile<'c> {
         let corner = self.at.rect();
         let place =
             |pixel: &ContourPixel| ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
-        if !tile.is_deep() {
+        if !tile.is_16_bit() {
             return self.gathered(|_, pixel| pixel_of(tile, place(pixel)));
         }
-        let mut rows = vec![deep::CLEAR_ROW; self.rows()].into_boxed_slice();
+        let mut rows = vec![sixteen_bit::CLEAR_ROW; self.rows()].into_boxed_slice();
         let mut opaque = true;
         for (at, contour) in self.places() {
             let (x, y) = place(contour);
-            let pixel = tile.deep_pixel(x, y);
+            let pixel = tile.pixel16(x, y);
             opaque &= pixel[3] == u16::MAX;
-            deep::put(&mut rows[at / TILE], at % TILE, pixel);
+            sixteen_bit::put(&mut rows[at / TILE], at % TILE, pixel);
         }
-        PackedTile { pixels: PackedPixels::Deep(rows), opaque }
+        PackedTile { pixels: PackedPixels::Rows16(rows), opaque }
     }
 
     fn gathered(&self, pixel: impl Fn(usize, &ContourPixel) -> [u8; 4]) -> PackedTile {
@@ -223,7 +223,7 @@ impl PackedTile {
     pub fn as_paint(&self) -> TilePaint<'_> {
         match &self.pixels {
             PackedPixels::Bytes(bytes) => TilePaint::Bytes(bytes),
-            PackedPixels::Deep(rows) => TilePaint::Deep(rows),
+            PackedPixels::Rows16(rows) => TilePaint::Rows16(rows),
         }
     }
 
@@ -231,7 +231,7 @@ impl PackedTile {
     pub fn held_bytes(&self) -> u64 {
         match &self.pixels {
             PackedPixels::Bytes(bytes) => bytes.len() as u64,
-            PackedPixels::Deep(rows) => size_of_val::<[DeepRow]>(rows) as u64,
+            PackedPixels::Rows16(rows) => size_of_val::<[Row16]>(rows) as u64,
         }
     }
 

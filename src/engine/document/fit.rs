@@ -9,7 +9,7 @@ mod selections;
 
 use super::TransformShape;
 use super::{
-    Assistant, Content, DerivedMask, DetailSource, Document, HomeFrame, Layer, LayerMask,
+    Assistant, Attachment, Content, DerivedMask, DetailSource, Document, Layer, LayerMask,
     LayerTransform, MaskKind, Part, PixelLayer, SelectionList,
 };
 use crate::math::range::{at_most, check_range};
@@ -55,13 +55,13 @@ impl Document {
         });
         self.parts.list.iter().for_each(|part| total.add_part(part));
         total.values += selections::A_SELECTION * SelectionList::of(self).all().len();
-        let homes = || self.homes_fit();
+        let attachments = || self.attachments_fit();
         let values = || total.fits().map_err(|why| format!("{why}."));
         fit.and_then(|()| self.aids_fit())
             .and_then(|()| selections::fit(self, before))
             .and_then(|()| self.surface_fits())
             .and_then(|()| self.parts_fit(before))
-            .and_then(|()| homes())
+            .and_then(|()| attachments())
             .and_then(|()| values())
             .and_then(|()| self.shape_fits())
     }
@@ -86,20 +86,20 @@ impl Document {
         self.shape_fits_in(free_bytes()).map_err(|why| format!("Too large: {why}."))
     }
 
-    /// Whether every home is the canvas or one of the parts.
-    fn homes_fit(&self) -> Result<(), String> {
-        let known = |home: &HomeFrame| match home.part() {
+    /// Whether every attachment is the canvas or one of the parts.
+    fn attachments_fit(&self) -> Result<(), String> {
+        let known = |attachment: &Attachment| match attachment.part() {
             Some(id) if self.parts.part(id).is_none() => {
                 Err(format!("is attached to “{id}”, but there is no such part"))
             }
             _ => Ok(()),
         };
         let of_strokes = |layer: &Layer| match &layer.content {
-            Content::Strokes(live) if layer.content.has_homes() => {
+            Content::Strokes(live) if layer.content.has_attachments() => {
                 live.params().strokes.iter().try_for_each(|stroke| {
-                    let Some(home) = stroke.home() else { return Ok(()) };
-                    known(&home.frame)?;
-                    let shape = TransformShape::Matrix(home.own);
+                    let Some(attachment) = stroke.attachment() else { return Ok(()) };
+                    known(&attachment.frame)?;
+                    let shape = TransformShape::Matrix(attachment.own);
                     LayerTransform { shape, filter: Resampling::default() }.fits()
                 })
             }

@@ -5,8 +5,8 @@
 pub mod singles;
 
 use super::compose::Composer;
-use super::deep::{DeepTiles, Highlights};
 use super::far_side::FarTile;
+use super::floats::{FloatTiles, Highlights};
 use super::progress::in_parallel;
 use super::{Content, Document, Group, Layer, LayerId, PreparedDocument, Progress, mask};
 use crate::memory::filled_or_unwind;
@@ -20,23 +20,23 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
 }
 
 /// Tiles in f32 that are held besides a picture that is composed in floats.
-const DEEP_AT_A_TIME: usize = 256;
+const FLOATS_AT_A_TIME: usize = 256;
 
 /// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row;
 /// colors are above their alpha where `highlights` are kept. `None` if canceled.
-pub fn flatten_deep(
+pub fn flatten_to_floats(
     document: &Document,
     highlights: Highlights,
     progress: &Progress,
 ) -> Option<Vec<[f32; 4]>> {
     let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
-    let mut deep = DeepTiles::new(&prepared, highlights);
+    let mut floats = FloatTiles::new(&prepared, highlights);
     let canvas = document.size.rect();
     let mut pixels = filled_or_unwind(document.size.area(), [0.0; 4]);
-    for part in tiles.chunks(DEEP_AT_A_TIME) {
-        deep.render(&prepared, part, progress);
-        let composed = in_parallel(part, progress, |at| prepared.compose_tile(at, Some(&deep)))?;
+    for part in tiles.chunks(FLOATS_AT_A_TIME) {
+        floats.render(&prepared, part, progress);
+        let composed = in_parallel(part, progress, |at| prepared.compose_tile(at, Some(&floats)))?;
         for (at, tile) in part.iter().zip(composed) {
             let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
             for (y, row) in (inside.y0..inside.y1).zip(tile.rows()) {
@@ -57,8 +57,8 @@ pub fn flatten_rounding_once(document: &Document, progress: &Progress) -> Option
         return flatten(document, progress);
     }
     let prepared = PreparedDocument::new(document, progress)?;
-    flatten_in_floats(&prepared, document, progress, |at, deep| {
-        prepared.compose_tile(at, Some(deep)).quantized().map(Arc::new)
+    flatten_in_floats(&prepared, document, progress, |at, floats| {
+        prepared.compose_tile(at, Some(floats)).quantized().map(Arc::new)
     })
 }
 
@@ -67,14 +67,14 @@ fn flatten_in_floats(
     prepared: &PreparedDocument,
     document: &Document,
     progress: &Progress,
-    tile: impl Fn(TileAt, &DeepTiles) -> Option<Arc<Tile>> + Sync,
+    tile: impl Fn(TileAt, &FloatTiles) -> Option<Arc<Tile>> + Sync,
 ) -> Option<TileGrid> {
     let tiles = prepared.all_tiles();
-    let mut deep = DeepTiles::new(prepared, Highlights::Clipped);
+    let mut floats = FloatTiles::new(prepared, Highlights::Clipped);
     let mut grid = TileGrid::for_rect(document.size.rect());
-    for part in tiles.chunks(DEEP_AT_A_TIME) {
-        deep.render(prepared, part, progress);
-        let composed = in_parallel(part, progress, |at| tile(at, &deep))?;
+    for part in tiles.chunks(FLOATS_AT_A_TIME) {
+        floats.render(prepared, part, progress);
+        let composed = in_parallel(part, progress, |at| tile(at, &floats))?;
         part.iter().zip(composed).for_each(|(at, tile)| grid.set(*at, tile));
     }
     Some(grid)
@@ -85,7 +85,7 @@ fn flatten_in_floats(
 /// are seen. `None` if canceled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
-    flatten_in_floats(&prepared, document, progress, |at, deep| prepared.paint_tile(at, deep))
+    flatten_in_floats(&prepared, document, progress, |at, floats| prepared.paint_tile(at, floats))
 }
 
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of
@@ -142,12 +142,12 @@ fn without_others(document: &Document, ids: &[LayerId]) -> Option<Document> {
 fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<Vec<Arc<Layer>>> {
     let (mut found, mut base_is_shown) = (false, false);
     let shown = layers.iter().filter_map(|layer| {
-        let is_chosen = ids.contains(&layer.id);
+        let is_shown = ids.contains(&layer.id);
         let clip_below = layer.clip_below && base_is_shown;
         if !layer.clip_below && !layer.content.is_shaping_surface() {
-            base_is_shown = is_chosen;
+            base_is_shown = is_shown;
         }
-        if is_chosen {
+        if is_shown {
             found = true;
             return Some(Arc::new(Layer { visible: true, clip_below, ..Layer::clone(layer) }));
         }
@@ -185,7 +185,8 @@ impl PreparedDocument {
         if self.contours.as_ref().is_some_and(|contours| contours.on(at).is_some()) {
             return None;
         }
-        Composer { prepared: self, at, far: None, sought: None, deep: None }.only_tile(&self.stack)
+        Composer { prepared: self, at, far: None, sought: None, floats: None }
+            .only_tile(&self.stack)
     }
 
     /// Every tile is that of the one layer, a fill that nothing cuts: tiles can share their pixels.
@@ -198,23 +199,24 @@ impl PreparedDocument {
 
     /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft, or shows a
     /// picture that has them.
-    fn paint_tile(&self, at: TileAt, deep: &DeepTiles) -> Option<Arc<Tile>> {
-        let alone = self.alone_in_tile(at).filter(|tile| tile.is_deep());
-        let was_deep =
-            || self.stack.iter().any(|node| node.has_deep_paint(at) || node.has_deep_picture(at));
+    fn paint_tile(&self, at: TileAt, floats: &FloatTiles) -> Option<Arc<Tile>> {
+        let alone = self.alone_in_tile(at).filter(|tile| tile.is_16_bit());
+        let was_16_bit = || {
+            self.stack.iter().any(|node| node.has_16_bit_paint(at) || node.has_16_bit_picture(at))
+        };
         let soft = || {
-            self.compose_tile(at, Some(deep))
-                .to_tile(was_deep())
-                .filter(Tile::is_deep)
+            self.compose_tile(at, Some(floats))
+                .to_tile(was_16_bit())
+                .filter(Tile::is_16_bit)
                 .map(Arc::new)
         };
         alone.or_else(soft).or_else(|| self.flatten_tile(at))
     }
 
-    fn compose_tile(&self, at: TileAt, deep: Option<&DeepTiles>) -> PlanarTile {
+    fn compose_tile(&self, at: TileAt, floats: Option<&FloatTiles>) -> PlanarTile {
         // No adjustment is sought, so composing runs to its end.
         let composed = |far: Option<FarTile>| {
-            let composer = Composer { prepared: self, at, far, sought: None, deep };
+            let composer = Composer { prepared: self, at, far, sought: None, floats };
             let mut pixels = composer.blank();
             let _ = composer.stack(&self.stack, &mut pixels);
             pixels
@@ -224,7 +226,9 @@ impl PreparedDocument {
             let far = FarTile::new(at, contours);
             let other = composed(Some(far));
             match self.whole_rims {
-                false => far.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest)),
+                false => {
+                    far.mix_into(&other, &mut pixels, floats.map_or(1.0, FloatTiles::brightest))
+                }
                 true => far.take_surface_into(&other, &mut pixels),
             }
         }

@@ -66,15 +66,18 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
     };
     match &layer.content {
         Content::Pixels(pixels) => FrameBox::of(painted(&pixels.tiles)),
-        Content::Strokes(live) if !layer.content.has_homes() => {
+        Content::Strokes(live) if !layer.content.has_attachments() => {
             FrameBox::of(live.painted_box(scene, || painted_by_strokes(live, scene)))
         }
-        // Content with a home of its own takes whole tiles.
+        // Content with an attachment of its own takes whole tiles.
         Content::Strokes(live) => {
-            let box_of = |stroke: &Arc<Stroke>| {
-                let inner = FrameBox::of(stroke.bounds(scene))?;
-                Some(stroke.home().map_or(inner, |home| within(inner, &map.of_stroke(home).plane)))
-            };
+            let box_of =
+                |stroke: &Arc<Stroke>| {
+                    let inner = FrameBox::of(stroke.bounds(scene))?;
+                    Some(stroke.attachment().map_or(inner, |attachment| {
+                        within(inner, &map.of_stroke(attachment).plane)
+                    }))
+                };
             live.params().strokes.iter().filter_map(box_of).reduce(FrameBox::around)
         }
         Content::Group(group) => {

@@ -37,7 +37,7 @@ impl Histogram {
         let step = tiles.len().div_ceil(Self::MOST_TILES).max(1);
         let some: Vec<TileAt> = tiles.into_iter().step_by(step).collect();
         let of_tile = |at| {
-            let composer = Composer { prepared: &prepared, at, far: None, sought, deep: None };
+            let composer = Composer { prepared: &prepared, at, far: None, sought, floats: None };
             let mut counts = Self::default();
             if let ComposeFlow::Break(beneath) =
                 composer.stack(&prepared.stack, &mut PlanarTile::transparent())

@@ -29,7 +29,7 @@ pub use warp::LayerWarp;
 
 use crate::math::srgb::Color;
 use crate::math::{PlaneMap, Range, Size, UNIT};
-use crate::paint::HomeFrame;
+use crate::paint::Attachment;
 use crate::raster::{BlendMode, Lattice};
 use crate::shape::flats::lifted_ink::LiftedInk;
 use std::sync::Arc;
@@ -80,7 +80,7 @@ pub struct Layer {
     pub liquify: Option<Arc<Lattice>>,
     /// The part of the shape that carries it, after its own transform; absent: what carries the
     /// group around it, or the canvas.
-    pub on: Option<HomeFrame>,
+    pub on: Option<Attachment>,
     /// What it holds.
     pub content: Content,
     /// Its ink, if an ink layer shows that; what is left is shown here. No part of the document's

@@ -90,7 +90,7 @@ impl Meter<'_> {
     /// One tile of it.
     fn tile(&self, at: TileAt) -> Option<PlanarTile> {
         let sought = Some(self.prepared.beneath.len());
-        let composer = Composer { prepared: self.prepared, at, far: None, sought, deep: None };
+        let composer = Composer { prepared: self.prepared, at, far: None, sought, floats: None };
         match composer.stack(&self.prepared.stack, &mut PlanarTile::transparent()) {
             ComposeFlow::Break(beneath) => Some(beneath),
             ComposeFlow::Continue(()) => None,

@@ -183,7 +183,7 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
 /// What differs in how two layers meet what is around them.
 fn meeting(a: &Layer, b: &Layer) -> Option<&'static str> {
     // The place of a part belongs to the part.
-    let on = |l: &Layer| l.on.as_ref().map(|home| home.part.clone());
+    let on = |l: &Layer| l.on.as_ref().map(|attachment| attachment.part.clone());
     let each = [
         ("visibility", a.visible == b.visible),
         ("opacity", a.opacity == b.opacity),
@@ -193,7 +193,7 @@ fn meeting(a: &Layer, b: &Layer) -> Option<&'static str> {
         ("label", a.label == b.label),
         ("transform", a.transform == b.transform),
         ("liquify", a.liquify == b.liquify),
-        ("home", on(a) == on(b)),
+        ("attachment", on(a) == on(b)),
     ];
     each.into_iter().find(|(_, is_same)| !is_same).map(|(what, _)| what)
 }
@@ -267,13 +267,15 @@ fn is_same_selection(a: &Stroke, b: &Stroke) -> bool {
 }
 
 fn are_same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
-    let home = |stroke: &Stroke| stroke.home().map(|home| (home.frame.part.clone(), home.own));
+    let attachment = |stroke: &Stroke| {
+        stroke.attachment().map(|attachment| (attachment.frame.part.clone(), attachment.own))
+    };
     let same = |(a, b): (&Arc<Stroke>, &Arc<Stroke>)| {
         Arc::ptr_eq(a, b)
             || (a.operator(), a.color()) == (b.operator(), b.color())
                 && a.samples() == b.samples()
                 && is_same_selection(a, b)
-                && home(a) == home(b)
+                && attachment(a) == attachment(b)
                 && a.brush() == b.brush()
     };
     a.strokes.len() == b.strokes.len() && a.strokes.iter().zip(&b.strokes).all(same)

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_a_chosen_group_goes_with_it() {
+    fn what_stands_in_a_selected_group_moves_with_it() {
         let document = document();
         let outer = document.outermost(&ids(&document, "ecga"));
         assert_eq!(outer, ids(&document, "age"), "bottom first, without c");

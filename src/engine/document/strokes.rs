@@ -22,7 +22,8 @@ impl Document {
         }
     }
 
-    /// The same where they show: through the transforms and homes of the layer and of each stroke.
+    /// The same where they show: through the transforms and attachments of the layer and of each
+    /// stroke.
     pub fn strokes_on_canvas(&self, layer: LayerId) -> Vec<Arc<Stroke>> {
         let found = self.layer(layer).zip(self.map_of(layer));
         match found
@@ -38,11 +39,11 @@ impl Document {
     pub fn with_each_stroke(
         &self,
         layer: LayerId,
-        chosen: &[usize],
+        selected: &[usize],
         change: impl Fn(&Stroke) -> Stroke,
     ) -> Option<Document> {
         self.with_strokes(layer, |strokes| {
-            for &index in in_order(chosen, strokes)?.iter() {
+            for &index in in_order(selected, strokes)?.iter() {
                 strokes[index] = Arc::new(change(&strokes[index]));
             }
             Some(())
@@ -66,16 +67,16 @@ impl Document {
     pub fn with_moved_strokes(
         &self,
         layer: LayerId,
-        chosen: &[usize],
+        selected: &[usize],
         by: Vec2,
     ) -> Option<Document> {
-        self.with_each_stroke(layer, chosen, |stroke| stroke.moved(by))
+        self.with_each_stroke(layer, selected, |stroke| stroke.moved(by))
     }
 
     /// Without some strokes of a layer; `None` if nothing changes.
-    pub fn without_strokes(&self, layer: LayerId, chosen: &[usize]) -> Option<Document> {
+    pub fn without_strokes(&self, layer: LayerId, selected: &[usize]) -> Option<Document> {
         self.with_strokes(layer, |strokes| {
-            for &index in in_order(chosen, strokes)?.iter().rev() {
+            for &index in in_order(selected, strokes)?.iter().rev() {
                 strokes.remove(index);
             }
             Some(())
@@ -86,12 +87,12 @@ impl Document {
     pub fn with_copied_strokes(
         &self,
         layer: LayerId,
-        chosen: &[usize],
+        selected: &[usize],
         by: Vec2,
     ) -> Option<(Document, Vec<usize>)> {
         let mut copies = Vec::new();
         let next = self.with_strokes(layer, |strokes| {
-            for (before, &index) in in_order(chosen, strokes)?.iter().enumerate() {
+            for (before, &index) in in_order(selected, strokes)?.iter().enumerate() {
                 // The copies so far lie below.
                 let index = index + before;
                 strokes.insert(index + 1, Arc::new(strokes[index].moved(by)));
@@ -127,20 +128,20 @@ impl Document {
     pub fn with_baked_strokes(
         &self,
         layer: LayerId,
-        chosen: &[usize],
+        selected: &[usize],
     ) -> Option<(Document, LayerId)> {
         let all = self.strokes(layer);
-        let chosen = in_order(chosen, all)?;
+        let selected = in_order(selected, all)?;
         let are_lowest =
-            chosen.iter().enumerate().all(|(i, &index)| i == index) && chosen.len() < all.len();
-        let strokes = chosen.iter().filter_map(|&index| all.get(index).cloned()).collect();
+            selected.iter().enumerate().all(|(i, &index)| i == index) && selected.len() < all.len();
+        let strokes = selected.iter().filter_map(|&index| all.get(index).cloned()).collect();
         let bare = self.with_layer(layer, |layer| {
             layer.content = Content::Strokes(Live::new(StrokeList { strokes }));
             (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) =
                 (1.0, None, Default::default(), false);
         })?;
         let tiles = flatten_to_paint(&bare.with_only(&[layer])?, &Progress::default())?;
-        let left = self.without_strokes(layer, &chosen)?;
+        let left = self.without_strokes(layer, &selected)?;
         let old = self.layer(layer)?;
         let pixels = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
         let name = format!("{} baked", old.name);
@@ -174,8 +175,8 @@ impl Document {
 }
 
 /// Positions in rising order, each once; `None` if one does not exist, or there are none.
-fn in_order(chosen: &[usize], strokes: &[Arc<Stroke>]) -> Option<Vec<usize>> {
-    let places: BTreeSet<usize> = chosen.iter().copied().collect();
+fn in_order(selected: &[usize], strokes: &[Arc<Stroke>]) -> Option<Vec<usize>> {
+    let places: BTreeSet<usize> = selected.iter().copied().collect();
     let all_there = places.last().is_some_and(|&last| last < strokes.len());
     all_there.then(|| places.into_iter().collect())
 }
@@ -307,10 +308,10 @@ mod tests {
     fn baked_strokes_look_as_they_did_and_the_lowest_go_beneath() {
         let (old, id) = document();
         let before = picture(&old);
-        for (chosen, place) in [(vec![0, 1], 0), (vec![2, 3], 1), (vec![0, 1, 2, 3], 1)] {
-            let (baked, pixels) = old.with_baked_strokes(id, &chosen).unwrap();
+        for (selected, place) in [(vec![0, 1], 0), (vec![2, 3], 1), (vec![0, 1, 2, 3], 1)] {
+            let (baked, pixels) = old.with_baked_strokes(id, &selected).unwrap();
             assert_eq!(baked.place_of(pixels), Some(LayerSlot::top_level(place)));
-            assert_eq!(baked.strokes(id).len(), 4 - chosen.len());
+            assert_eq!(baked.strokes(id).len(), 4 - selected.len());
             let now = picture(&baked);
             let apart = now.iter().zip(&before).map(|(a, b)| a.abs_diff(*b)).max();
             // Rims are rounded to bytes once more.

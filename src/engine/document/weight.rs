@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// For a tile, bytes a pixel.
 const TILE_BYTES: u64 = Tile::most_bytes_a_pixel(false);
 /// For a tile of 16 bits, bytes a pixel.
-const DEEP_TILE_BYTES: u64 = Tile::most_bytes_a_pixel(true);
+const TILE16_BYTES: u64 = Tile::most_bytes_a_pixel(true);
 /// A tensor of curvature, and the map of κ made of it, bytes a pixel.
 const CURVATURE_BYTES: u64 = 14;
 /// Blurred normals and what lines are traced in, bytes a pixel.
@@ -43,7 +43,7 @@ impl Document {
     /// Bytes that [`flatten_to_paint`](super::flatten_to_paint) takes at most: as flattening, with
     /// the textures that images are read from, and a picture of 16 bits.
     pub fn painting_bytes(&self) -> u64 {
-        self.flattening_bytes() + self.deep_bytes() + self.size.area() as u64 * DEEP_TILE_BYTES
+        self.flattening_bytes() + self.float_bytes() + self.size.area() as u64 * TILE16_BYTES
     }
 
     /// What the other sides of contour pixels take: their readings, and the pixels of live
@@ -72,8 +72,11 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
         _ => 0,
     };
     // What it is sampled from, and what it shows.
-    let is_deep = matches!(&layer.content, Content::Pixels(pixels) if pixels.tiles.is_deep_in(pixels.tiles.bounds()));
-    let tile_bytes = if is_deep { DEEP_TILE_BYTES } else { TILE_BYTES };
+    let is_16_bit = match &layer.content {
+        Content::Pixels(pixels) => pixels.tiles.is_16_bit_in(pixels.tiles.bounds()),
+        _ => false,
+    };
+    let tile_bytes = if is_16_bit { TILE16_BYTES } else { TILE_BYTES };
     let warped = if layer.is_warped() { 2 * area * tile_bytes } else { 0 };
     mask + warped
         + match &layer.content {

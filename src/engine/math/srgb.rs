@@ -116,7 +116,7 @@ pub fn quantize(value: f32) -> u8 {
 
 /// The same to 16 bits.
 #[inline(always)]
-pub fn quantize_deep(value: f32) -> u16 {
+pub fn quantize16(value: f32) -> u16 {
     let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 65535.0 + 0.5;
     // SAFETY: in [0.5, 65535.5] by the line above: at this size a float still holds halves.
     unsafe { scaled.to_int_unchecked::<i32>() as u16 }
@@ -257,8 +257,8 @@ mod tests {
 
     #[test]
     fn values_of_16_bits_are_their_own() {
-        assert!((0..=u16::MAX).all(|v| quantize_deep(f32::from(v) / 65535.0) == v));
-        assert_eq!([f32::NAN, -1.0, 7.0].map(quantize_deep), [0, 0, 65535]);
+        assert!((0..=u16::MAX).all(|v| quantize16(f32::from(v) / 65535.0) == v));
+        assert_eq!([f32::NAN, -1.0, 7.0].map(quantize16), [0, 0, 65535]);
     }
 
     #[test]

@@ -66,10 +66,10 @@ impl Adjust {
 
     /// The texels of the adjusted picture without rounding, from 16 bits if it has them: straight,
     /// encoded, with light that is brighter than white above 1.
-    pub fn apply_deep(&self, picture: &Picture) -> Vec<[f32; 4]> {
+    pub fn apply_in_floats(&self, picture: &Picture) -> Vec<[f32; 4]> {
         let is_linear = matches!(picture.texels, Texels::Linear(_));
-        let mut texels = match &picture.deep {
-            Some(deep) => deep.iter().map(|t| t.map(|v| f32::from(v) / 65535.0)).collect(),
+        let mut texels = match &picture.texels16 {
+            Some(texels16) => texels16.iter().map(|t| t.map(|v| f32::from(v) / 65535.0)).collect(),
             None => floats(&picture.texels),
         };
         if *self != Self::default() {

@@ -1,7 +1,7 @@
 //! The image tool: a whole picture bent over the surface (SF sec. 5.2).
-//! Floor 3. Here: rendered as bytes. Without rounding: `deep`.
+//! Floor 3. Here: rendered as bytes. Without rounding: `floats`.
 
-mod deep;
+mod floats;
 
 use super::{
     adjust::Adjust,
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::sampler::{Antialias, Bilinear, TapRule};
-use crate::raster::{DeepTexture, Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
+use crate::raster::{FloatTexture, Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
 use crate::surface::{Bend, Deformation, deformation::DeformedRect};
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, OnceLock, Weak};
@@ -116,7 +116,7 @@ struct DerivedTextures {
     /// The texture of a drawing that is drawn 2, 4 and 8 times as large; `None` where it cannot be.
     enlarged: [OnceLock<Option<Texture>>; 3],
     /// The texture in floats, as long as it is in use.
-    deep: Mutex<Weak<DeepTexture>>,
+    floats: Mutex<Weak<FloatTexture>>,
     /// The stamps made from it if it is a brush's tip.
     stamps: StampCache,
 }

@@ -77,7 +77,7 @@ impl Stroke {
             self.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
         Stroke::new(self.brush().clone(), self.operator(), self.color(), samples)
             .within(self.selection().map(|selection| selection.moved(by)))
-            .on(self.home().cloned())
+            .on(self.attachment().cloned())
     }
 
     /// The same stroke within another selection, or within none.
@@ -88,7 +88,7 @@ impl Stroke {
     /// The stroke where a map takes its samples: `place` gives the new place of a point (`None`:
     /// nowhere), `length` how much longer lengths become there, `turn` how directions turn there
     /// (an orthogonal matrix). Its brush grows by the mean over the remaining samples and faces as
-    /// at the first of them; the pen's tilt turns too. It has no home and no selection.
+    /// at the first of them; the pen's tilt turns too. It has no attachment and no selection.
     pub fn mapped(
         &self,
         place: &dyn Fn(Vec2) -> Option<Vec2>,
@@ -129,7 +129,7 @@ impl Stroke {
     pub fn with_brush(&self, brush: Brush) -> Stroke {
         Stroke::new(brush, self.operator(), self.color(), self.samples().to_vec())
             .within(self.selection().cloned())
-            .on(self.home().cloned())
+            .on(self.attachment().cloned())
     }
 }
 

@@ -120,7 +120,7 @@ fn transparent() -> Picture {
     Picture {
         size: Size::new(1, 1),
         texels: crate::raster::picture::Texels::Srgb8(texels),
-        deep: None,
+        texels16: None,
         encoded: None,
         drawing: None,
     }

@@ -8,10 +8,10 @@ mod many;
 pub use active::{ActiveStrokes, Backdrop};
 pub use many::{are_heavy, render_many, render_tiles};
 
+use super::attachment::StrokeAttachment;
 use super::brush::Brush;
 use super::dab::DabScratch;
 use super::dab_walker;
-use super::home::StrokeHome;
 use super::sample::Sample;
 use super::scene::Scene;
 use super::selection::StrokeSelection;
@@ -34,8 +34,8 @@ pub struct Stroke {
     samples: Vec<Sample>,
     /// Where it may paint; absent: everywhere.
     selection: Option<StrokeSelection>,
-    /// Its home, if it differs from its layer's.
-    home: Option<Arc<StrokeHome>>,
+    /// Its attachment, if it differs from its layer's.
+    attachment: Option<Arc<StrokeAttachment>>,
     found: Arc<Mutex<StrokeCache>>,
 }
 
@@ -55,7 +55,15 @@ impl Stroke {
     /// The stroke of a brush along the samples of a pen, each dab bent by an operator around its
     /// own center.
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
-        Self { brush, operator, color, samples, selection: None, home: None, found: Arc::default() }
+        Self {
+            brush,
+            operator,
+            color,
+            samples,
+            selection: None,
+            attachment: None,
+            found: Arc::default(),
+        }
     }
 
     /// The same stroke within a selection, or within none.
@@ -63,19 +71,19 @@ impl Stroke {
         Self { selection, ..self }
     }
 
-    /// The same stroke with the same appearance, on another home.
-    pub fn on(self, home: Option<Arc<StrokeHome>>) -> Self {
-        Self { home, ..self }
+    /// The same stroke with the same appearance, on another attachment.
+    pub fn on(self, attachment: Option<Arc<StrokeAttachment>>) -> Self {
+        Self { attachment, ..self }
     }
 
-    /// A copy on a home in another position.
-    pub fn moved_home(&self, home: Arc<StrokeHome>) -> Self {
-        Self { home: Some(home), ..self.clone() }
+    /// A copy on an attachment in another position.
+    pub fn with_moved_attachment(&self, attachment: Arc<StrokeAttachment>) -> Self {
+        Self { attachment: Some(attachment), ..self.clone() }
     }
 
-    /// Its own home, if that differs from its layer's.
-    pub fn home(&self) -> Option<&Arc<StrokeHome>> {
-        self.home.as_ref()
+    /// Its own attachment, if that differs from its layer's.
+    pub fn attachment(&self) -> Option<&Arc<StrokeAttachment>> {
+        self.attachment.as_ref()
     }
 
     /// The brush that it was painted with.

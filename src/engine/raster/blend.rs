@@ -9,7 +9,7 @@ mod rows;
 pub mod spec;
 
 use super::planar::{PlanarTile, sane};
-use super::tile::deep::DeepRow;
+use super::tile::sixteen_bit::Row16;
 use super::tile::{TILE_AREA, Tile, TileAt};
 pub use modes::{BlendMode, blend_pixel};
 
@@ -42,7 +42,7 @@ pub enum TilePaint<'a> {
     /// Premultiplied bytes, row by row; one row for each that is painted on.
     Bytes(&'a [u8]),
     /// Premultiplied rows of 16 bits; one for each that is painted on.
-    Deep(&'a [DeepRow]),
+    Rows16(&'a [Row16]),
     /// Premultiplied floats.
     Planar(&'a PlanarTile),
 }
@@ -50,7 +50,7 @@ pub enum TilePaint<'a> {
 impl<'a> TilePaint<'a> {
     /// Everything that a tile holds.
     pub fn of(tile: &'a Tile) -> Self {
-        tile.deep().map_or_else(|| TilePaint::Bytes(tile.bytes()), TilePaint::Deep)
+        tile.rows16().map_or_else(|| TilePaint::Bytes(tile.bytes()), TilePaint::Rows16)
     }
 }
 

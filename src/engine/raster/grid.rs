@@ -6,7 +6,7 @@ mod straight;
 
 pub use straight::{premultiply, unpremultiply};
 
-use super::tile::deep::{self, DeepRow};
+use super::tile::sixteen_bit::{self, Row16};
 use super::tile::{TILE, Tile, TileAt};
 use crate::math::Rect;
 use std::sync::Arc;
@@ -162,11 +162,11 @@ impl Grid<Tile> {
             let (tile, area) = (at.rect(), at.rect().intersect(line));
             let to = &mut row[(area.x0 - x0) as usize..][..area.width()];
             match self.tile(at) {
-                Some(held) if held.is_deep() => {
+                Some(held) if held.is_16_bit() => {
                     let pixels = to.iter_mut().zip((area.x0 - tile.x0) as usize..);
                     let row = (y - tile.y0) as usize;
                     pixels.for_each(|(to, x)| {
-                        *to = held.deep_pixel(x, row).map(|v| f32::from(v) / 257.0)
+                        *to = held.pixel16(x, row).map(|v| f32::from(v) / 257.0)
                     });
                 }
                 Some(held) => {
@@ -185,13 +185,13 @@ impl Grid<Tile> {
         for (at, tile) in other.iter() {
             let joined = match self.tile(at) {
                 None => Some(tile.clone()),
-                Some(own) if own.is_deep() || tile.is_deep() => {
-                    let mut both = own.deep_rows();
+                Some(own) if own.is_16_bit() || tile.is_16_bit() => {
+                    let mut both = own.to_rows16();
                     let values = both.as_flattened_mut().as_flattened_mut().iter_mut();
                     values
-                        .zip(tile.deep_rows().as_flattened().as_flattened())
+                        .zip(tile.to_rows16().as_flattened().as_flattened())
                         .for_each(|(a, b)| *a |= b);
-                    Tile::from_deep(both).map(Arc::new)
+                    Tile::from_rows16(both).map(Arc::new)
                 }
                 Some(own) => {
                     let both = own.bytes().iter().zip(tile.bytes()).map(|(a, b)| a | b).collect();
@@ -209,24 +209,24 @@ impl Grid<Tile> {
     }
 
     /// A tile that a rectangle touches holds more than bytes can.
-    pub fn is_deep_in(&self, rect: Rect) -> bool {
-        self.iter().any(|(at, tile)| tile.is_deep() && !at.rect().intersect(rect).is_empty())
+    pub fn is_16_bit_in(&self, rect: Rect) -> bool {
+        self.iter().any(|(at, tile)| tile.is_16_bit() && !at.rect().intersect(rect).is_empty())
     }
 
     /// The same pixels in 8 bits everywhere; what is fainter than that is gone.
     pub fn rounded(&self) -> TileGrid {
         let mut grid = self.clone();
-        for (at, tile) in self.iter().filter(|(_, tile)| tile.is_deep()) {
+        for (at, tile) in self.iter().filter(|(_, tile)| tile.is_16_bit()) {
             grid.set(at, Tile::from_pixels(tile.bytes().to_vec()).map(Arc::new));
         }
         grid
     }
 
     /// A premultiplied pixel of 16 bits; transparent where there is no tile.
-    pub fn deep_pixel(&self, x: i32, y: i32) -> [u16; 4] {
+    pub fn pixel16(&self, x: i32, y: i32) -> [u16; 4] {
         let at = TileAt::of_pixel(x, y);
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
-        self.tile(at).map_or([0; 4], |tile| tile.deep_pixel(x, y))
+        self.tile(at).map_or([0; 4], |tile| tile.pixel16(x, y))
     }
 
     /// A premultiplied pixel; transparent where there is no tile.
@@ -251,15 +251,15 @@ impl Grid<Tile> {
                 moved(from.x1, -dx),
                 moved(from.y1, -dy),
             );
-            let tile = if self.is_deep_at(from) { self.deep_block(from) } else { self.block(from) };
+            let tile = if self.is_16_bit_at(from) { self.block16(from) } else { self.block(from) };
             grid.set(at, tile.map(Arc::new));
         }
         grid
     }
 
-    /// [`TileGrid::is_deep_in`] for a rectangle of few tiles.
-    pub fn is_deep_at(&self, rect: Rect) -> bool {
-        TileAt::covering(rect).any(|at| self.tile(at).is_some_and(|tile| tile.is_deep()))
+    /// [`TileGrid::is_16_bit_in`] for a rectangle of few tiles.
+    pub fn is_16_bit_at(&self, rect: Rect) -> bool {
+        TileAt::covering(rect).any(|at| self.tile(at).is_some_and(|tile| tile.is_16_bit()))
     }
 
     /// A square of a tile's size at any position, as a tile; copied as bytes.
@@ -279,21 +279,21 @@ impl Grid<Tile> {
     }
 
     /// The same in 16 bits.
-    fn deep_block(&self, from: Rect) -> Option<Tile> {
-        let mut rows = deep::clear_rows();
+    fn block16(&self, from: Rect) -> Option<Tile> {
+        let mut rows = sixteen_bit::clear_rows();
         for (tile, area, source) in self.parts(from) {
-            let held = tile.deep_rows();
+            let held = tile.to_rows16();
             let (read, write) =
                 ((area.x0 - source.rect().x0) as usize, (area.x0 - from.x0) as usize);
             for y in area.y0..area.y1 {
-                let own: &DeepRow = &held[(y - source.rect().y0) as usize];
+                let own: &Row16 = &held[(y - source.rect().y0) as usize];
                 for (to, own) in rows[(y - from.y0) as usize].iter_mut().zip(own) {
                     to[write..write + area.width()]
                         .copy_from_slice(&own[read..read + area.width()]);
                 }
             }
         }
-        Tile::from_deep(rows)
+        Tile::from_rows16(rows)
     }
 
     /// The tiles under a rectangle, and the part of it on each.

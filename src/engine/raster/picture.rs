@@ -2,7 +2,7 @@
 //! Floor 1. Reading files is `io::picture`'s work.
 
 use super::Asset;
-use super::tile::deep::byte_of;
+use super::tile::sixteen_bit::byte_of;
 use crate::math::{Size, Vec2, srgb, vec2};
 use std::fmt;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub struct Picture {
     pub texels: Texels,
     /// What the bytes were rounded from, if a file holds 16 bits a channel: straight, encoded, one
     /// for each texel.
-    pub deep: Option<Arc<[[u16; 4]]>>,
+    pub texels16: Option<Arc<[[u16; 4]]>>,
     /// The file it was decoded from, so that a project can keep the original bytes; `None` for a
     /// picture made here.
     pub encoded: Option<Asset>,
@@ -55,12 +55,12 @@ impl PartialEq for Texels {
 impl PartialEq for Picture {
     /// The same texels, from any file.
     fn eq(&self, other: &Self) -> bool {
-        let same_deep = match (&self.deep, &other.deep) {
+        let is_same16 = match (&self.texels16, &other.texels16) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a == b,
             (None, None) => true,
             _ => false,
         };
-        self.size == other.size && self.texels == other.texels && same_deep
+        self.size == other.size && self.texels == other.texels && is_same16
     }
 }
 
@@ -79,9 +79,9 @@ impl Picture {
     }
 
     /// As [`Picture::srgb8`], of 16 bits a channel: its bytes are these, rounded.
-    pub fn srgb16(size: Size, deep: Vec<[u16; 4]>) -> Option<Self> {
-        let bytes = deep.iter().map(|texel| texel.map(byte_of)).collect();
-        Some(Self { deep: Some(deep.into()), ..Self::srgb8(size, bytes)? })
+    pub fn srgb16(size: Size, texels16: Vec<[u16; 4]>) -> Option<Self> {
+        let bytes = texels16.iter().map(|texel| texel.map(byte_of)).collect();
+        Some(Self { texels16: Some(texels16.into()), ..Self::srgb8(size, bytes)? })
     }
 
     /// As [`Picture::srgb8`]; NaN and negative light become 0, infinite light the largest half
@@ -99,7 +99,7 @@ impl Picture {
     }
 
     fn of_texels(size: Size, texels: Texels) -> Self {
-        Self { size, texels, deep: None, encoded: None, drawing: None }
+        Self { size, texels, texels16: None, encoded: None, drawing: None }
     }
 
     /// The sides at which it is seen at 100 %, px: of a drawing its own, however large it was drawn.
@@ -119,8 +119,8 @@ impl Picture {
     }
 
     /// It holds more than 8 bits a channel.
-    pub fn is_deep(&self) -> bool {
-        self.deep.is_some() || matches!(self.texels, Texels::Linear(_))
+    pub fn is_16_bit(&self) -> bool {
+        self.texels16.is_some() || matches!(self.texels, Texels::Linear(_))
     }
 
     /// Where its texels are in memory: the same for pictures that share them.
@@ -137,8 +137,8 @@ impl Picture {
             Texels::Srgb8(_) => size_of::<[u8; 4]>(),
             Texels::Linear(_) => size_of::<[f32; 4]>(),
         };
-        let deep = self.deep.as_ref().map_or(0, |_| size_of::<[u16; 4]>());
-        self.size.area() * (texel + deep)
+        let texels16 = self.texels16.as_ref().map_or(0, |_| size_of::<[u16; 4]>());
+        self.size.area() * (texel + texels16)
     }
 
     /// Linear light of one texel, straight alpha.

@@ -2,7 +2,7 @@
 //! row separate so that loops over a row need no shuffles. Floor 1. Stored pixels are `tile`; how
 //! they mix is `blend`.
 
-use super::tile::deep::{self, DeepRow};
+use super::tile::sixteen_bit::{self, Row16};
 use super::tile::{TILE, TILE_AREA, Tile, TileF32};
 use crate::math::srgb::quantize;
 
@@ -125,25 +125,25 @@ impl PlanarTile {
         Tile::from_bytes(bytes)
     }
 
-    /// As a paint layer keeps it, painted on `was`: rounded to 16 bits if it is soft
-    /// ([`deep::is_soft`]) or had them before, else to bytes. `None` if the tile is wholly
+    /// As a paint layer keeps it, painted on `was`: rounded to 16 bits if it is smooth
+    /// ([`sixteen_bit::is_smooth`]) or had them before, else to bytes. `None` if the tile is wholly
     /// transparent.
     pub fn to_tile_over(&self, was: Option<&Tile>) -> Option<Tile> {
-        self.to_tile(was.is_some_and(Tile::is_deep))
+        self.to_tile(was.is_some_and(Tile::is_16_bit))
     }
 
-    /// The same; `was_deep`: the pixels contain paint of 16 bits.
-    pub fn to_tile(&self, was_deep: bool) -> Option<Tile> {
-        let put = |y: usize, deep: &mut DeepRow| {
+    /// The same; `was_16_bit`: the pixels contain paint of 16 bits.
+    pub fn to_tile(&self, was_16_bit: bool) -> Option<Tile> {
+        let put = |y: usize, rows16: &mut Row16| {
             let PixelRow { rgb: [r, g, b], a } = &self.rows[y];
-            deep::quantize_row([r, g, b, a], deep);
+            sixteen_bit::quantize_row([r, g, b, a], rows16);
         };
-        if self.rows.len() != TILE || !(was_deep || deep::is_soft(put)) {
+        if self.rows.len() != TILE || !(was_16_bit || sixteen_bit::is_smooth(put)) {
             return self.quantized();
         }
-        let mut rows = deep::clear_rows();
+        let mut rows = sixteen_bit::clear_rows();
         rows.iter_mut().enumerate().for_each(|(y, row)| put(y, row));
-        Tile::from_deep(rows)
+        Tile::from_rows16(rows)
     }
 }
 

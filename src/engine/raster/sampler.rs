@@ -1,14 +1,14 @@
 //! Reading a texture at a point.
 //! Floor 1. Here: the reference that reads like its definition. Rows at a time, fast:
-//! `rows`, `antialias`. Without rounding to bytes: `deep`.
+//! `rows`, `antialias`. Without rounding to bytes: `floats`.
 
 mod antialias;
-mod deep;
+mod floats;
 mod rows;
 mod taps;
 
 pub use antialias::{Antialias, PatchRow, TapRule};
-pub use deep::bilinear_row as deep_bilinear_row;
+pub use floats::bilinear_row as float_bilinear_row;
 pub use rows::Bilinear;
 
 use super::texture::{MipLevel, Outside, Texel, Texture};

@@ -90,7 +90,7 @@ pub struct Texture<T = [u8; 4]> {
 }
 
 /// A texture of floats; light brighter than white is above 1.
-pub type DeepTexture = Texture<[f32; 4]>;
+pub type FloatTexture = Texture<[f32; 4]>;
 
 impl Texture {
     /// Encodes scene-referred pictures (clipped at 1), premultiplies, and builds the mip chain.
@@ -111,9 +111,9 @@ impl Texture {
     }
 }
 
-impl DeepTexture {
+impl FloatTexture {
     /// From straight encoded texels, one for each pixel.
-    pub fn deep(size: Size, straight: Vec<[f32; 4]>) -> Self {
+    pub fn floats(size: Size, straight: Vec<[f32; 4]>) -> Self {
         Self::of_texels(
             size,
             straight.into_iter().map(|[r, g, b, a]| [r * a, g * a, b * a, a]).collect(),

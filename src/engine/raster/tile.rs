@@ -1,11 +1,11 @@
 //! A tile: 64 × 64 pixels of a layer, premultiplied sRGB with 8 bits, and with 16 if something soft
-//! was painted; shared and never edited while shared. Floor 1. Pixels of 16 bits, and what is soft,
-//! are in `deep`.
+//! was painted; shared and never edited while shared. Floor 1. Pixels of 16 bits, and what is
+//! smooth, are in `sixteen_bit`.
 
-pub mod deep;
+pub mod sixteen_bit;
 
 use crate::math::{Rect, srgb::quantize};
-use deep::DeepRow;
+use sixteen_bit::Row16;
 use tiny_skia::Pixmap;
 
 /// Side of a tile, in pixels. 64² f32 RGBA is 64 KiB: one layer of a flattening stays in the
@@ -67,7 +67,7 @@ pub struct Tile {
     pixmap: Pixmap,
     opaque: bool,
     /// What `pixmap` was rounded from, if it holds more than bytes can.
-    deep: Option<Box<[DeepRow]>>,
+    rows16: Option<Box<[Row16]>>,
 }
 
 impl Tile {
@@ -78,20 +78,20 @@ impl Tile {
         }
         let opaque = lower_to_alpha(&mut rgba);
         let size = tiny_skia::IntSize::from_wh(TILE as u32, TILE as u32)?;
-        Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque, deep: None })
+        Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque, rows16: None })
     }
 
     /// A tile of [`TILE`] rows of 16 bits, colors no greater than alpha; one of bytes if these
     /// hold it exactly. `None` if it is wholly transparent.
-    pub fn from_deep(rows: Box<[DeepRow]>) -> Option<Tile> {
+    pub fn from_rows16(rows: Box<[Row16]>) -> Option<Tile> {
         if rows.len() != TILE || rows.iter().all(|row| row[3] == [0; TILE]) {
             return None;
         }
         let mut bytes = vec![0u8; TILE_AREA * 4];
-        let is_of_bytes = deep::to_bytes(&rows, &mut bytes);
+        let is_of_bytes = sixteen_bit::to_bytes(&rows, &mut bytes);
         let tile = Tile::from_bytes(bytes)?;
         let opaque = tile.opaque && rows.iter().all(|row| row[3] == [u16::MAX; TILE]);
-        Some(if is_of_bytes { tile } else { Tile { opaque, deep: Some(rows), ..tile } })
+        Some(if is_of_bytes { tile } else { Tile { opaque, rows16: Some(rows), ..tile } })
     }
 
     /// Quantizes a tile; `None` if it is wholly transparent.
@@ -107,14 +107,14 @@ impl Tile {
         if is_transparent { None } else { Tile::from_bytes(rgba) }
     }
 
-    /// Bytes that a pixel takes at most; `deep`: tiles may have 16 bits.
-    pub const fn most_bytes_a_pixel(deep: bool) -> u64 {
-        if deep { 12 } else { 4 }
+    /// Bytes that a pixel takes at most; `is_16_bit`: tiles may have 16 bits.
+    pub const fn most_bytes_a_pixel(is_16_bit: bool) -> u64 {
+        if is_16_bit { 12 } else { 4 }
     }
 
     /// Bytes that its pixels take.
     pub fn held_bytes(&self) -> u64 {
-        TILE_AREA as u64 * Self::most_bytes_a_pixel(self.is_deep())
+        TILE_AREA as u64 * Self::most_bytes_a_pixel(self.is_16_bit())
     }
 
     /// Every pixel is wholly covered.
@@ -123,33 +123,33 @@ impl Tile {
     }
 
     /// Its rows of 16 bits, if bytes do not hold all of it.
-    pub fn deep(&self) -> Option<&[DeepRow]> {
-        self.deep.as_deref()
+    pub fn rows16(&self) -> Option<&[Row16]> {
+        self.rows16.as_deref()
     }
 
     /// It holds more than bytes can.
-    pub fn is_deep(&self) -> bool {
-        self.deep.is_some()
+    pub fn is_16_bit(&self) -> bool {
+        self.rows16.is_some()
     }
 
     /// Its rows in 16 bits, whatever it holds.
-    pub fn deep_rows(&self) -> Box<[DeepRow]> {
-        self.deep.clone().unwrap_or_else(|| {
-            let mut rows = deep::clear_rows();
-            deep::of_bytes(self.bytes(), &mut rows);
+    pub fn to_rows16(&self) -> Box<[Row16]> {
+        self.rows16.clone().unwrap_or_else(|| {
+            let mut rows = sixteen_bit::clear_rows();
+            sixteen_bit::of_bytes(self.bytes(), &mut rows);
             rows
         })
     }
 
     /// A premultiplied pixel in 16 bits, whatever it holds; `x`, `y` below [`TILE`], transparent
     /// beyond.
-    pub fn deep_pixel(&self, x: usize, y: usize) -> [u16; 4] {
-        match &self.deep {
-            Some(rows) => deep::pixel_of(rows, x, y),
+    pub fn pixel16(&self, x: usize, y: usize) -> [u16; 4] {
+        match &self.rows16 {
+            Some(rows) => sixteen_bit::pixel_of(rows, x, y),
             None => {
                 let byte =
                     self.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
-                byte.map(|v| u16::from(v) * deep::LEVEL)
+                byte.map(|v| u16::from(v) * sixteen_bit::LEVEL)
             }
         }
     }
@@ -157,7 +157,7 @@ impl Tile {
     /// There is some paint on a pixel, even fainter than a byte can hold; `i`: its index, row by
     /// row.
     pub fn is_painted(&self, i: usize) -> bool {
-        match &self.deep {
+        match &self.rows16 {
             Some(rows) => rows[i / TILE][3][i % TILE] > 0,
             None => self.bytes()[4 * i + 3] > 0,
         }
@@ -165,7 +165,7 @@ impl Tile {
 
     /// Both hold the same pixels.
     pub fn is_same(&self, other: &Tile) -> bool {
-        self.deep == other.deep && self.bytes() == other.bytes()
+        self.rows16 == other.rows16 && self.bytes() == other.bytes()
     }
 
     /// Premultiplied RGBA bytes, row by row; 16 bits are rounded.

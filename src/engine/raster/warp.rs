@@ -20,12 +20,12 @@ use source::{GridSource, PixelSource, PlaneSource};
 pub use tile_map::{TileMap, TilePoints};
 use window::SourceWindow;
 
-use super::tile::deep::{self, DeepRow};
+use super::tile::sixteen_bit::{self, Row16};
 use super::tile::{TILE, Tile, TileAt, TileF32, transparent_f32};
 use super::{Plane, TileGrid};
 use crate::math::fast::{max, min};
 use crate::math::plane_map::PixelMove;
-use crate::math::srgb::{quantize, quantize_deep};
+use crate::math::srgb::{quantize, quantize16};
 use crate::math::{Mat2, Rect, Size, Vec2};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -113,19 +113,20 @@ pub fn warped_tile_within(
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
         within_range(row, &mut pixels[y * TILE + x..][..row.len()]);
     });
-    let is_deep = grid.is_deep_at(wanted);
-    let tile = if is_deep { Tile::from_deep(deep_rows(&pixels)) } else { Tile::quantized(&pixels) };
+    let is_16_bit = grid.is_16_bit_at(wanted);
+    let tile =
+        if is_16_bit { Tile::from_rows16(quantized16(&pixels)) } else { Tile::quantized(&pixels) };
     tile.map(Arc::new)
 }
 
 /// Pixels rounded to 16 bits.
-fn deep_rows(pixels: &TileF32) -> Box<[DeepRow]> {
-    let mut rows = deep::clear_rows();
+fn quantized16(pixels: &TileF32) -> Box<[Row16]> {
+    let mut rows = sixteen_bit::clear_rows();
     for (row, pixels) in rows.iter_mut().zip(pixels.chunks_exact(TILE)) {
         pixels
             .iter()
             .enumerate()
-            .for_each(|(x, pixel)| deep::put(row, x, pixel.map(quantize_deep)));
+            .for_each(|(x, pixel)| sixteen_bit::put(row, x, pixel.map(quantize16)));
     }
     rows
 }
@@ -150,15 +151,15 @@ fn moved_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
     let read = [(rect.x0, rect.y0), (rect.x1 - 1, rect.y1 - 1)].map(|(x, y)| by.source(x, y));
     let read = read.map(|(x, y)| Rect::new(x, y, x.saturating_add(1), y.saturating_add(1)));
     let read = read[0].union(read[1]);
-    if grid.is_deep_at(read) {
-        let mut rows = deep::clear_rows();
+    if grid.is_16_bit_at(read) {
+        let mut rows = sixteen_bit::clear_rows();
         for (row, y) in rows.iter_mut().zip(rect.y0..) {
             for x in 0..TILE {
                 let (sx, sy) = by.source(rect.x0 + x as i32, y);
-                deep::put(row, x, grid.deep_pixel(sx, sy));
+                sixteen_bit::put(row, x, grid.pixel16(sx, sy));
             }
         }
-        return Tile::from_deep(rows).map(Arc::new);
+        return Tile::from_rows16(rows).map(Arc::new);
     }
     let mut bytes = Vec::with_capacity(TILE * TILE * 4);
     for y in rect.y0..rect.y1 {

@@ -114,7 +114,7 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> F
 
 /// A field that is unknown at some pixels inside, filled there from their neighbors, ring by ring.
 pub fn filled(mut field: Plane<Vec2>, inked: &Plane<bool>, inside: &Plane<bool>) -> Plane<Vec2> {
-    let mut told = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !inked.at(x, y));
+    let mut known_pixels = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !inked.at(x, y));
     let mut left: Vec<(usize, usize)> = Vec::new();
     for y in 0..inked.height() {
         left.extend((0..inked.width()).filter(|x| inked.at(*x, y)).map(|x| (x, y)));
@@ -123,7 +123,7 @@ pub fn filled(mut field: Plane<Vec2>, inked: &Plane<bool>, inside: &Plane<bool>)
         let mean = |&(x, y): &(usize, usize)| {
             let around =
                 (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x as i32 + dx, y as i32 + dy)));
-            let known = around.filter(|(x, y)| told.get(*x, *y).unwrap_or(false));
+            let known = around.filter(|(x, y)| known_pixels.get(*x, *y).unwrap_or(false));
             let (sum, count) = known.fold((Vec2::ZERO, 0u32), |(sum, count), (x, y)| {
                 (sum + field.at(x as usize, y as usize), count + 1)
             });
@@ -136,9 +136,9 @@ pub fn filled(mut field: Plane<Vec2>, inked: &Plane<bool>, inside: &Plane<bool>)
         }
         for ((x, y), mean) in ring {
             field.set(x, y, mean);
-            told.set(x, y, true);
+            known_pixels.set(x, y, true);
         }
-        left.retain(|(x, y)| !told.at(*x, *y));
+        left.retain(|(x, y)| !known_pixels.at(*x, *y));
     }
     field
 }

@@ -53,11 +53,11 @@ pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormal
 
 /// ρn and the residual at a pixel; zero where they are unknown.
 fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
-    let told = |p: &&ShadedDrawing| {
+    let is_exposed = |p: &&ShadedDrawing| {
         let gray = p.gray.at(x, y);
         gray > CLIPPED.0 && gray < CLIPPED.1
     };
-    let used: Vec<&ShadedDrawing> = profiles.iter().filter(told).collect();
+    let used: Vec<&ShadedDrawing> = profiles.iter().filter(is_exposed).collect();
     if used.len() < profiles.len().min(3) {
         return (Vec3::ZERO, 0.0);
     }
@@ -92,17 +92,17 @@ pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
     if found.normals.size() != inside.size() {
         return None;
     }
-    let told = Plane::from_fn(inside.size(), |x, y| {
+    let is_exposed = Plane::from_fn(inside.size(), |x, y| {
         inside.at(x, y) && found.normals.at(x, y) != Vec3::ZERO
     });
-    let untold = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !told.at(x, y));
+    let unknown = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !is_exposed.at(x, y));
     let bar = Plane::from_fn(inside.size(), |x, y| {
         let n = found.normals.at(x, y);
         // What turns away from the viewer is not seen.
         let n = if n.z < 0.0 { vec3(n.x, n.y, 0.0).normalize_or(Vec3::Z) } else { n };
         vec2(n.x, -n.y)
     });
-    let bar = filled(bar, &untold, inside);
+    let bar = filled(bar, &unknown, inside);
     let normals = Plane::from_fn(inside.size(), |x, y| {
         if inside.at(x, y) { unproject_normal(bar.at(x, y)) } else { Vec3::Z }
     });

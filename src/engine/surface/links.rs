@@ -44,12 +44,12 @@ pub fn depth_range_px(
             let inside = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)]
                 .iter()
                 .all(|&(x, y)| coverage.at(x, y) == 255);
-            let told =
+            let of_normals =
                 length(slope(nbar_x.at(x, y), nz.at(x, y)), slope(nbar_y.at(x, y), nz.at(x, y)));
             let dx = (depth.at(x + 1, y) - depth.at(x - 1, y)) * 0.5;
             let dy = (depth.at(x, y + 1) - depth.at(x, y - 1)) * 0.5;
             let seen = length(dx, dy);
-            (inside && (0.2..2.0).contains(&told) && seen > 1e-6).then(|| told / seen)
+            (inside && (0.2..2.0).contains(&of_normals) && seen > 1e-6).then(|| of_normals / seen)
         })
         .collect();
     if ratios.len() < 16 {

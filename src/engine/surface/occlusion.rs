@@ -215,8 +215,8 @@ impl Surface {
 /// depth and normals give.
 #[inline(always)]
 fn tangents(along_slope: f32, along_normal: f32, up_normal: f32) -> [f32; 2] {
-    let told_by_depth = along_slope / (1.0 + along_slope * along_slope).sqrt();
+    let from_depth = along_slope / (1.0 + along_slope * along_slope).sqrt();
     let length = fast::max((along_normal * along_normal + up_normal * up_normal).sqrt(), 1e-6);
-    let told_by_normal = -along_normal / length;
-    [fast::max(told_by_depth, told_by_normal), fast::max(-told_by_depth, -told_by_normal)]
+    let from_normal = -along_normal / length;
+    [fast::max(from_depth, from_normal), fast::max(-from_depth, -from_normal)]
 }

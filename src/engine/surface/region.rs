@@ -139,13 +139,13 @@ impl RegionField {
     }
 
     /// The region of this field's point and kind with a tolerance, softness and contiguity.
-    pub fn region(&self, told: &SurfaceRegion) -> CoverageGrid {
-        let is_object = told.kind == RegionKind::Object;
+    pub fn region(&self, wanted: &SurfaceRegion) -> CoverageGrid {
+        let is_object = wanted.kind == RegionKind::Object;
         // An object's pixels do not differ, all others infinitely.
-        let t = if is_object { 1.0 } else { told.tolerance.max(0.0) };
-        let soft = told.softness.max(0.0).min(1.0) * t;
+        let t = if is_object { 1.0 } else { wanted.tolerance.max(0.0) };
+        let soft = wanted.softness.max(0.0).min(1.0) * t;
         // An object is joined as it is, fragments of its edge across jumps among it.
-        let is_joined = told.contiguous && !is_object;
+        let is_joined = wanted.contiguous && !is_object;
         let reached = is_joined
             .then(|| Flooded::from(self.at, self.surface.size(), |at| self.opened(at, t, soft)));
         let all = self.surface.size().rect();

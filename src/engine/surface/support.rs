@@ -153,9 +153,9 @@ impl<'s> SupportBounds<'s> {
     fn flat_rect(&self) -> Option<Rect> {
         // A little more than `DabExtent::can_hold` allows for.
         let reach = 1.001 * (self.extent.radius_px + self.extent.filter_px + ROUNDING_PX) + 1.0;
-        let is_told =
+        let is_finite =
             self.at.is_finite() && self.at.abs().max_element() < 1e7 && (0.0..1e7).contains(&reach);
-        is_told.then(|| {
+        is_finite.then(|| {
             let (low, high) = (self.at - reach, self.at + reach);
             let rect =
                 Rect::new(low.x as i32 - 1, low.y as i32 - 1, high.x as i32 + 1, high.y as i32 + 1);

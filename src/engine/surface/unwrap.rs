@@ -225,8 +225,8 @@ fn couplings(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> Poisso
             {
                 let i = y * w + x;
                 if linked & bit != 0 && i + step < n {
-                    let hollow = metric::hollow(normal(i), normal(i + step), along);
-                    *coupling = 0.5 * (facing(i) + facing(i + step)) * hollow;
+                    let concave_pull = metric::concave_pull(normal(i), normal(i + step), along);
+                    *coupling = 0.5 * (facing(i) + facing(i + step)) * concave_pull;
                 }
             }
         });

@@ -2,7 +2,7 @@
 //! depth. Floor 5. Names and conventions are those that compositing programs expect: `LAYER.R`,
 //! `normal.X`, `depth.Z`.
 
-use super::deep::{flatten_within_budget, light};
+use super::high_depth::{flatten_within_budget, light};
 use crate::document::{Document, Highlights, Progress};
 use crate::math::Size;
 use crate::project::Cancelable;

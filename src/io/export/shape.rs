@@ -77,7 +77,7 @@ pub struct ShapeOptions {
     /// Green points down, as in Direct3D; else up.
     pub is_directx: bool,
     /// 16 bits a channel of a PNG in place of 8; masks have 8.
-    pub is_deep: bool,
+    pub is_16_bit: bool,
     /// EXR of 32 bits in place of PNG.
     pub is_exr: bool,
 }
@@ -120,7 +120,7 @@ pub fn encode(
             let bytes: Vec<u8> = (0..count).flat_map(|i| sixteen(texel(i).0[0])).collect();
             png(file, &bytes, surface.size(), ExtendedColorType::L16)
         }
-        ShapeMap::Normals if options.is_deep => {
+        ShapeMap::Normals if options.is_16_bit => {
             let texels = (0..count).map(texel);
             let bytes =
                 texels.flat_map(|([r, g, b], a)| [r, g, b, a].into_iter().flat_map(sixteen));
@@ -130,7 +130,7 @@ pub fn encode(
             let bytes = (0..count).map(texel).flat_map(|([r, g, b], a)| [r, g, b, a].map(quantize));
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::Rgba8)
         }
-        ShapeMap::Depth | ShapeMap::Height if options.is_deep => {
+        ShapeMap::Depth | ShapeMap::Height if options.is_16_bit => {
             let bytes =
                 (0..count).map(texel).flat_map(|([v, ..], a)| [v, a].into_iter().flat_map(sixteen));
             png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::La16)
@@ -207,8 +207,8 @@ mod tests {
         relief.into_surface(&mut crate::surface::NearestCache::default()).unwrap()
     }
 
-    fn written(map: ShapeMap, is_directx: bool, is_deep: bool) -> image::DynamicImage {
-        let options = ShapeOptions { is_directx, is_deep, is_exr: false };
+    fn written(map: ShapeMap, is_directx: bool, is_16_bit: bool) -> image::DynamicImage {
+        let options = ShapeOptions { is_directx, is_16_bit, is_exr: false };
         image::load_from_memory(&encode(Path::new("a.png"), &ball(), map, &options).unwrap())
             .unwrap()
     }
@@ -221,8 +221,8 @@ mod tests {
             assert!(above.contains(&p[1]) && p[3] == 255, "{p:?}");
             assert_eq!(normals.get_pixel(1, 1).0, [128, 128, 255, 0]);
         }
-        let deep = written(ShapeMap::Normals, false, true).into_rgba16();
-        assert_eq!(deep.get_pixel(32, 24).0[3], 65535);
+        let pixels16 = written(ShapeMap::Normals, false, true).into_rgba16();
+        assert_eq!(pixels16.get_pixel(32, 24).0[3], 65535);
     }
 
     #[test]
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn files_are_named_after_the_drawing_and_none_is_written_where_one_is_in_the_way() {
         let folder = tempfile::tempdir().unwrap();
-        let options = ShapeOptions { is_directx: false, is_deep: true, is_exr: false };
+        let options = ShapeOptions { is_directx: false, is_16_bit: true, is_exr: false };
         let maps = ShapeMap::ALL.map(|(map, _)| map);
         let terms = Terms::export(crate::Overwrite::Nothing, Vec::new());
         let names = |base: &str| {
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn an_exr_holds_normals_that_are_read_back() {
-        let options = ShapeOptions { is_directx: false, is_deep: false, is_exr: true };
+        let options = ShapeOptions { is_directx: false, is_16_bit: false, is_exr: true };
         for (map, _) in ShapeMap::ALL {
             assert!(encode(Path::new("a.exr"), &ball(), map, &options).unwrap().len() > 500);
         }

@@ -181,10 +181,10 @@ fn plausible(stored: &StoredMap, shape: &TexelStats) -> Vec<NormalEncoding> {
 }
 
 fn refuse_gray(stored: &StoredMap, overrides: &NormalConvention, shape: &TexelStats) -> Result<()> {
-    let told_pair = matches!(overrides.encoding, Some(NormalEncoding::Dxt5nm));
+    let is_given_as_pair = matches!(overrides.encoding, Some(NormalEncoding::Dxt5nm));
     // A picture of one value is a flat map or no map at all.
     let varies = shape.spread[..3].iter().any(|&s| s > 0.02);
-    if stored.colors() == 1 || (shape.gray && varies && !told_pair && !shape.is_dxt5nm()) {
+    if stored.colors() == 1 || (shape.gray && varies && !is_given_as_pair && !shape.is_dxt5nm()) {
         let reason = "the picture is gray; a normal map has at least two different channels (is it the depth map?)";
         return Err(Error::decode(&stored.file, reason));
     }

@@ -139,8 +139,8 @@ impl ReducedMap {
 
     /// The mean over the sizes, each of which must have enough evidence.
     fn handedness(all: &[Self], axes: AxisMapping) -> f32 {
-        let told: Vec<f32> = all.iter().filter_map(|map| map.handed(axes)).collect();
-        told.iter().sum::<f32>() / told.len().max(1) as f32
+        let votes: Vec<f32> = all.iter().filter_map(|map| map.handed(axes)).collect();
+        votes.iter().sum::<f32>() / votes.len().max(1) as f32
     }
 
     /// Compares the curl of (n_x/n_z, n_y/n_z) with that of its mirror image: 1 if only the axes as

@@ -29,12 +29,12 @@ pub struct ChannelChoice {
 pub fn choose(
     file: &Path,
     exr: &ExrFile,
-    told: Option<&str>,
+    wanted: Option<&str>,
     role: MapRole,
 ) -> Result<ChannelChoice> {
     let alpha = coverage(exr);
-    let (channels, name) = match (told, role) {
-        (Some(told), _) => named(exr, told, role).ok_or_else(|| missing(file, exr, told))?,
+    let (channels, name) = match (wanted, role) {
+        (Some(wanted), _) => named(exr, wanted, role).ok_or_else(|| missing(file, exr, wanted))?,
         (None, MapRole::Normals) => {
             let rank = |pass: &ExrPass| normal_rank(pass).filter(|_| can_be_normals(exr, pass));
             best(exr, rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?
@@ -184,13 +184,13 @@ fn coverage(exr: &ExrFile) -> Option<usize> {
 }
 
 /// A layer or a channel by name, letter case aside.
-fn named(exr: &ExrFile, told: &str, role: MapRole) -> Option<(Vec<usize>, String)> {
-    if let Some(channel) = exr.channels().iter().position(|c| c.name.eq_ignore_ascii_case(told))
+fn named(exr: &ExrFile, wanted: &str, role: MapRole) -> Option<(Vec<usize>, String)> {
+    if let Some(channel) = exr.channels().iter().position(|c| c.name.eq_ignore_ascii_case(wanted))
         && role != MapRole::Normals
     {
-        return Some((vec![channel], told.into()));
+        return Some((vec![channel], wanted.into()));
     }
-    let pass = exr.passes().iter().find(|p| p.name.eq_ignore_ascii_case(told))?;
+    let pass = exr.passes().iter().find(|p| p.name.eq_ignore_ascii_case(wanted))?;
     let channels = match role {
         MapRole::Normals => vector_channels(pass),
         MapRole::Depth => depth_channels(pass).or_else(|| pass.letters("z")),
@@ -203,11 +203,11 @@ fn listing(exr: &ExrFile) -> String {
     exr.channels().iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-fn missing(file: &Path, exr: &ExrFile, told: &str) -> Error {
+fn missing(file: &Path, exr: &ExrFile, wanted: &str) -> Error {
     Error::invalid(
         file,
         "channel",
-        format!("this EXR has no suitable layer “{told}”; it has {}", listing(exr)),
+        format!("this EXR has no suitable layer “{wanted}”; it has {}", listing(exr)),
     )
 }
 

@@ -46,21 +46,21 @@ pub fn smooth(stored: &Plane<f32>, step: f32, inside: &Plane<bool>) -> Plane<f32
     let mut now = stored.clone();
     for _ in 0..PASSES {
         now = Plane::from_fn(stored.size(), |x, y| {
-            let told = stored.at(x, y);
-            if !inside.at(x, y) || !told.is_finite() {
-                return told;
+            let own = stored.at(x, y);
+            if !inside.at(x, y) || !own.is_finite() {
+                return own;
             }
             let (mut sum, mut weight) = (now.at(x, y), 1.0f32);
             for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
                 let (nx, ny) = (x as i32 + dx, y as i32 + dy);
                 if inside.get(nx, ny) == Some(true)
-                    && (stored.clamped(nx, ny) - told).abs() <= 1.5 * step
+                    && (stored.clamped(nx, ny) - own).abs() <= 1.5 * step
                 {
                     sum += now.clamped(nx, ny);
                     weight += 1.0;
                 }
             }
-            (sum / weight).max(told - 0.5 * step).min(told + 0.5 * step)
+            (sum / weight).max(own - 0.5 * step).min(own + 0.5 * step)
         });
     }
     now

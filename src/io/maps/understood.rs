@@ -176,18 +176,18 @@ impl LoadedMaps<'_> {
         inside: &Plane<bool>,
         near_high: bool,
     ) -> DepthEncoding {
-        let (told, findings) = (&self.overrides.depth, &mut *self.findings);
-        if let Some(encoding) = told.encoding {
+        let (settings, findings) = (&self.overrides.depth, &mut *self.findings);
+        if let Some(encoding) = settings.encoding {
             findings.add_given("depth.encoding", encoding.name());
             if encoding == DepthEncoding::RayDistance
-                && told.fov_degrees.or(stored.fov_degrees).is_none()
+                && settings.fov_degrees.or(stored.fov_degrees).is_none()
             {
                 findings.note("depth is measured along the ray; without the field of view (“fov”) it is used as it is");
             }
             return encoding;
         }
         let layer = stored.layer.to_lowercase();
-        if layer.contains("distance") && told.fov_degrees.or(stored.fov_degrees).is_some() {
+        if layer.contains("distance") && settings.fov_degrees.or(stored.fov_degrees).is_some() {
             findings.add_detected("depth.encoding", "ray-distance", 0.7);
             return DepthEncoding::RayDistance;
         }

@@ -1,6 +1,6 @@
 //! Any readable picture as the tiles of a paint layer, a few rows at a time if its format allows,
 //! so that a large picture is never in memory as a whole next to its tiles. Floor 5. Not here: what
-//! is done where 16 bits do not fit (`deep_paint`).
+//! is done where 16 bits do not fit (`sixteen_bit_paint`).
 
 use super::light;
 use crate::bitmap::Bitmap;
@@ -94,7 +94,7 @@ impl<'a> GatheredTiles<'a> {
         let width = self.size.width as usize;
         let rows = texels / width.max(1);
         let tiles = cut([width, rows], [self.x, self.y]);
-        self.tiles.join(&if self.budget.deep_paint { tiles } else { tiles.rounded() });
+        self.tiles.join(&if self.budget.sixteen_bit_paint { tiles } else { tiles.rounded() });
         self.y = self.y.saturating_add(rows as i32);
         self.ask(self.tiles.bytes() as u64)
     }
@@ -119,10 +119,7 @@ impl<'a> GatheredTiles<'a> {
             self.beside_bytes += if profiled.is_some() { bytes } else { 0 };
         }
         let mut add = |texels: &[[u16; 4]]| {
-            self.add(
-                |[w, h], [x, y]| TileGrid::from_straight_deep(texels, w, h, x, y),
-                texels.len(),
-            )
+            self.add(|[w, h], [x, y]| TileGrid::from_straight16(texels, w, h, x, y), texels.len())
         };
         match profiled {
             Some(texels) => texels

@@ -50,16 +50,16 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
         |x: u32, y: u32| image::Rgba([value(x, y), 65535 - value(x, y), 300, 65000 - x as u16]);
     let picture: image::ImageBuffer<image::Rgba<u16>, Vec<u16>> =
         image::ImageBuffer::from_fn(70, 130, pixel);
-    let deep: Vec<[u16; 4]> = picture.pixels().map(|p| p.0).collect();
+    let texels16: Vec<[u16; 4]> = picture.pixels().map(|p| p.0).collect();
     let image = DynamicImage::ImageRgba16(picture);
-    let wanted = TileGrid::from_straight_deep(&deep, 70, 130, -9, 20);
+    let wanted = TileGrid::from_straight16(&texels16, 70, 130, -9, 20);
     // Krita writes its profile, which has to be looked at first.
     let mut profiled = Vec::new();
     let mut info = png::Info::with_size(70, 130);
     info.icc_profile = Some(own_srgb().into());
     (info.color_type, info.bit_depth) = (png::ColorType::Rgba, png::BitDepth::Sixteen);
     let mut writer = png::Encoder::with_info(&mut profiled, info).unwrap().write_header().unwrap();
-    let bytes: Vec<u8> = deep.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect();
+    let bytes: Vec<u8> = texels16.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect();
     writer.write_image_data(&bytes).unwrap();
     writer.finish().unwrap();
     let files = [encoded(&image, ImageFormat::Png), encoded(&image, ImageFormat::Tiff), profiled];
@@ -79,25 +79,25 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
 
 #[test]
 fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
-    let deep = image::ImageBuffer::from_fn(300, 2, |x, y| {
+    let texels16 = image::ImageBuffer::from_fn(300, 2, |x, y| {
         image::Rgba([x as u16 * 211, 7, 40000, 65535 - y as u16])
     });
     for (format, name) in [(ImageFormat::Png, "a.png"), (ImageFormat::Tiff, "a.tif")] {
-        let bytes = encoded(&DynamicImage::ImageRgba16(deep.clone()), format);
+        let bytes = encoded(&DynamicImage::ImageRgba16(texels16.clone()), format);
         let picture = decode(Path::new(name), &bytes, &Budget::default()).unwrap();
-        let kept = picture.deep.as_ref().unwrap();
-        assert!(kept.iter().zip(deep.pixels()).all(|(kept, pixel)| *kept == pixel.0), "{name}");
+        let kept = picture.texels16.as_ref().unwrap();
+        assert!(kept.iter().zip(texels16.pixels()).all(|(kept, pixel)| *kept == pixel.0), "{name}");
         let Texels::Srgb8(texels) = &picture.texels else { panic!("bytes") };
         let nearest = |v: u16| (f32::from(v) / 257.0).round() as u8;
         assert!(
-            kept.iter().zip(texels.iter()).all(|(deep, byte)| deep.map(nearest) == *byte),
+            kept.iter().zip(texels.iter()).all(|(texels16, byte)| texels16.map(nearest) == *byte),
             "{name}"
         );
     }
     assert!(
         decode(Path::new("b.png"), &encoded(&opaque(), ImageFormat::Png), &Budget::default())
             .unwrap()
-            .deep
+            .texels16
             .is_none()
     );
 }

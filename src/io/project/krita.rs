@@ -158,7 +158,7 @@ impl KritaReader<'_, '_> {
             pixels.tiles(format, icc.filter(|_| !is_srgb).as_deref()).ok_or_else(|| {
                 Error::decode(self.reading.file, format!("“{}” is damaged", node.text("name")))
             })?;
-        if !self.reading.budget.deep_paint {
+        if !self.reading.budget.sixteen_bit_paint {
             layer.tiles = layer.tiles.rounded();
         }
         (layer.x, layer.y) = pixels.corner();

@@ -149,8 +149,8 @@ fn flattened(
     }
 }
 
-fn is_deep(tiles: &TileGrid) -> bool {
-    tiles.is_deep_in(tiles.bounds())
+fn is_16_bit(tiles: &TileGrid) -> bool {
+    tiles.is_16_bit_in(tiles.bounds())
 }
 
 /// Stores the pictures that were read with a document as the previews of its layers, so that saving
@@ -161,7 +161,8 @@ pub fn cache_previews(document: &Document, previews: &BTreeMap<LayerId, EncodedP
         if let Some(encoded) = previews.get(&layer.id) {
             let bare = seen.bare(layer, true);
             // Another format rounded what it shows.
-            if bare.is_some_and(|tiles| is_deep(tiles) != pixels::is_deep(encoded.file.bytes())) {
+            if bare.is_some_and(|tiles| is_16_bit(tiles) != pixels::is_16_bit(encoded.file.bytes()))
+            {
                 continue;
             }
             let kind = PreviewKind { masked: true, whole_rim: false };

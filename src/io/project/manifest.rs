@@ -63,12 +63,12 @@ impl Manifest {
 
     pub fn write(&self) -> Value {
         let picture = |p: &ManifestPicture| {
-            let mut told =
+            let mut entry =
                 json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
             if p.whole_rim {
-                told["whole_rim"] = true.into();
+                entry["whole_rim"] = true.into();
             }
-            told
+            entry
         };
         json!({
             "format": "rilievo-project",

@@ -6,7 +6,7 @@ use crate::math::Size;
 pub const PNG_HEADER: usize = 25;
 
 /// Whether it has 16 bits a channel.
-pub fn is_deep_png(bytes: &[u8]) -> bool {
+pub fn is_16_bit_png(bytes: &[u8]) -> bool {
     bytes.get(24) == Some(&16)
 }
 

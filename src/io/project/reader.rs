@@ -1,7 +1,7 @@
 //! A project while it is read, and the notes about it. Floor 5. `open` reads what was saved,
 //! `foreign` what another program made of it, `repair` leaves out what is damaged.
 
-use super::png_header::{PNG_HEADER, is_deep_png};
+use super::png_header::{PNG_HEADER, is_16_bit_png};
 use super::{Archive, DOCUMENT};
 use crate::document::Document;
 use crate::document::EncodedPixels;
@@ -35,14 +35,14 @@ impl ProjectReader<'_> {
     }
 
     /// Whether something was refused that may fit once paint has 8 bits: then nothing is left out,
-    /// and the file is read again (`deep_paint`).
+    /// and the file is read again (`sixteen_bit_paint`).
     pub fn can_fit_if_rounded(&self, error: &Error) -> bool {
-        let is_deep = |name: &str| {
-            self.archive.beginning(name, PNG_HEADER).is_some_and(|bytes| is_deep_png(&bytes))
+        let is_16_bit = |name: &str| {
+            self.archive.beginning(name, PNG_HEADER).is_some_and(|bytes| is_16_bit_png(&bytes))
         };
-        self.budget.deep_paint
+        self.budget.sixteen_bit_paint
             && error.remedy() == Some(Remedy::MoreMemory)
-            && self.archive.names().into_iter().filter(|name| name.ends_with(".png")).any(is_deep)
+            && self.archive.names().into_iter().filter(|name| name.ends_with(".png")).any(is_16_bit)
     }
 
     pub fn archive_path(&self, name: &str) -> std::path::PathBuf {

@@ -124,7 +124,7 @@ pub fn everything(side: u32) -> Document {
 
 /// Paint that was airbrushed by 60 strokes over paper, once more under a mask, too faint for bytes,
 /// and an inked line.
-pub fn softly_painted() -> Document {
+pub fn smoothly_painted() -> Document {
     let size = Size::new(150, 100);
     let scene = Scene { size, surface: None };
     let painted = |brush: Brush, strokes: u32| {
@@ -157,10 +157,10 @@ pub fn softly_painted() -> Document {
 }
 
 /// How many tiles of each paint layer hold 16 bits, bottom first.
-pub fn deep_tiles(document: &Document) -> Vec<usize> {
+pub fn tiles16(document: &Document) -> Vec<usize> {
     let of = |layer: &Arc<Layer>| match &layer.content {
         Content::Pixels(pixels) => {
-            Some(pixels.tiles.iter().filter(|(_, tile)| tile.is_deep()).count())
+            Some(pixels.tiles.iter().filter(|(_, tile)| tile.is_16_bit()).count())
         }
         _ => None,
     };
@@ -176,7 +176,7 @@ pub fn assert_same(a: &Document, b: &Document) {
         if let (Content::Pixels(x), Content::Pixels(y)) = (&x.content, &y.content) {
             let rect = x.tiles.bounds().union(y.tiles.bounds());
             assert!(
-                x.tiles.to_straight_deep(rect) == y.tiles.to_straight_deep(rect),
+                x.tiles.to_straight16(rect) == y.tiles.to_straight16(rect),
                 "the pixels of {path}"
             );
         }

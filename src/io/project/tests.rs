@@ -2,7 +2,7 @@ mod damage;
 mod foreign;
 mod held;
 
-use super::sample::{assert_same, deep_tiles, everything, png, softly_painted};
+use super::sample::{assert_same, everything, png, smoothly_painted, tiles16};
 use super::*;
 use crate::Budget;
 use crate::document::{Content, Layer, MaskKind, SurfaceSource};
@@ -56,9 +56,9 @@ fn a_document_comes_back_in_every_parameter_and_pixel() {
 }
 
 #[test]
-fn soft_paint_comes_back_in_16_bits_and_ink_is_stored_in_8() {
-    let document = softly_painted();
-    let found = deep_tiles(&document);
+fn smooth_paint_comes_back_in_16_bits_and_ink_is_stored_in_8() {
+    let document = smoothly_painted();
+    let found = tiles16(&document);
     assert!(found[..3].iter().all(|&deep| deep > 1) && found[3] == 0, "{found:?}");
     let file = written(&document);
     let back = read_back(&file);
@@ -68,17 +68,17 @@ fn soft_paint_comes_back_in_16_bits_and_ink_is_stored_in_8() {
         back.notes
     );
     assert_same(&document, &back.document);
-    assert_eq!(deep_tiles(&back.document), found);
+    assert_eq!(tiles16(&back.document), found);
     assert!(written(&back.document) == file, "saved again");
     let depth = |name: &str| {
         let entry = entries(&file).into_iter().find(|(known, _)| known == name).unwrap();
-        crate::pixels::is_deep(&entry.1)
+        crate::pixels::is_16_bit(&entry.1)
     };
     let names = ["data/001.png", "data/004.png", "mergedimage.png"];
     assert_eq!(names.map(depth), [true, false, false]);
     // Another program finds the pixels as they are.
     let foreign = changed(&file, |name, bytes| (!name.starts_with("rilievo/")).then_some(bytes));
-    let seen = deep_tiles(&read_back(&foreign).document);
+    let seen = tiles16(&read_back(&foreign).document);
     assert_eq!(seen[1..2], found[..1]);
 }
 

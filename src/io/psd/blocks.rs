@@ -61,8 +61,10 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
             }
         }
         b"artb" | b"artd" | b"abdd" => record.ground = ground(data, colors),
-        b"TySh" | b"tySh" => record.tell("its text became pixels"),
-        b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => record.tell("its smart object became pixels"),
+        b"TySh" | b"tySh" => record.note_conversion("its text became pixels"),
+        b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => {
+            record.note_conversion("its smart object became pixels")
+        }
         b"lfx2" | b"lmfx" | b"lrFX" => effects(record, key, data),
         b"vstk" => stroked(record, &mut data),
         &adjustments::NEWER => {

@@ -3,7 +3,7 @@
 
 use super::cursor::ByteCursor;
 use crate::math::srgb;
-use crate::raster::tile::deep::{LEVEL, byte_of};
+use crate::raster::tile::sixteen_bit::{LEVEL, byte_of};
 use flate2::read::DeflateDecoder;
 use std::io::Read;
 
@@ -56,12 +56,9 @@ impl ChannelValue for u16 {
     fn all_of(stored: &[u8], shape: ChannelLayout) -> Vec<Self> {
         match shape.bits {
             16 => stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect(),
-            32 => stored
-                .as_chunks()
-                .0
-                .iter()
-                .map(|v| srgb::quantize_deep(encoded(*v, shape)))
-                .collect(),
+            32 => {
+                stored.as_chunks().0.iter().map(|v| srgb::quantize16(encoded(*v, shape))).collect()
+            }
             _ => to_bytes(stored, shape).into_iter().map(|v| u16::from(v) * LEVEL).collect(),
         }
     }

@@ -62,7 +62,7 @@ pub struct StraightPixels {
     /// Four bytes a pixel.
     pub rgba: Vec<u8>,
     /// What the bytes were rounded from, if they were read as 16 bits; else empty.
-    pub deep: Vec<[u16; 4]>,
+    pub rgba16: Vec<[u16; 4]>,
 }
 
 /// A channel's value whose colors are known.
@@ -83,7 +83,7 @@ impl ColorValue for u8 {
         planes: &[Option<Vec<u8>>; 4],
         alpha: Option<&[u8]>,
     ) -> StraightPixels {
-        StraightPixels { rgba: colors.to_srgb(size, planes, alpha), deep: Vec::new() }
+        StraightPixels { rgba: colors.to_srgb(size, planes, alpha), rgba16: Vec::new() }
     }
 }
 
@@ -94,8 +94,8 @@ impl ColorValue for u16 {
         planes: &[Option<Vec<u16>>; 4],
         alpha: Option<&[u16]>,
     ) -> StraightPixels {
-        let deep = colors.to_srgb_deep(size, planes, alpha);
-        StraightPixels { rgba: deep.as_flattened().iter().map(|v| v.byte()).collect(), deep }
+        let rgba16 = colors.to_srgb16(size, planes, alpha);
+        StraightPixels { rgba: rgba16.as_flattened().iter().map(|v| v.byte()).collect(), rgba16 }
     }
 }
 
@@ -107,7 +107,7 @@ impl Colors<'_> {
     }
 
     /// As [`to_srgb`](Self::to_srgb), of RGB and gray, in 16 bits.
-    fn to_srgb_deep(
+    fn to_srgb16(
         self,
         size: Size,
         planes: &[Option<Vec<u16>>; 4],
@@ -131,7 +131,7 @@ impl Colors<'_> {
         };
         let texels = (0..size.area()).map(texel).collect();
         match self.profile() {
-            Some(icc) => picture::to_srgb_deep(size, texels, is_gray, icc),
+            Some(icc) => picture::to_srgb16(size, texels, is_gray, icc),
             None => texels,
         }
     }

@@ -125,7 +125,7 @@ fn has_adjustments(document: &Document) -> bool {
 }
 
 fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Document {
-    let pixels = filled::paint(&merged.pixels.rgba, &merged.pixels.deep, document.size.rect());
+    let pixels = filled::paint(&merged.pixels.rgba, &merged.pixels.rgba16, document.size.rect());
     document.layers.push(Arc::new(Layer {
         visible,
         clip_to_surface: false,
@@ -201,7 +201,7 @@ mod tests {
         let mut rgba = [value, value, value, 255].repeat(200);
         rgba[..3].fill(0);
         Some(Merged {
-            pixels: StraightPixels { rgba, deep: Vec::new() },
+            pixels: StraightPixels { rgba, rgba16: Vec::new() },
             is_real: true,
             ..Merged::default()
         })
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_picture_that_is_none_is_not_believed() {
-        let white = || StraightPixels { rgba: vec![255; 800], deep: Vec::new() };
+        let white = || StraightPixels { rgba: vec![255; 800], rgba16: Vec::new() };
         let plain = |is_real| Some(Merged { pixels: white(), is_real, ..Merged::default() });
         for (merged, is_less, said) in [
             (None, true, "damaged or missing"),

@@ -165,7 +165,7 @@ impl RecordBuilder {
             || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
         let mut preview = self.previews.next().ok_or_else(damaged)?;
         let rgba = pixels::decoded(preview.file.bytes()).ok_or_else(damaged)?;
-        if pixels::is_deep(preview.file.bytes()) {
+        if pixels::is_16_bit(preview.file.bytes()) {
             // Our part of the file says what the record holds; it has all of the paint, too.
             preview = in_bytes(file, preview, &rgba)?;
             self.notes.push(format!(

@@ -46,13 +46,13 @@ fn drawn(
             if let Some(live) = gradient.live(rect) {
                 return Content::Gradient(Live::new(live));
             }
-            record.tell("its gradient became pixels");
+            record.note_conversion("its gradient became pixels");
             pixels(gradient.pixels(size, rect), size.rect())
         }
         LayerFill::Pattern(fill) => {
             match patterns.iter().find_map(|pattern| pattern.pixels(&fill, size)) {
                 Some(drawn) => {
-                    record.tell("its pattern became pixels");
+                    record.note_conversion("its pattern became pixels");
                     pixels(drawn, size.rect())
                 }
                 None => {
@@ -75,7 +75,7 @@ fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
         _ => None,
     };
     let Some(live) = live else {
-        record.tell("its fill became pixels");
+        record.note_conversion("its fill became pixels");
         return own_pixels(record);
     };
     let values: Vec<u8> = record.rgba.iter().skip(3).step_by(4).copied().collect();
@@ -88,7 +88,7 @@ fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
             None => shape,
         });
     }
-    (record.rgba, record.deep) = (Vec::new(), Vec::new());
+    (record.rgba, record.rgba16) = (Vec::new(), Vec::new());
     live
 }
 
@@ -124,12 +124,12 @@ fn is_of(record: &LayerRecord, color: impl Fn([i32; 2]) -> Option<Color>) -> boo
 }
 
 /// Straight pixels of a rectangle as paint, of 16 bits where there are some.
-pub fn paint(rgba: &[u8], deep: &[[u16; 4]], rect: Rect) -> Content {
+pub fn paint(rgba: &[u8], rgba16: &[[u16; 4]], rect: Rect) -> Content {
     let (w, h, x, y) = (rect.width(), rect.height(), rect.x0, rect.y0);
     let tiles = match rect.is_empty() || rgba.is_empty() {
         true => TileGrid::default(),
-        false if deep.is_empty() => TileGrid::from_straight_rgba(rgba, w, h, x, y),
-        false => TileGrid::from_straight_deep(deep, w, h, x, y),
+        false if rgba16.is_empty() => TileGrid::from_straight_rgba(rgba, w, h, x, y),
+        false => TileGrid::from_straight16(rgba16, w, h, x, y),
     };
     Content::Pixels(PixelLayer { file: String::new(), x, y, tiles })
 }
@@ -140,6 +140,6 @@ fn pixels(rgba: Vec<u8>, rect: Rect) -> Content {
 
 /// The pixels that the file holds of a record, which it loses.
 fn own_pixels(record: &mut LayerRecord) -> Content {
-    let (rgba, deep) = (std::mem::take(&mut record.rgba), std::mem::take(&mut record.deep));
-    paint(&rgba, &deep, record.rect)
+    let (rgba, rgba16) = (std::mem::take(&mut record.rgba), std::mem::take(&mut record.rgba16));
+    paint(&rgba, &rgba16, record.rect)
 }

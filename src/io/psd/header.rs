@@ -18,8 +18,8 @@ pub struct PsdHeader {
     pub bits: u16,
     pub mode: Mode,
     /// Its pixels are read as 16 bits: it has more than 8, of colors that are kept as they are,
-    /// and the budget allows deep paint.
-    pub is_deep: bool,
+    /// and the budget allows paint of 16 bits.
+    pub is_16_bit: bool,
 }
 
 impl PsdHeader {
@@ -38,7 +38,7 @@ impl PsdHeader {
     /// stored data.
     pub fn merged_bytes(&self) -> u64 {
         let planes = self.colors() as u64 + 1;
-        let (rgba, value) = if self.is_deep { (12, 2) } else { (4, 1) };
+        let (rgba, value) = if self.is_16_bit { (12, 2) } else { (4, 1) };
         self.size.area() as u64
             * (rgba + planes * value + planes * u64::from(self.bits.div_ceil(8)))
     }
@@ -76,8 +76,8 @@ pub fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<Psd
     if channels < mode.channels() || channels > 56 {
         return Err(Error::decode(file, format!("it has {channels} channels")));
     }
-    let is_deep = budget.deep_paint && bits > 8 && matches!(mode, Mode::Rgb | Mode::Gray);
-    Ok(PsdHeader { large: version == 2, size, channels, bits, mode, is_deep })
+    let is_16_bit = budget.sixteen_bit_paint && bits > 8 && matches!(mode, Mode::Rgb | Mode::Gray);
+    Ok(PsdHeader { large: version == 2, size, channels, bits, mode, is_16_bit })
 }
 
 /// The data of a resource.

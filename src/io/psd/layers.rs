@@ -38,7 +38,7 @@ pub struct RecordReader<'a> {
     colors: &'a Colors<'a>,
     used_px: u64,
     /// What 16 bits take in addition to bytes.
-    deep_bytes: u64,
+    bytes16: u64,
     drawn_px: u64,
     /// What could not be read.
     pub damage: Vec<String>,
@@ -57,7 +57,7 @@ impl<'a> RecordReader<'a> {
             header,
             colors,
             used_px: 0,
-            deep_bytes: 0,
+            bytes16: 0,
             drawn_px: 0,
             damage: Vec::new(),
         }
@@ -81,8 +81,8 @@ impl<'a> RecordReader<'a> {
             };
             pending.push(record);
         }
-        let is_deep = self.header.is_deep;
-        let filled = |pending| match is_deep {
+        let is_16_bit = self.header.is_16_bit;
+        let filled = |pending| match is_16_bit {
             true => self.filled::<u16>(pending, &mut rest),
             false => self.filled::<u8>(pending, &mut rest),
         };
@@ -142,8 +142,8 @@ impl<'a> RecordReader<'a> {
         let PendingRecord { mut record, channels, masks } = pending;
         record.rect = self.affordable(&record.name, record.rect)?.unwrap_or(Rect::EMPTY);
         let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
-        if self.header.is_deep {
-            self.deep_bytes += size.area() as u64 * size_of::<[u16; 4]>() as u64;
+        if self.header.is_16_bit {
+            self.bytes16 += size.area() as u64 * size_of::<[u16; 4]>() as u64;
             self.budget.room(self.file, "reading its layers", self.held_bytes())?;
         }
         let mut planes: [Option<Vec<T>>; 4] = [None, None, None, None];
@@ -176,9 +176,9 @@ impl<'a> RecordReader<'a> {
         if is_damaged {
             self.damage.push(format!("“{}” is damaged or cut short", record.name));
         }
-        let StraightPixels { rgba, deep } =
+        let StraightPixels { rgba, rgba16 } =
             T::pixels(*self.colors, size, &planes, alpha.as_deref());
-        (record.rgba, record.deep) = (rgba, deep);
+        (record.rgba, record.rgba16) = (rgba, rgba16);
         self.masked(&mut record, masks, drawn)?;
         self.spend_for_canvas(&record)?;
         Ok(record)
@@ -211,7 +211,7 @@ impl<'a> RecordReader<'a> {
             return Ok(());
         };
         if outline.disabled {
-            record.tell("its vector mask, which is switched off, is left out");
+            record.note_conversion("its vector mask, which is switched off, is left out");
             return Ok(());
         }
         self.spend(size.area() as u64 / 4)?;
@@ -282,7 +282,7 @@ impl<'a> RecordReader<'a> {
 
     /// Memory of the layers that were read.
     pub fn held_bytes(&self) -> u64 {
-        self.used_px.saturating_mul(4).saturating_add(self.deep_bytes)
+        self.used_px.saturating_mul(4).saturating_add(self.bytes16)
     }
 
     /// A mask's rectangle and its values; `None` where they are damaged.

@@ -58,7 +58,7 @@ pub fn merged<T: ColorValue>(
     // Photoshop blends the colors with white as far as they are transparent; some programs do not.
     if has_alpha && count.is_some() && is_on_white(&pixels.rgba) {
         off_white(pixels.rgba.as_chunks_mut().0);
-        off_white(&mut pixels.deep);
+        off_white(&mut pixels.rgba16);
     }
     // Since the number of its version: whether the picture is real.
     let is_real = resource(resources, VERSION_INFO).is_none_or(|data| data.get(4) != Some(&0));
@@ -137,11 +137,11 @@ mod tests {
             rgba,
             [[255, 0, 0, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat()
         );
-        let mut deep: [[u16; 4]; 3] =
+        let mut rgba16: [[u16; 4]; 3] =
             [[65535, 32767, 32767, 32768], [65535, 60000, 59999, 6000], [65535, 65535, 65535, 0]];
-        off_white(&mut deep);
+        off_white(&mut rgba16);
         assert_eq!(
-            deep,
+            rgba16,
             [[65535, 0, 0, 32768], [65535, 5079, 5068, 6000], [65535, 65535, 65535, 0]]
         );
         assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255]].concat()));

@@ -65,15 +65,15 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     budget.room(file, "reading its layers and the picture of them all", held_bytes)?;
     let channels = usize::from(header.channels).saturating_sub(header.colors());
     // A plane of each, and the coverage that is made of it.
-    let channel_bytes = if header.is_deep { 3 } else { 2 } * header.size.area() as u64;
+    let channel_bytes = if header.is_16_bit { 3 } else { 2 } * header.size.area() as u64;
     let with_channels = held_bytes.saturating_add(channel_bytes.saturating_mul(channels as u64));
     let has_room = budget.room(file, "its layers, its picture and its selections", with_channels);
-    let has_room = if header.is_deep { has_room.map(|()| true)? } else { has_room.is_ok() };
+    let has_room = if header.is_16_bit { has_room.map(|()| true)? } else { has_room.is_ok() };
     if !has_room {
         damage
             .push("its named selections are left out: there is too little memory for them".into());
     }
-    let merged = match (is_there, header.is_deep) {
+    let merged = match (is_there, header.is_16_bit) {
         (false, _) => None,
         (true, true) => merged::<u16>(&mut rest, &header, &colors, resources, count, has_room),
         (true, false) => merged::<u8>(&mut rest, &header, &colors, resources, count, has_room),
@@ -97,7 +97,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     })
 }
 
-/// Where the layers are: in their own section, or in deep files in a block after it.
+/// Where the layers are: in their own section, or in files of 16 or 32 bits in a block after it.
 fn layer_info(mut section: ByteCursor<'_>, large: bool) -> Option<ByteCursor<'_>> {
     let whole = section;
     let length = section.length(large)?;

@@ -122,7 +122,7 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
     let side = |from: i32, to: i32| i64::from(to) - i64::from(from);
     let fits = [side(rect.x0, rect.x1), side(rect.y0, rect.y1)]
         == [i64::from(size.width), i64::from(size.height)];
-    let header = PsdHeader { large: false, size, channels: 1, bits, mode, is_deep: false };
+    let header = PsdHeader { large: false, size, channels: 1, bits, mode, is_16_bit: false };
     Some(if fits && [8, 16, 32].contains(&bits) {
         channel::decode_as(&mut data, header.shape(size, true), compression)
     } else {

@@ -1,8 +1,8 @@
 mod adjusted;
-mod deep;
 mod foreign;
 mod made;
 mod marks;
+mod sixteen_bit;
 
 use super::*;
 use crate::Budget;
@@ -14,7 +14,7 @@ use crate::math::{Rect, Size};
 use crate::paint::Selection;
 use crate::project::ProjectContents;
 use crate::project::sample::{
-    assert_same, deep_tiles, everything, files, png, read as read_recipe, softly_painted,
+    assert_same, everything, files, png, read as read_recipe, smoothly_painted, tiles16,
 };
 use crate::raster::{BlendMode, CoverageGrid, TileGrid};
 use serde_json::json;
@@ -58,8 +58,8 @@ fn worst_of(a: &Document, b: &Document, is_counted: &dyn Fn((i32, i32)) -> bool)
 }
 
 #[test]
-fn soft_paint_comes_back_in_16_bits_and_other_programs_see_8_which_is_said() {
-    let document = softly_painted();
+fn smooth_paint_comes_back_in_16_bits_and_other_programs_see_8_which_is_said() {
+    let document = smoothly_painted();
     let made = write(Path::new("a.psd"), &document, &Progress::default()).unwrap().unwrap();
     let said = |name: &str| {
         made.notes.iter().any(|note| note.contains(name) && note.contains("8 for other programs"))
@@ -68,7 +68,7 @@ fn soft_paint_comes_back_in_16_bits_and_other_programs_see_8_which_is_said() {
     let back = read_back(&made.bytes);
     assert!(back.notes.is_empty(), "{:?}", back.notes);
     assert_same(&document, &back.document);
-    assert_eq!(deep_tiles(&back.document), deep_tiles(&document));
+    assert_eq!(tiles16(&back.document), tiles16(&document));
     assert_same(&document, &read_back(&written(&back.document)).document);
     let foreign = read_back(&without_ours(&made.bytes)).document;
     // Three layers are rounded, each by half a level at most, and the picture of them.

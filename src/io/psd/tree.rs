@@ -37,7 +37,9 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
                 "the layers were changed by another program: live layers became pixels".into(),
             ),
             // Read again with paint of 8 bits, it may fit.
-            Err(error) if budget.deep_paint && error.remedy() == Some(Remedy::MoreMemory) => {
+            Err(error)
+                if budget.sixteen_bit_paint && error.remedy() == Some(Remedy::MoreMemory) =>
+            {
                 return Err(error);
             }
             Err(error) => notes.push(format!("live layers became pixels: {error}")),
@@ -82,8 +84,8 @@ pub(super) fn build_document(
         notes: std::mem::take(notes),
     };
     std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
-    let (layers, is_less, told) = builder.done();
-    *notes = told;
+    let (layers, is_less, found_notes) = builder.done();
+    *notes = found_notes;
     let (selections, inks) = kept;
     if inks > 0 {
         notes.push("inks in addition to its colors are left out".into());
@@ -117,11 +119,11 @@ fn color_notes(parsed: &ParsedPsd) -> Option<String> {
             "its inks were read as cyan, magenta, yellow and black; others are left out"
         }
         Mode::Duotone => "its inks are left out: it became gray",
-        _ if header.is_deep && header.bits == 32 => {
+        _ if header.is_16_bit && header.bits == 32 => {
             "its 32 bits a channel became 16, and values brighter than white are lost; a Photoshop file that is saved \
              here has 8 for other programs"
         }
-        _ if header.is_deep => {
+        _ if header.is_16_bit => {
             "its 16 bits a channel are kept here; a Photoshop file that is saved here has 8 for other programs"
         }
         _ if header.bits == 32 => {
@@ -136,13 +138,13 @@ fn color_notes(parsed: &ParsedPsd) -> Option<String> {
 /// The picture of a file without layers becomes one.
 fn flattened(parsed: &mut ParsedPsd) {
     let rect = parsed.header.size.rect();
-    let StraightPixels { rgba, deep } =
+    let StraightPixels { rgba, rgba16 } =
         parsed.merged.take().map(|merged| merged.pixels).unwrap_or_default();
     parsed.records.push(LayerRecord {
         name: "Background".into(),
         rect,
         rgba,
-        deep,
+        rgba16,
         ..LayerRecord::default()
     });
 }
@@ -275,10 +277,10 @@ impl TreeBuilder<'_> {
             self.is_less = true;
         }
         if known == Some(BlendMode::Dissolve) && record.visible {
-            record.tell("it dissolves in a different pattern than in other programs");
+            record.note_conversion("it dissolves in a different pattern than in other programs");
         }
         self.is_less |= !record.lost.is_empty();
-        for what in record.lost.iter().chain(&record.told) {
+        for what in record.lost.iter().chain(&record.converted) {
             self.notes.push(format!("“{}”: {what}", record.name));
         }
         Layer {

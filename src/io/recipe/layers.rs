@@ -5,7 +5,7 @@ use super::LayerReader;
 use super::value::RecipeValue;
 use super::{form_drawings, images, liquify, masks, normals, shading, strokes, transforms};
 use crate::document::{
-    Content, Group, HomeFrame, InkLayer, Layer, LayerLabel, LayerLock, Live, PixelLayer,
+    Attachment, Content, Group, InkLayer, Layer, LayerLabel, LayerLock, Live, PixelLayer,
     SelectionList,
 };
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
@@ -74,7 +74,7 @@ impl LayerReader<'_> {
             .transpose()?;
         let warped = fields.get("liquify");
         let liquify = warped.as_ref().map(liquify::read).transpose()?.flatten();
-        let on = fields.get("on").map(|node| self.home(&node)).transpose()?;
+        let on = fields.get("on").map(|node| self.attachment(&node)).transpose()?;
         let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);
@@ -88,13 +88,13 @@ impl LayerReader<'_> {
         Ok(Layer { label, mask, clip_to_surface, transform, liquify, on, ..layer })
     }
 
-    /// The home of a layer or a stroke.
-    pub fn home(&self, node: &JsonNode) -> Result<HomeFrame> {
+    /// The attachment of a layer or a stroke.
+    pub fn attachment(&self, node: &JsonNode) -> Result<Attachment> {
         let id = node.text()?;
-        if id != HomeFrame::CANVAS && !self.homes.iter().any(|known| known == id) {
+        if id != Attachment::CANVAS && !self.attachments.iter().any(|known| known == id) {
             return Err(node.refusal(format!("is “{id}”; there is no part with that id")));
         }
-        Ok(HomeFrame::on(id))
+        Ok(Attachment::on(id))
     }
 
     fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
@@ -177,7 +177,7 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     }
     out.set_some("transform", layer.transform.as_ref(), transforms::write);
     out.set_some("liquify", layer.liquify.as_deref(), liquify::write);
-    out.set_some("on", layer.on.as_ref(), |home| (*home.part).into());
+    out.set_some("on", layer.on.as_ref(), |attachment| (*attachment.part).into());
     write_content(&mut out, &layer.content, canvas);
     out
 }

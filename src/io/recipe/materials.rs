@@ -118,7 +118,7 @@ impl PartMaterial {
 /// Whether a layer is a material of a part: the user may have changed its layers, not its name.
 fn is_material(layer: &Layer, part: Option<&str>) -> bool {
     matches!(layer.content, Content::Group(_))
-        && layer.on.as_ref().map(|home| &*home.part) == part
+        && layer.on.as_ref().map(|attachment| &*attachment.part) == part
         && PartMaterial::all().any(|material| material.name == layer.name)
 }
 

@@ -55,9 +55,17 @@ pub fn read_part(file: &Path, value: &Value, document: &Document, budget: &Budge
         (kept.name.clone(), (kept.selection.clone(), Some(kept.name.clone())))
     };
     let selections = document.selections.iter().map(by_name).collect();
-    let (homes, notes) = (Vec::new(), Vec::new());
-    let mut reader =
-        LayerReader { source, size, layers_left, samples_left, pictures, selections, homes, notes };
+    let (attachments, notes) = (Vec::new(), Vec::new());
+    let mut reader = LayerReader {
+        source,
+        size,
+        layers_left,
+        samples_left,
+        pictures,
+        selections,
+        attachments,
+        notes,
+    };
     reader.part(&JsonNode::root(file, value), document.parts.list.len())
 }
 
@@ -204,7 +212,7 @@ impl LayerReader<'_> {
         let (size, matrix) = frame.unwrap_or((self.size, None));
         // The pictures of an edit are known, wherever they came from: their files are not read
         // again.
-        let is_told = |known: &PartMaps| {
+        let is_as_written = |known: &PartMaps| {
             let mut written = JsonObject::default();
             write_maps(&mut written, known, Some(known.surface.size()));
             let is_same = |(name, value): (&String, &Value)| {
@@ -213,7 +221,7 @@ impl LayerReader<'_> {
             (known.surface.size(), known.source.matrix) == (size, matrix)
                 && written.fields().iter().all(is_same)
         };
-        if let Some(known) = self.pictures.cached_maps(is_told) {
+        if let Some(known) = self.pictures.cached_maps(is_as_written) {
             for name in ["normal", "depth", "mask"] {
                 fields.get(name);
             }
@@ -375,6 +383,6 @@ fn touches(fields: &mut Fields) -> Result<PartKind> {
 }
 
 #[cfg(test)]
-mod home_tests;
+mod attachment_tests;
 #[cfg(test)]
 mod tests;

@@ -189,8 +189,11 @@ impl PictureCache {
                         .map_err(|e| name.name_in_error(e))?
                 }
             };
-            let tiles =
-                if source.budget.deep_paint { painted.tiles } else { painted.tiles.rounded() };
+            let tiles = if source.budget.sixteen_bit_paint {
+                painted.tiles
+            } else {
+                painted.tiles.rounded()
+            };
             self.spend(source, painted.size, tiles.bytes())?;
             self.tiles.insert(key.clone(), tiles);
         }

@@ -8,7 +8,9 @@ use super::images::{operator, write_operator};
 use super::selections::{with_selection, write_of_stroke};
 use super::{presets, samples, tips, transforms};
 use crate::Result;
-use crate::document::{LayerTransform, SelectionList, StrokeHome, StrokeList, TransformShape};
+use crate::document::{
+    LayerTransform, SelectionList, StrokeAttachment, StrokeList, TransformShape,
+};
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, Stroke};
@@ -48,14 +50,14 @@ impl LayerReader<'_> {
             None => Vec::new(),
         };
         let selection = self.stroke_selection(&mut fields)?;
-        let home = self.stroke_home(&mut fields)?;
+        let attachment = self.stroke_attachment(&mut fields)?;
         fields.finish()?;
-        Ok(Stroke::new(brush, operator, color, samples).within(selection).on(home))
+        Ok(Stroke::new(brush, operator, color, samples).within(selection).on(attachment))
     }
 
-    /// The home of a stroke, if it is not that of its layer, and the place of its frame in the
-    /// layer's.
-    fn stroke_home(&self, fields: &mut Fields) -> Result<Option<Arc<StrokeHome>>> {
+    /// The attachment of a stroke, if it is not that of its layer, and the place of its frame in
+    /// the layer's.
+    fn stroke_attachment(&self, fields: &mut Fields) -> Result<Option<Arc<StrokeAttachment>>> {
         let (on, transform) = (fields.get("on"), fields.get("transform"));
         let Some(on) = on else {
             return match transform {
@@ -63,16 +65,16 @@ impl LayerReader<'_> {
                 None => Ok(None),
             };
         };
-        let mut home = StrokeHome::new(self.home(&on)?);
+        let mut attachment = StrokeAttachment::new(self.attachment(&on)?);
         if let Some(node) = transform {
-            home.own = match transforms::read(&node, None)?.shape {
+            attachment.own = match transforms::read(&node, None)?.shape {
                 TransformShape::Matrix(coefficients) => coefficients,
                 TransformShape::Quad(_) | TransformShape::Mesh(_) => {
                     return Err(node.refusal("must be a matrix"));
                 }
             };
         }
-        Ok(Some(Arc::new(home)))
+        Ok(Some(Arc::new(attachment)))
     }
 
     /// A preset, an inline brush, or a preset or the brush of the stroke before with some of its
@@ -112,8 +114,8 @@ pub fn write_strokes<'a>(
     let mut before: Option<JsonObject> = None;
     list.strokes.iter().map(move |stroke| {
         let brush = write_brush(stroke.brush());
-        let told = before.as_ref().and_then(|before| as_before(&brush, before));
-        let value = write(stroke, told.as_ref().unwrap_or(&brush));
+        let shortened = before.as_ref().and_then(|before| as_before(&brush, before));
+        let value = write(stroke, shortened.as_ref().unwrap_or(&brush));
         let value = with_selection(value, &write_of_stroke(stroke, selections));
         before = Some(brush);
         value
@@ -130,10 +132,10 @@ fn write(stroke: &Stroke, brush: &JsonObject) -> Value {
     out.object("brush", brush.clone());
     out.object("operator", write_operator(stroke.operator()));
     out.set("color", object::color(stroke.color()));
-    if let Some(home) = stroke.home() {
-        out.set("on", (*home.frame.part).into());
-        if home.own != StrokeHome::UNMOVED {
-            let (shape, filter) = (TransformShape::Matrix(home.own), Resampling::default());
+    if let Some(attachment) = stroke.attachment() {
+        out.set("on", (*attachment.frame.part).into());
+        if attachment.own != StrokeAttachment::UNMOVED {
+            let (shape, filter) = (TransformShape::Matrix(attachment.own), Resampling::default());
             out.set("transform", transforms::write(&LayerTransform { shape, filter }));
         }
     }
@@ -188,18 +190,18 @@ mod tests {
         let list = StrokeList { strokes: brushes.iter().map(stroke).collect() };
         let none =
             SelectionList::of(&crate::document::Document::empty(crate::math::Size::new(4, 4)));
-        let told: Vec<Value> =
+        let shortened: Vec<Value> =
             write_strokes(&list, &none).map(|stroke| stroke["brush"].clone()).collect();
         assert_eq!(
-            told[1..3],
+            shortened[1..3],
             [
                 serde_json::json!({ "same": true }),
                 serde_json::json!({ "same": true, "facing": { "turn": 90, "mirrored": true }, "seed": 0 }),
             ]
         );
-        assert_eq!(told[3], serde_json::json!({ "same": true, "facing": {}, "seed": 9 }));
-        assert_eq!((&told[4]["size"], &told[5]), (&31.into(), &Value::Null));
-        assert_eq!(told[6], told[0]);
+        assert_eq!(shortened[3], serde_json::json!({ "same": true, "facing": {}, "seed": 9 }));
+        assert_eq!((&shortened[4]["size"], &shortened[5]), (&31.into(), &Value::Null));
+        assert_eq!(shortened[6], shortened[0]);
         let text = serde_json::json!({
             "canvas": { "width": 4, "height": 4 },
             "layers": [{ "kind": "strokes", "strokes": write_strokes(&list, &none).collect::<Value>() }],

@@ -47,7 +47,7 @@ pub fn has_unwrapped(document: &Document) -> bool {
 pub fn is_of_second_version(document: &Document) -> bool {
     let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
     let is_new = |layer: &Layer| {
-        let is_carried = layer.on.is_some() || layer.content.has_homes();
+        let is_carried = layer.on.is_some() || layer.content.has_attachments();
         is_carried
             || layer.transform.is_some()
             || layer.liquify.is_some()

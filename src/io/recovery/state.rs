@@ -252,15 +252,16 @@ impl<'a> LastState<'a> {
             }
             if let Some(keys) = layer.get_mut("strokes").and_then(Value::as_array_mut) {
                 for key in keys {
-                    let mut told = key.take();
-                    let blob = told.as_object_mut().and_then(|told| told.shift_remove("stroke"));
+                    let mut stored = key.take();
+                    let blob =
+                        stored.as_object_mut().and_then(|stored| stored.shift_remove("stroke"));
                     *key = recipe::parse(
                         file,
-                        self.blob(file, blob.as_ref().unwrap_or(&told))?,
+                        self.blob(file, blob.as_ref().unwrap_or(&stored))?,
                         budget,
                     )?;
-                    if let (Value::Object(stroke), Value::Object(told)) = (&mut *key, told) {
-                        stroke.extend(told);
+                    if let (Value::Object(stroke), Value::Object(stored)) = (&mut *key, stored) {
+                        stroke.extend(stored);
                     }
                 }
             }

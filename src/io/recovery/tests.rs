@@ -6,7 +6,7 @@ use crate::document::{Content, Layer, PixelLayer, Progress};
 use crate::fs::Disk;
 use crate::fs::memory::{InjectedError, InjectedFailure, MemoryFs};
 use crate::math::{Size, srgb::Color};
-use crate::project::sample::{assert_same, deep_tiles, everything, softly_painted};
+use crate::project::sample::{assert_same, everything, smoothly_painted, tiles16};
 use crate::raster::TileGrid;
 
 const LOG: &str = "/r/1.log";
@@ -52,14 +52,14 @@ fn every_kind_of_layer_comes_back() {
 }
 
 #[test]
-fn soft_paint_comes_back_in_16_bits() {
+fn smooth_paint_comes_back_in_16_bits() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
-    let document = softly_painted();
+    let document = smoothly_painted();
     journal.record(&document).unwrap();
     let back = read(&fs.file(LOG).unwrap()).1.unwrap();
     assert_same(&document, &back);
-    assert_eq!(deep_tiles(&back), deep_tiles(&document));
+    assert_eq!(tiles16(&back), tiles16(&document));
 }
 
 /// A line of so many readings of the pen.

@@ -54,9 +54,9 @@ impl ReplaceJob<'_> {
                 let unreached = |e: io::Error| {
                     let is_absent = e.kind() == ErrorKind::NotFound;
                     let what = "its folder cannot be reached";
-                    let told =
+                    let absent =
                         format!("{what}: there is no folder {}", folder_of(self.named).display());
-                    self.failed(if is_absent { &told } else { what }, e)
+                    self.failed(if is_absent { &absent } else { what }, e)
                 };
                 Ok(folder.map_err(unreached)?.join(name))
             }

@@ -2,7 +2,7 @@
 //! paints. Floor 7.
 
 use super::force::Force;
-use super::{LimitArgs, told};
+use super::{LimitArgs, messages};
 use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::recipe::{BrushPreset, preset};
 use crate::io::{Terms, brush, picture};
@@ -51,7 +51,7 @@ pub fn run(args: &BrushArgs) -> Result<()> {
         let count = brushes.len();
         let mut made = Vec::new();
         for (i, (preset, notes)) in brushes.into_iter().enumerate() {
-            notes.iter().for_each(|note| told::say(&format!("{}: {note}", preset.name)));
+            notes.iter().for_each(|note| messages::print_line(&format!("{}: {note}", preset.name)));
             let to = if count == 1 { args.to.clone() } else { numbered(&args.to, i + 1) };
             made.push(ConvertedBrush::of(&to, &preset, args.side, &terms)?);
         }

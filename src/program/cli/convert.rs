@@ -2,8 +2,8 @@
 //! Floor 7. Losses are reported. Not here: the formats themselves (`io`).
 
 use super::force::Force;
+use super::messages::print_notes;
 use super::painted::{refuse_incomplete, scaled};
-use super::told::tell;
 use super::{LimitArgs, progress, values};
 use crate::Result;
 use crate::document::Document;
@@ -80,7 +80,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
             }
         }
         // Notes would only hide an error.
-        tell(&args.from, &notes);
+        print_notes(&args.from, &notes);
         Ok(())
     })
 }
@@ -98,7 +98,7 @@ fn whole(to: &Path, document: &Document, terms: &Terms) -> Result<()> {
         // Nothing here cancels, so it is always saved.
         let Some(encoded) = save::encode(document, to, progress)? else { return Ok(()) };
         encoded.save(to, terms, progress)?;
-        tell(to, &encoded.notes);
+        print_notes(to, &encoded.notes);
         Ok(())
     })
 }

@@ -2,8 +2,8 @@
 //! Floor 7. Not here: where the lines are (`surface::form_lines`).
 
 use super::force::Force;
+use super::messages::print_notes;
 use super::object::{LoadedDocument, ObjectArgs, loaded};
-use super::told::tell;
 use super::{LimitArgs, values};
 use crate::document::{Content, Document, Progress};
 use crate::io::fs::Disk;
@@ -56,7 +56,7 @@ pub fn run(args: &LinesArgs) -> Result<()> {
         }
         let svg = svg(&document, &drawing);
         replace(&Disk, &args.output, svg.as_bytes(), &terms, &Progress::default())?;
-        tell(named, &notes);
+        print_notes(named, &notes);
         Ok(())
     })
 }

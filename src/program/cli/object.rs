@@ -7,7 +7,7 @@ use crate::document::{Document, SurfaceSource};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::open::FileKind;
 use crate::io::recipe::{self, OtherSurface, RecipeSource};
-use crate::io::{Budget, RecipeFolder, UserFiles, deep_paint, open};
+use crate::io::{Budget, RecipeFolder, UserFiles, open, sixteen_bit_paint};
 use clap::ArgGroup;
 use std::path::{Path, PathBuf};
 
@@ -93,7 +93,9 @@ pub fn loaded(
                 recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto })
             };
             let ((document, mut notes), rounded) =
-                deep_paint::read_within_budget(file, &budget, read, |(document, _)| document)?;
+                sixteen_bit_paint::read_within_budget(file, &budget, read, |(document, _)| {
+                    document
+                })?;
             notes.extend(rounded);
             (document, notes)
         }

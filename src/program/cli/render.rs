@@ -2,9 +2,9 @@
 //! Floor 7.
 
 use super::force::Force;
+use super::messages::print_notes;
 use super::object::{LoadedDocument, ObjectArgs, loaded};
 use super::painted::{refuse_incomplete, scaled};
-use super::told::tell;
 use super::{LimitArgs, progress, values};
 use crate::document::Document;
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
@@ -81,14 +81,14 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     // A misspelled extension is reported before the work, not after it.
     ExportFormat::of(&args.output)?.bits(&args.output, args.bits)?;
     args.limits.install(|| {
-        let told_of = args.named();
+        let named_file = args.named();
         let LoadedDocument { document, notes, reads } =
             loaded(args.document.as_deref(), &args.onto, &args.limits)?;
-        refuse_incomplete(told_of, &document)?;
+        refuse_incomplete(named_file, &document)?;
         let target = OutputFile::new(&args.output, args.force.export(reads))?;
         let document = dressed(args, document)?;
-        let document = scaled(told_of, args.scale, &args.limits, document)?;
-        args.limits.room_to_paint(told_of, &document)?;
+        let document = scaled(named_file, args.scale, &args.limits, document)?;
+        args.limits.room_to_paint(named_file, &document)?;
         let alone = args.layer.as_ref().map(|name| named(args, &document, name)).transpose()?;
         let shown = alone.and_then(|layer| document.with_only(&[layer])).unwrap_or(document);
         let options = ExportOptions {
@@ -101,7 +101,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             target.write_document(&shown, &options, &args.limits.budget(), progress)
         })?;
         // Notes would only hide an error.
-        tell(told_of, &notes);
+        print_notes(named_file, &notes);
         Ok(())
     })
 }

@@ -59,6 +59,6 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     })?;
     session.close();
     // What was refused, and what was detected in files.
-    super::told::tell(&args.file, &session.notes);
+    super::messages::print_notes(&args.file, &session.notes);
     Ok(())
 }

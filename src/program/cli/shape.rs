@@ -2,7 +2,7 @@
 //! (`document::parts`), the files (`io::export::shape`).
 
 use super::force::Force;
-use super::told::tell;
+use super::messages::print_notes;
 use super::{LimitArgs, values};
 use crate::document::parts::drawing::{FigureBackground, without_background};
 use crate::document::parts::from_flats::{self, FlatParts, PartFor};
@@ -110,7 +110,7 @@ pub fn run(args: &ShapeArgs) -> Result<()> {
             [Some(args.drawing.clone()), args.flats.clone()].into_iter().flatten().collect();
         let options = ShapeOptions {
             is_directx: args.convention == "directx",
-            is_deep: args.bits == 16,
+            is_16_bit: args.bits == 16,
             is_exr: args.format == "exr",
         };
         let maps = ShapeMap::ALL.map(|(map, _)| map);
@@ -123,7 +123,7 @@ pub fn run(args: &ShapeArgs) -> Result<()> {
         if let Some(files) = ink {
             files.write(&document)?;
         }
-        tell(args.flats.as_ref().unwrap_or(&args.drawing), note.as_slice());
+        print_notes(args.flats.as_ref().unwrap_or(&args.drawing), note.as_slice());
         Ok(())
     })
 }

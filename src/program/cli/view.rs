@@ -3,7 +3,7 @@
 
 use super::LimitArgs;
 use super::force::Force;
-use super::told::tell;
+use super::messages::print_notes;
 use crate::document::source::{MapSource, MaskSource};
 use crate::document::view::{self, SurfaceView, UnwrappedPicture, ViewOptions, ViewUnavailable};
 use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource};
@@ -11,7 +11,7 @@ use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, RecipeSource};
-use crate::io::{Budget, RecipeFolder, UserFiles, deep_paint};
+use crate::io::{Budget, RecipeFolder, UserFiles, sixteen_bit_paint};
 use crate::math::{Size, named::former_name, srgb::Color};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage};
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
@@ -203,8 +203,8 @@ fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
                 )
             };
             let (document, rounded) =
-                deep_paint::read_within_budget(recipe, &budget, read, |document| document)?;
-            tell(recipe, rounded.as_slice());
+                sixteen_bit_paint::read_within_budget(recipe, &budget, read, |document| document)?;
+            print_notes(recipe, rounded.as_slice());
             Ok((document, [vec![recipe.clone()], files.read_paths()].concat()))
         }
         _ => of_maps(args, &budget),

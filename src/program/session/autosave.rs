@@ -31,7 +31,7 @@ pub struct Autosave {
     folder: PathBuf,
     followed: BTreeMap<usize, FollowedDocument>,
     /// The last error that was reported.
-    told: Option<String>,
+    reported: Option<String>,
 }
 
 /// The log of a document, and the last recorded state.
@@ -87,7 +87,7 @@ impl FollowedDocument {
 impl Autosave {
     /// * `folder`: as [`recovery::folder`] names it; created when needed.
     pub fn new(folder: PathBuf) -> Self {
-        Self { fs: Arc::new(Disk), folder, followed: BTreeMap::new(), told: None }
+        Self { fs: Arc::new(Disk), folder, followed: BTreeMap::new(), reported: None }
     }
 
     /// Updates the logs to the open documents; called after every change. Returns a new error as a
@@ -132,8 +132,8 @@ impl Autosave {
         for key in closed {
             trouble = self.end(key).err().map(|error| error.to_string()).or(trouble);
         }
-        let is_new = trouble != self.told;
-        self.told.clone_from(&trouble);
+        let is_new = trouble != self.reported;
+        self.reported.clone_from(&trouble);
         let sentence = |why| format!("Not protected from a crash until it is saved: {why}");
         trouble.filter(|_| is_new).map(sentence)
     }

@@ -236,8 +236,11 @@ mod tests {
             } else {
                 session.current = 0;
                 let document = session.open_documents[0].document();
-                let path =
-                    actions::layers::LayerAction::choosing(document, &[lit_id(&session)], None);
+                let path = actions::layers::LayerAction::select_layers(
+                    document,
+                    &[lit_id(&session)],
+                    None,
+                );
                 act(&mut session, path.unwrap());
                 let layer = session.layer_paths();
                 act(&mut session, LayerAction::Delete { layer });

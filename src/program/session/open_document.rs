@@ -1,9 +1,9 @@
 //! An open document: its history, selection, file and view.
 //! Floor 6.
 
-pub mod chosen;
 mod drawn;
 pub mod labels;
+pub mod selected_layers;
 mod target;
 
 use super::stored_preview::StoredPreview;
@@ -14,7 +14,7 @@ use crate::math::{Size, Vec2};
 use crate::paint::Selection;
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::unwrap::PlaneLayout;
-use chosen::ChosenLayers;
+use selected_layers::SelectedLayers;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -41,10 +41,10 @@ pub struct OpenDocument {
     pub history: History<EditTarget>,
     /// The preview during a gesture: not a step yet.
     preview: Option<Preview>,
-    /// The primary one of the chosen layers: what the brush paints on.
-    pub selected: Option<LayerId>,
-    pub(super) chosen_layers: ChosenLayers,
-    /// The part of the shape that is chosen, by its id.
+    /// The primary one of the selected layers: what the brush paints on.
+    pub primary: Option<LayerId>,
+    pub(super) selected_layers: SelectedLayers,
+    /// The part of the shape that is selected, by its id.
     pub part: Option<String>,
     /// Where it was opened from or saved to.
     pub file: Option<PathBuf>,
@@ -82,8 +82,8 @@ pub struct OpenDocument {
     pub noted: Option<String>,
     /// The picture that its file held of it, until the window shows it.
     pub stored_preview: StoredPreview,
-    /// The chosen strokes, by their positions in the layer.
-    chosen: Option<(LayerId, Vec<usize>)>,
+    /// The selected strokes, by their positions in the layer.
+    selected_strokes: Option<(LayerId, Vec<usize>)>,
 }
 
 /// Where clone brushes copy from.
@@ -109,14 +109,14 @@ impl OpenDocument {
         // What follows from it is there before anything is done with it, wherever it comes from.
         let document = document.reshaped();
         let part = nearest_part(&document);
-        let selected = document.layers.last().map(|layer| layer.id);
+        let primary = document.layers.last().map(|layer| layer.id);
         Self {
             key: NEXT.fetch_add(1, Ordering::Relaxed),
             saved: document.clone(),
             history: History::new(document, STEPS),
             preview: None,
-            selected,
-            chosen_layers: ChosenLayers::default(),
+            primary,
+            selected_layers: SelectedLayers::default(),
             part,
             file,
             stamp: None,
@@ -135,7 +135,7 @@ impl OpenDocument {
             refused: None,
             noted: None,
             stored_preview: StoredPreview::default(),
-            chosen: None,
+            selected_strokes: None,
         }
     }
 
@@ -261,7 +261,7 @@ impl OpenDocument {
     pub fn take(&mut self, edit: Edit) {
         let Edit { label, document, select } = edit;
         if self.commit(label, document) {
-            self.choose_layers(select);
+            self.select_layers(select);
         }
     }
 
@@ -280,20 +280,20 @@ impl OpenDocument {
         }
     }
 
-    /// The chosen part as shown.
-    pub fn chosen_part(&self) -> Option<&Arc<Part>> {
+    /// The selected part as shown.
+    pub fn selected_part(&self) -> Option<&Arc<Part>> {
         self.shown_document().parts.part(self.part.as_deref()?)
     }
 
-    /// The selected strokes of the selected layer that exist, in rising order.
-    pub fn chosen_strokes(&self) -> Vec<usize> {
-        let Some((layer, chosen)) =
-            self.chosen.as_ref().filter(|(layer, _)| Some(*layer) == self.selected)
+    /// The selected strokes of the primary layer that exist, in rising order.
+    pub fn selected_strokes(&self) -> Vec<usize> {
+        let Some((layer, selected_strokes)) =
+            self.selected_strokes.as_ref().filter(|(layer, _)| Some(*layer) == self.primary)
         else {
             return Vec::new();
         };
         let count = self.shown_document().strokes(*layer).len();
-        chosen.iter().copied().filter(|&index| index < count).collect()
+        selected_strokes.iter().copied().filter(|&index| index < count).collect()
     }
 
     /// From a pixel to the one that a clone stroke that begins at `start` copies onto it; `None`
@@ -306,14 +306,14 @@ impl OpenDocument {
     }
 
     /// Chooses strokes of a layer.
-    pub fn choose_strokes(&mut self, layer: LayerId, mut strokes: Vec<usize>) {
+    pub fn select_strokes(&mut self, layer: LayerId, mut strokes: Vec<usize>) {
         strokes.sort_unstable();
         strokes.dedup();
-        self.chosen = Some((layer, strokes));
+        self.selected_strokes = Some((layer, strokes));
     }
 
-    /// Goes back (negative) or forward by steps, to what was chosen before the last one undone, or
-    /// after the last one redone.
+    /// Goes back (negative) or forward by steps, to what was selected before the last one undone,
+    /// or after the last one redone.
     pub fn walk(&mut self, steps: i32) {
         self.preview = None;
         self.record_target();
@@ -334,12 +334,11 @@ impl OpenDocument {
         let has_mask = |layer: &Arc<crate::document::Layer>| {
             layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }))
         };
-        self.on_mask &=
-            self.selected.and_then(|id| self.document().layer(id)).is_some_and(has_mask);
+        self.on_mask &= self.primary.and_then(|id| self.document().layer(id)).is_some_and(has_mask);
         let document = self.history.present();
         let is_there = |id: LayerId| document.layer(id).is_some();
-        if !self.selected.is_some_and(is_there) {
-            self.selected = document.layers.last().map(|layer| layer.id);
+        if !self.primary.is_some_and(is_there) {
+            self.primary = document.layers.last().map(|layer| layer.id);
         }
         if !self.solo.is_some_and(is_there) {
             self.solo = None;

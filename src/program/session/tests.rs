@@ -9,8 +9,8 @@ mod pasting;
 mod selecting;
 mod several;
 mod shaped;
+mod smooth;
 mod snapping;
-mod soft;
 mod steps;
 pub(in crate::session) mod stories;
 mod svg;
@@ -229,14 +229,14 @@ fn actions_read_back_as_they_were_written() {
 }
 
 #[test]
-fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
+fn strokes_are_selected_restyled_ordered_copied_and_baked_by_replay() {
     let mut session = replay(&format!(
         r##"{PAPER}{STROKE}
         {{"in":"stroke","do":"duplicate","layer":"1","strokes":[0]}}
         {{"in":"stroke","do":"restyle","layer":"1","strokes":[1],"to":{{"do":"color","color":"#0000ff"}},"done":true}}
         {{"in":"stroke","do":"move","layer":"1","strokes":[1],"by":[0,40]}}"##
     ));
-    assert_eq!(session.active().unwrap().chosen_strokes(), [1]);
+    assert_eq!(session.active().unwrap().selected_strokes(), [1]);
     assert_eq!(
         (pixel(&session, 100, 70), pixel(&session, 112, 123)),
         ([0xc0, 0x20, 0x10, 255], [0, 0, 255, 255])
@@ -287,6 +287,6 @@ fn a_line_begins_where_the_last_stroke_ended_whatever_other_tool_was_used_since(
     let shifted = r#"[40,20,1,0,0,0,{"shift":true,"ctrl":false,"alt":false}]"#;
     let session = replay(&format!("{PAPER}{}", line.replace("PEN", shifted)));
     let document = session.active().unwrap().document();
-    let strokes = document.strokes(session.active().unwrap().selected.unwrap());
+    let strokes = document.strokes(session.active().unwrap().primary.unwrap());
     assert_eq!(strokes[1].samples()[0].at, crate::math::vec2(20.0, 20.0));
 }

@@ -25,7 +25,7 @@ pub enum Outcome {
     },
     /// Settings of the tools change; then the other outcome.
     Settings(SettingsChange, Box<Outcome>),
-    /// Something of the document is chosen from now on.
+    /// Something of the document is selected from now on.
     Choose(DocumentChoice),
     /// Nothing was started; the reason is to be shown.
     Refused(Cow<'static, str>),
@@ -36,14 +36,14 @@ pub enum Outcome {
 /// A change of settings that a tool makes: the pen dragged a tolerance, or picked a color.
 pub type SettingsChange = Box<dyn FnOnce(&mut ToolSettings) + Send>;
 
-/// What is chosen in a document besides its layers.
+/// What is selected in a document besides its layers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DocumentChoice {
     /// Strokes of the selected layer.
     Strokes(Vec<usize>),
     /// A part of the shape, by its id.
     Part(String),
-    /// The point that the gizmo of the chosen layers is turned about, by shares of its sides.
+    /// The point that the gizmo of the selected layers is turned about, by shares of its sides.
     Pivot(Vec2),
     /// Where clone brushes copy from, canvas px.
     CloneSource(Vec2),

@@ -1,4 +1,4 @@
-//! The gizmo of the transform tool and its handles: a box around the chosen layers, its place on
+//! The gizmo of the transform tool and its handles: a box around the selected layers, its place on
 //! the canvas, and its pivot. Floor 5.
 
 use super::pen::GRAB_PT;
@@ -28,7 +28,7 @@ rilievo_engine::named! {
     /// What the transform tool moves, if there is a shape.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
     pub enum TransformTarget {
-        /// Only the chosen layers: they slide over the shape, which stays.
+        /// Only the selected layers: they slide over the shape, which stays.
         #[default]
         Paint = "paint" => "slide paint over the shape",
         /// The whole shape, and what is painted on it.
@@ -46,11 +46,11 @@ pub enum GizmoContent<'a> {
 }
 
 impl<'a> GizmoContent<'a> {
-    /// The shape, if that is to be moved and there is one; else the chosen layers.
-    pub fn new(target: TransformTarget, document: &Document, chosen: &'a [LayerId]) -> Self {
+    /// The shape, if that is to be moved and there is one; else the selected layers.
+    pub fn new(target: TransformTarget, document: &Document, selected: &'a [LayerId]) -> Self {
         match target {
             TransformTarget::Shape if document.surface.is_some() => GizmoContent::Shape,
-            _ => GizmoContent::Layers(chosen),
+            _ => GizmoContent::Layers(selected),
         }
     }
 
@@ -195,8 +195,8 @@ impl TransformGizmo {
 /// The first pivot of a gizmo.
 pub const MIDDLE: Vec2 = Vec2::splat(0.5);
 
-/// What the transform tool keeps about the layers in its gizmo until others are chosen: the pivot,
-/// and for several layers their first box, so that their gizmo turns with them.
+/// What the transform tool keeps about the layers in its gizmo until others are selected: the
+/// pivot, and for several layers their first box, so that their gizmo turns with them.
 #[derive(Clone, Debug)]
 pub struct GizmoMemory {
     /// None: for the shape.

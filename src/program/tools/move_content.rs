@@ -65,7 +65,7 @@ pub fn target_at(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> O
 struct MoveGesture {
     document: Document,
     layers: Vec<LayerId>,
-    /// One stroke, only if a single layer is chosen.
+    /// One stroke, only if a single layer is selected.
     stroke: Option<usize>,
     from: Vec2,
     by: Vec2,

@@ -25,8 +25,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let kept = if pen.keys.shift { context.strokes.to_vec() } else { Vec::new() };
         return (None, Outcome::Choose(DocumentChoice::Strokes(kept)));
     };
-    let was_chosen = context.strokes.contains(&hit);
-    let chosen: Vec<usize> = match (pen.keys.shift, was_chosen) {
+    let was_selected = context.strokes.contains(&hit);
+    let selected: Vec<usize> = match (pen.keys.shift, was_selected) {
         (true, true) => context.strokes.iter().copied().filter(|&index| index != hit).collect(),
         (true, false) => context.strokes.iter().copied().chain([hit]).collect(),
         (false, true) => context.strokes.to_vec(),
@@ -35,13 +35,13 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let moving = MoveStrokesGesture {
         document: context.document.clone(),
         layer: layer.id,
-        chosen: chosen.clone(),
+        selected: selected.clone(),
         from: pen.place(),
         by: Vec2::ZERO,
         slop_px: SLOP_PT * context.px_per_pt,
         moves: false,
     };
-    (Some(Box::new(moving)), Outcome::Choose(DocumentChoice::Strokes(chosen)))
+    (Some(Box::new(moving)), Outcome::Choose(DocumentChoice::Strokes(selected)))
 }
 
 /// Movements smaller than this are ignored, screen points: a hand trembles while it selects.
@@ -50,7 +50,7 @@ const SLOP_PT: f32 = 3.0;
 struct MoveStrokesGesture {
     document: Document,
     layer: LayerId,
-    chosen: Vec<usize>,
+    selected: Vec<usize>,
     from: Vec2,
     by: Vec2,
     slop_px: f32,
@@ -59,7 +59,7 @@ struct MoveStrokesGesture {
 
 impl MoveStrokesGesture {
     fn with(&self) -> Option<Document> {
-        self.document.with_moved_strokes(self.layer, &self.chosen, self.by)
+        self.document.with_moved_strokes(self.layer, &self.selected, self.by)
     }
 }
 
@@ -74,7 +74,7 @@ impl Gesture for MoveStrokesGesture {
     fn release(&mut self) -> Outcome {
         match self.with().filter(|_| self.moves) {
             Some(document) => {
-                let label = if self.chosen.len() == 1 { "Move stroke" } else { "Move strokes" };
+                let label = if self.selected.len() == 1 { "Move stroke" } else { "Move strokes" };
                 Outcome::Commit { label: label.into(), document, select: None }
             }
             None => Outcome::Cancel,
@@ -121,8 +121,8 @@ mod tests {
         let context = ToolContext { layer, strokes, ..ToolContext::new(&document, &tools) };
         let keys = ModifierKeys { shift, ..ModifierKeys::default() };
         let (gesture, begun) = press(&context, PenSample { keys, ..PenSample::at(from) });
-        let chosen = match begun {
-            Outcome::Choose(DocumentChoice::Strokes(chosen)) => Some(chosen),
+        let selected = match begun {
+            Outcome::Choose(DocumentChoice::Strokes(selected)) => Some(selected),
             _ => None,
         };
         let moved = gesture.and_then(|mut gesture| {
@@ -135,23 +135,23 @@ mod tests {
                 _ => None,
             }
         });
-        (chosen, moved)
+        (selected, moved)
     }
 
     #[test]
-    fn a_stroke_that_is_taken_hold_of_is_chosen_and_moved_alone() {
-        let (chosen, moved) = dragged(&[2], false, vec2(50.0, 61.0), vec2(50.0, 71.5));
-        assert_eq!((chosen, moved), (Some(vec![1]), Some(vec![20.0, 70.5, 100.0])));
+    fn a_stroke_that_is_taken_hold_of_is_selected_and_moved_alone() {
+        let (selected, moved) = dragged(&[2], false, vec2(50.0, 61.0), vec2(50.0, 71.5));
+        assert_eq!((selected, moved), (Some(vec![1]), Some(vec![20.0, 70.5, 100.0])));
     }
 
     #[test]
-    fn strokes_chosen_together_move_together() {
-        let (chosen, moved) = dragged(&[0, 2], false, vec2(50.0, 100.0), vec2(50.0, 110.0));
-        assert_eq!((chosen, moved), (Some(vec![0, 2]), Some(vec![30.0, 60.0, 110.0])));
+    fn strokes_selected_together_move_together() {
+        let (selected, moved) = dragged(&[0, 2], false, vec2(50.0, 100.0), vec2(50.0, 110.0));
+        assert_eq!((selected, moved), (Some(vec![0, 2]), Some(vec![30.0, 60.0, 110.0])));
     }
 
     #[test]
-    fn shift_chooses_more_or_fewer_and_a_click_beside_all_lets_go() {
+    fn shift_selects_more_or_fewer_and_a_click_beside_all_lets_go() {
         let still = |strokes: &[usize], shift: bool, at: Vec2| dragged(strokes, shift, at, at);
         assert_eq!(still(&[0], true, vec2(50.0, 60.0)), (Some(vec![0, 1]), None));
         assert_eq!(still(&[0, 1], true, vec2(50.0, 60.0)), (Some(vec![0]), None));

@@ -1,4 +1,4 @@
-//! The transform tool: a gizmo with handles around the chosen layers and groups, which stay live
+//! The transform tool: a gizmo with handles around the selected layers and groups, which stay live
 //! until it is applied. Floor 5. Not here: what a layer becomes under its transform
 //! (`document::layer`).
 
@@ -26,7 +26,7 @@ use placed::{DragMap, LayerPlacement, to_storable};
 pub struct TransformSettings {
     /// What it moves.
     pub target: TransformTarget,
-    /// The points of the selected layer's mesh that are chosen.
+    /// The selected points of the primary layer's mesh.
     pub mesh_points: Vec<usize>,
 }
 
@@ -36,9 +36,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let content =
         GizmoContent::new(context.tools.transform.target, document, context.selected_layers());
     let of_shape = content == GizmoContent::Shape;
-    let chosen = if of_shape { &[] } else { context.selected_layers() };
+    let selected = if of_shape { &[] } else { context.selected_layers() };
     let layers: Vec<&Layer> =
-        chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
+        selected.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
     if layers.is_empty() && !of_shape {
         return (None, Outcome::Refused("Select a layer first.".into()));
     }

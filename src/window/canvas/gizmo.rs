@@ -11,12 +11,12 @@ use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2
 /// Side of a handle, points.
 const HANDLE_PT: f32 = 9.0;
 
-/// Draws the gizmo around the chosen layers.
+/// Draws the gizmo around the selected layers.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(open) = session.active() else { return };
-    let chosen = open.outermost_chosen();
+    let selected = open.outermost_selected();
     if session.tools.transform.target == TransformTarget::Paint
-        && let [one] = chosen[..]
+        && let [one] = selected[..]
         && let Some((mesh, points)) = open
             .shown_document()
             .layer(one)
@@ -26,8 +26,8 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
         let at = |p: Vec2| to_screen(map.outside_own().to_canvas(mesh.at(p).0).unwrap_or(p));
         grid(painter, &mesh, &at);
         for (k, point) in points.into_iter().enumerate() {
-            let is_chosen = session.tools.transform.mesh_points.contains(&k);
-            let color = if is_chosen { Color32::from_rgb(255, 200, 80) } else { Color32::WHITE };
+            let is_selected = session.tools.transform.mesh_points.contains(&k);
+            let color = if is_selected { Color32::from_rgb(255, 200, 80) } else { Color32::WHITE };
             painter.circle(
                 to_screen(point),
                 0.5 * HANDLE_PT,

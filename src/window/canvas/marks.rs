@@ -44,7 +44,7 @@ pub fn draw(
         super::text_carets::draw(painter, session, &to_screen);
     }
     if tool == ToolKind::Strokes {
-        chosen(painter, session, &to_screen);
+        draw_selected_strokes(painter, session, &to_screen);
     }
     if tool == ToolKind::Lasso && !session.tools.lasso.is_empty() {
         let line: Vec<Pos2> =
@@ -184,17 +184,17 @@ struct OutlineCache {
 }
 
 /// The selected strokes: their outlines, or the lines through their samples while they move.
-fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
+fn draw_selected_strokes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some((open, layer)) = session.active().zip(session.layer()) else { return };
     let document = open.shown_document();
     let strokes = document.strokes_on_canvas(layer.id);
-    let chosen: Vec<&Arc<PaintStroke>> =
-        open.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
+    let selected: Vec<&Arc<PaintStroke>> =
+        open.selected_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
     if open.is_previewing() {
-        return chosen.into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
+        return selected.into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
     }
     let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
-    outlined(painter, chosen, &scene, to_screen);
+    outlined(painter, selected, &scene, to_screen);
 }
 
 /// Dark beneath light, so that it is visible on any picture.

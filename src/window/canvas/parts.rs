@@ -1,4 +1,4 @@
-//! The shape's parts on the picture: the outline of the chosen one with its handles, touches as
+//! The shape's parts on the picture: the outline of the selected one with its handles, touches as
 //! arrows, the dab of the sculpting tool. Floor 7. Not here: what a drag of them does
 //! (`tools::shape`).
 
@@ -29,7 +29,7 @@ const LIGHT: Color32 = Color32::from_rgb(120, 200, 255);
 #[derive(Default)]
 pub struct PartMarks {
     known: PartPictures,
-    chosen: PartOutline,
+    selected: PartOutline,
     under: PartOutline,
 }
 
@@ -75,14 +75,16 @@ impl PartMarks {
         };
         let scale = screen_from_canvas.matrix2.x_axis.length().max(1e-6);
         let level = (1.0 / scale).log2().floor().max(0.0) as u32;
-        let chosen = session
+        let selected = session
             .active()
             .and_then(|open| open.part.as_deref())
             .map(|id| on_form(document.parts.part(id), id));
         let area_of = |id: &str| areas.iter().find(|(part, _)| part.id == id);
         let at = under.filter(|_| !session.is_drawing()).and_then(|at| nearest_at(&areas, at));
-        if let Some((_, area)) =
-            at.as_ref().filter(|part| chosen != Some(&*part.id)).and_then(|part| area_of(&part.id))
+        if let Some((_, area)) = at
+            .as_ref()
+            .filter(|part| selected != Some(&*part.id))
+            .and_then(|part| area_of(&part.id))
         {
             outline(
                 painter,
@@ -91,17 +93,18 @@ impl PartMarks {
                 Stroke::new(1.0, Color32::from_white_alpha(150)),
             );
         }
-        if let Some((part, area)) = chosen.and_then(area_of) {
+        if let Some((part, area)) = selected.and_then(area_of) {
             let look = Stroke::new(1.4, LIGHT);
             // While it is dragged, its last form moves with it.
             let map = self.known.moved(&part.id);
             let moved = |p: Vec2| to_screen(map.transform_point2(p));
-            outline(painter, self.chosen.runs(area, level), &moved, look);
+            outline(painter, self.selected.runs(area, level), &moved, look);
             if tool == ToolKind::Shape {
                 let gizmo = PartGizmo::of(part, area, 1.0 / scale).transformed(map);
                 handles(painter, part, &gizmo, &to_screen);
-                let told = under.and_then(|at| Some((at, gizmo.handle_at(at)?.describe(part)?)));
-                if let Some((at, text)) = told {
+                let described =
+                    under.and_then(|at| Some((at, gizmo.handle_at(at)?.describe(part)?)));
+                if let Some((at, text)) = described {
                     hint(painter, to_screen(at), &text);
                 }
             }
@@ -126,7 +129,7 @@ impl PartMarks {
     }
 }
 
-/// The part that has a form: the chosen one, or the one that it lies on.
+/// The part that has a form: the selected one, or the one that it lies on.
 fn on_form<'a>(part: Option<&'a Arc<Part>>, id: &'a str) -> &'a str {
     part.and_then(|part| part.on()).unwrap_or(id)
 }

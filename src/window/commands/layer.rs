@@ -10,12 +10,12 @@ use crate::file_purpose::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
 use crate::session::actions::{ClipboardAction, LayerAction, NewLayer, PartAction};
-use crate::session::chosen::{neighbor, range};
+use crate::session::selected_layers::{neighbor, range};
 use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use eframe::egui::Key;
 
-/// Does something with all chosen layers; if there are none, says so.
-fn with_chosen(
+/// Does something with all selected layers; if there are none, says so.
+fn with_selected(
     session: &Session,
     requests: &mut UiRequests,
     action: impl FnOnce(LayerPaths) -> LayerAction,
@@ -26,7 +26,7 @@ fn with_chosen(
 }
 
 /// Does something with the selected layer.
-fn with_selected(
+fn with_primary(
     session: &Session,
     requests: &mut UiRequests,
     action: impl FnOnce(LayerPath) -> LayerAction,
@@ -35,7 +35,7 @@ fn with_selected(
 }
 
 fn set(session: &Session, requests: &mut UiRequests, to: Property) {
-    with_chosen(session, requests, |layer| LayerAction::Set { layer, to, done: true });
+    with_selected(session, requests, |layer| LayerAction::Set { layer, to, done: true });
 }
 
 fn add(requests: &mut UiRequests, kind: NewLayer) {
@@ -49,7 +49,7 @@ fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
 
 /// Moves to the next layer, or adds it.
 fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
-    let Some((open, primary)) = session.active().and_then(|open| Some((open, open.selected?)))
+    let Some((open, primary)) = session.active().and_then(|open| Some((open, open.primary?)))
     else {
         return;
     };
@@ -59,7 +59,7 @@ fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
     let ids = anchor.map_or_else(|| vec![to], |anchor| range(&listed, anchor, to));
     requests
         .actions
-        .extend(LayerAction::choosing(open.document(), &ids, anchor).map(Action::Layer));
+        .extend(LayerAction::select_layers(open.document(), &ids, anchor).map(Action::Layer));
 }
 
 /// Whether something is true of the selected layer.
@@ -89,7 +89,7 @@ fn is_locked(session: &Session, lock: LayerLock) -> bool {
 }
 
 fn is_alone(session: &Session) -> bool {
-    session.active().is_some_and(|open| open.solo.is_some() && open.solo == open.selected)
+    session.active().is_some_and(|open| open.solo.is_some() && open.solo == open.primary)
 }
 
 fn has_mask(session: &Session) -> bool {
@@ -169,9 +169,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Split part by place",
         &[],
         "Separate areas of the selected part's color, such as two eyes, become separate parts",
-        |session| session.active().and_then(|open| open.chosen_part()).is_some_and(|part| part.is_of_color()),
+        |session| session.active().and_then(|open| open.selected_part()).is_some_and(|part| part.is_of_color()),
         |session, requests| {
-            if let Some(part) = session.active().and_then(|open| open.chosen_part()) {
+            if let Some(part) = session.active().and_then(|open| open.selected_part()) {
                 requests.act(Action::Part(PartAction::Split { part: part.id.clone() }));
             }
         },
@@ -233,42 +233,42 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
     ),
     row("Duplicate layer", &[], "Copies the selected layers, above them", has_document, |session, requests| {
-        with_chosen(session, requests, |layer| LayerAction::Duplicate { layer })
+        with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
     }),
     row(
         "Delete layer",
         &[shift(Key::Delete)],
         "Deletes the selected layers and what is in them",
         has_document,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Delete { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Delete { layer }),
     ),
     row(
         "Group layer",
         &[ctrl(Key::G)],
         "Puts the selected layers into a new group",
         has_document,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Group { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Group { layer }),
     ),
     row(
         "Ungroup",
         &[ctrl_shift(Key::G)],
         "Takes the layers out of the selected groups",
         has_document,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Ungroup { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Ungroup { layer }),
     ),
     row(
         "Move layer up",
         &[ctrl(Key::PageUp)],
         "Moves the selected layers above the next one",
         has_layer,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Nudge { layer, by: 1 }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: 1 }),
     ),
     row(
         "Move layer down",
         &[ctrl(Key::PageDown)],
         "Moves the selected layers below the next one",
         has_layer,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
     ),
     row(
         "Layer above",
@@ -304,14 +304,14 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[ctrl(Key::E), ctrl_shift(Key::M)],
         "Makes one paint layer of this layer and the one below it, or of all selected ones",
         has_document,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::MergeDown { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::MergeDown { layer }),
     ),
     row(
         "Turn layer into pixels",
         &[ctrl_shift(Key::B)],
         "Turns a live layer into paint: it keeps its look and no longer follows the surface",
         is_live,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Bake { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Bake { layer }),
     ),
     row(
         "Flatten picture",
@@ -329,7 +329,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| {
             let mask = session.layer().and_then(|layer| layer.mask.clone());
             let is_on = is_on_mask(session);
-            with_selected(session, requests, |layer| match mask {
+            with_primary(session, requests, |layer| match mask {
                 Some(mask) if matches!(mask.kind, MaskKind::File { .. }) => LayerAction::OnMask { layer, on: !is_on },
                 _ => LayerAction::PaintMask { layer, hides: false },
             });
@@ -358,7 +358,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     })
     .ticked(|session, _| is_shown(session)),
     row("Show layer alone", &[], "Hides all other layers, or shows them again", has_layer, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Solo { layer })
+        with_primary(session, requests, |layer| LayerAction::Solo { layer })
     })
     .ticked(|session, _| is_alone(session)),
     row(

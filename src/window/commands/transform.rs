@@ -1,4 +1,4 @@
-//! Transforms of the chosen layers: a menu within Edit, and the buttons of the transform tool.
+//! Transforms of the selected layers: a menu within Edit, and the buttons of the transform tool.
 //! Floor 7.
 
 use super::row::{LINE, MenuCommand, has_layer, key, row};
@@ -21,7 +21,7 @@ pub const COMMANDS: &[MenuCommand] = &[
          coordinates",
         is_transformed,
         |session, requests| {
-            with_chosen(session, requests, |layer| LayerAction::ApplyTransform { layer })
+            with_selected(session, requests, |layer| LayerAction::ApplyTransform { layer })
         },
     ),
     row(
@@ -30,7 +30,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Moves the layer back to where it was made",
         is_transformed,
         |session, requests| {
-            with_chosen(session, requests, |layer| {
+            with_selected(session, requests, |layer| {
                 let to = Property::Transformed { transform: None };
                 LayerAction::Set { layer, to, done: true }
             })
@@ -72,7 +72,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Shows the layer as it was before it was liquified",
         is_liquified,
         |session, requests| {
-            with_chosen(session, requests, |layer| {
+            with_selected(session, requests, |layer| {
                 let to = Property::Unliquified {};
                 LayerAction::Set { layer, to, done: true }
             })
@@ -94,26 +94,26 @@ fn is_transformed(session: &Session) -> bool {
         let layer = open.document().layer(id);
         layer.is_some_and(|layer| layer.transform.is_some() || in_hand && layer.liquify.is_some())
     };
-    open.chosen_layers().into_iter().any(is_placed)
+    open.selected_layers().into_iter().any(is_placed)
 }
 
 fn is_liquified(session: &Session) -> bool {
     let Some(open) = session.active() else { return false };
     let has_liquify = |id| open.document().layer(id).is_some_and(|layer| layer.liquify.is_some());
-    open.chosen_layers().into_iter().any(has_liquify)
+    open.selected_layers().into_iter().any(has_liquify)
 }
 
 fn mirror(session: &Session, requests: &mut UiRequests, upright: bool) {
     match shape_by(session, Some(transform::mirror(upright))) {
         Some(action) => requests.act(action),
-        None => with_chosen(session, requests, |layer| LayerAction::Mirror { layer, upright }),
+        None => with_selected(session, requests, |layer| LayerAction::Mirror { layer, upright }),
     }
 }
 
 fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
     match shape_by(session, transform::turn(degrees.into())) {
         Some(action) => requests.act(action),
-        None => with_chosen(session, requests, |layer| LayerAction::Turn { layer, degrees }),
+        None => with_selected(session, requests, |layer| LayerAction::Turn { layer, degrees }),
     }
 }
 
@@ -126,7 +126,7 @@ fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
     Some(Action::Part(PartAction::TakeAlong { by, done: true }))
 }
 
-fn with_chosen(
+fn with_selected(
     session: &Session,
     requests: &mut UiRequests,
     action: impl FnOnce(LayerPaths) -> LayerAction,

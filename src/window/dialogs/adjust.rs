@@ -1,4 +1,4 @@
-//! Adjusts the paint of the chosen layers for good, shown while it is set. Floor 7.
+//! Adjusts the paint of the selected layers for good, shown while it is set. Floor 7.
 
 use super::{DialogAnswer, buttons};
 use crate::file_purpose::FilePurpose;

@@ -18,7 +18,7 @@ pub struct MapsDialog {
 
 impl Default for MapsDialog {
     fn default() -> Self {
-        let options = ShapeOptions { is_directx: false, is_deep: true, is_exr: false };
+        let options = ShapeOptions { is_directx: false, is_16_bit: true, is_exr: false };
         Self { chosen: [true; ShapeMap::ALL.len()], options }
     }
 }
@@ -58,8 +58,8 @@ impl MapsDialog {
         });
         ui.add_enabled_ui(!options.is_exr, |ui| {
             ui.horizontal(|ui| {
-                radio(ui, &mut options.is_deep, true, "16 bits");
-                radio(ui, &mut options.is_deep, false, "8 bits");
+                radio(ui, &mut options.is_16_bit, true, "16 bits");
+                radio(ui, &mut options.is_16_bit, false, "8 bits");
             });
         });
         match buttons(ui, "Export…", self.chosen.contains(&true)) {

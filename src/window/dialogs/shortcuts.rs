@@ -83,7 +83,7 @@ impl ShortcutsDialog {
         if response.on_hover_text("Then press the key; Escape cancels").clicked() {
             (self.waiting, self.conflict) = (Some(name), None);
         }
-        if keymap.is_chosen(keyed) {
+        if keymap.is_custom(keyed) {
             let response = ui.small_button("Reset").on_hover_text("The default keys");
             set_accessible_name(&response, &format!("Reset {name}"));
             if response.clicked() {

@@ -13,12 +13,12 @@ use eframe::egui::Ui;
 #[derive(Clone)]
 pub struct UnwrappedDialog {
     pub scale: u32,
-    pub is_deep: bool,
+    pub is_16_bit: bool,
 }
 
 impl Default for UnwrappedDialog {
     fn default() -> Self {
-        Self { scale: 2, is_deep: false }
+        Self { scale: 2, is_16_bit: false }
     }
 }
 
@@ -28,7 +28,7 @@ impl UnwrappedDialog {
         UnwrapOptions {
             scale: self.scale,
             settings,
-            deep: self.is_deep.then_some(Highlights::Clipped),
+            floats: self.is_16_bit.then_some(Highlights::Clipped),
         }
     }
 
@@ -43,7 +43,7 @@ impl UnwrappedDialog {
             };
             radio(ui, &mut self.scale, scale, about);
         }
-        check_box(ui, &mut self.is_deep, "16 bits a channel");
+        check_box(ui, &mut self.is_16_bit, "16 bits a channel");
         match buttons(ui, "Export…", session.shown_document().is_some()) {
             Some(true) => DialogAnswer::Ask(WindowRequest::ExportUnwrapped),
             Some(false) => DialogAnswer::Close,

@@ -119,7 +119,7 @@ fn chosen_group(ui: &mut Ui, groups: &[ParameterName]) -> &'static str {
     group
 }
 
-/// Shows each parameter of the chosen group, and those outside of groups.
+/// Shows each parameter of the selected group, and those outside of groups.
 struct ParameterRows<'a> {
     ui: &'a mut Ui,
     group: &'static str,

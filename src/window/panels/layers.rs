@@ -1,6 +1,6 @@
-//! The layer list, the topmost first, with controls of the chosen layers above and below. Floor 7.
-//! `row` shows one layer, `drag` handles dragging, `menu` the context menu, `filter` the field that
-//! finds layers.
+//! The layer list, the topmost first, with controls of the selected layers above and below. Floor
+//! 7. `row` shows one layer, `drag` handles dragging, `menu` the context menu, `filter` the field
+//! that finds layers.
 
 mod drag;
 mod filter;
@@ -86,22 +86,22 @@ pub fn show(
         });
 }
 
-/// Blend mode and opacity of the chosen layers, showing those of the primary one.
+/// Blend mode and opacity of the selected layers, showing those of the primary one.
 fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
-    let chosen = session
+    let selected = session
         .active()
-        .map(|open| LayerPaths::of(open.document(), &open.chosen_layers()))
+        .map(|open| LayerPaths::of(open.document(), &open.selected_layers()))
         .unwrap_or_default();
     ui.horizontal(|ui| {
         if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::LABELS) {
-            set(requests, &chosen, Property::Blend { mode }, true);
+            set(requests, &selected, Property::Blend { mode }, true);
         }
         let number = NumberField::new("Opacity", 0.0..=1.0, "Of the whole layer");
         if let Some(changed) =
             number.inline(ui, layer.opacity, (ui.available_width() - 112.0).max(30.0))
         {
-            set(requests, &chosen, Property::Opacity { to: changed.to }, changed.done);
+            set(requests, &selected, Property::Opacity { to: changed.to }, changed.done);
         }
     });
     ui.horizontal(|ui| {
@@ -133,7 +133,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                     Icon::Lock => lock(LayerLock::All),
                     _ => Property::ClipBelow { on: !is_on },
                 };
-                set(requests, &chosen, to, true);
+                set(requests, &selected, to, true);
             }
         }
         let is_alone = session.active().is_some_and(|open| open.solo == Some(layer.id));

@@ -2,7 +2,9 @@
 //! materials and lights (`material`).
 
 use super::setter::LayerSetter;
-use super::{adjustment, colors, form_drawing, home, mask, material, options, ramp, strokes, text};
+use super::{
+    adjustment, attachment, colors, form_drawing, mask, material, options, ramp, strokes, text,
+};
 use crate::document::{Content, DetailSource, Document, Histogram, Layer, NormalLayer, Progress};
 use crate::file_purpose::FilePurpose;
 use crate::math::{Vec2, vec2};
@@ -85,7 +87,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
     ui.separator();
     let on_mask = session.active().is_some_and(|open| open.on_mask);
     if let Some(document) = session.shown_document() {
-        home(ui, document, layer, &mut setter);
+        attachment(ui, document, layer, &mut setter);
     }
     common(ui, layer, has_surface, on_mask, &mut setter);
 }
@@ -111,11 +113,11 @@ fn beneath(ui: &Ui, session: &Session, layer: &Layer) -> Option<Arc<Histogram>> 
 }
 
 /// Which part carries the layer.
-fn home(ui: &mut Ui, document: &Document, layer: &Layer, setter: &mut LayerSetter) {
+fn attachment(ui: &mut Ui, document: &Document, layer: &Layer, setter: &mut LayerSetter) {
     let in_group = document.place_of(layer.id).is_some_and(|place| place.group.is_some());
-    let around = if in_group { "As its group" } else { home::CANVAS };
-    if let Some(part) = home::choice(ui, document, layer.on.as_ref(), around) {
-        setter.act(|layer| LayerAction::Home { layer: layer.into(), part });
+    let around = if in_group { "As its group" } else { attachment::CANVAS };
+    if let Some(part) = attachment::choice(ui, document, layer.on.as_ref(), around) {
+        setter.act(|layer| LayerAction::Attach { layer: layer.into(), part });
     }
 }
 

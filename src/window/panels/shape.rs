@@ -1,4 +1,4 @@
-//! The shape: its parts, the nearest on top, with the numbers of the chosen one beneath. Floor 7.
+//! The shape: its parts, the nearest on top, with the numbers of the selected one beneath. Floor 7.
 //! `row` shows one part, `numbers` and `kinds` its settings.
 
 mod fields;
@@ -67,7 +67,7 @@ pub fn show(
         },
     );
     ui.add_space(2.0);
-    let Some(part) = open.chosen_part() else { return };
+    let Some(part) = open.selected_part() else { return };
     ScrollArea::vertical().id_salt("part").auto_shrink([false, false]).show(ui, |ui| {
         flats(ui, document, part, requests);
         if let Some(changed) = numbers::show(ui, part) {
@@ -128,7 +128,7 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
         })
         .response
         .on_hover_text("Adds a part in front of all others");
-        let Some(part) = session.active().and_then(|open| open.chosen_part()) else { return };
+        let Some(part) = session.active().and_then(|open| open.selected_part()) else { return };
         let siblings: Vec<&Arc<Part>> =
             document.parts.list.iter().filter(|other| other.on() == part.on()).collect();
         let at = siblings.iter().position(|other| other.id == part.id).unwrap_or(0);

@@ -1,7 +1,7 @@
 //! The strokes of the selected stroke layer: list, selection, style, order, deletion, baking.
 //! Floor 7.
 
-use super::{colors, home, options};
+use super::{attachment, colors, options};
 use crate::icons::{Icon, icon_button};
 use crate::operators::{OPERATORS, OfferedOperator};
 use crate::paint::{Brush, Stroke};
@@ -26,23 +26,27 @@ pub fn show(
 ) {
     let n = strokes.len();
     ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
-    let chosen = session.active().map(|open| open.chosen_strokes()).unwrap_or_default();
-    list(ui, layer, strokes, &chosen, requests);
-    let Some(first) = chosen.first().and_then(|&index| strokes.get(index)) else {
+    let selected = session.active().map(|open| open.selected_strokes()).unwrap_or_default();
+    list(ui, layer, strokes, &selected, requests);
+    let Some(first) = selected.first().and_then(|&index| strokes.get(index)) else {
         ui.weak("Select strokes here or on the canvas with the stroke tool (S).");
         return;
     };
-    buttons(ui, layer, n, &chosen, requests);
-    title(ui, if chosen.len() == 1 { "Stroke" } else { "Strokes" });
+    buttons(ui, layer, n, &selected, requests);
+    title(ui, if selected.len() == 1 { "Stroke" } else { "Strokes" });
     if let Some(document) = session.shown_document()
-        && let Some(part) =
-            home::choice(ui, document, first.home().map(|home| &home.frame), "As its layer")
+        && let Some(part) = attachment::choice(
+            ui,
+            document,
+            first.attachment().map(|attachment| &attachment.frame),
+            "As its layer",
+        )
     {
-        let (layer, strokes) = (layer.clone(), chosen.clone());
-        requests.act(Action::Stroke(StrokeAction::Home { layer, strokes, part }));
+        let (layer, strokes) = (layer.clone(), selected.clone());
+        requests.act(Action::Stroke(StrokeAction::Attach { layer, strokes, part }));
     }
     styles(ui, first, |to, done| {
-        let (layer, strokes) = (layer.clone(), chosen.clone());
+        let (layer, strokes) = (layer.clone(), selected.clone());
         requests.act(Action::Stroke(StrokeAction::Restyle { layer, strokes, to, done }));
     });
 }
@@ -52,7 +56,7 @@ fn list(
     ui: &mut Ui,
     layer: &LayerPath,
     strokes: &[Arc<Stroke>],
-    chosen: &[usize],
+    selected: &[usize],
     requests: &mut UiRequests,
 ) {
     let height = ui.spacing().interact_size.y;
@@ -61,7 +65,7 @@ fn list(
     area.auto_shrink([false, true]).show_rows(ui, height, strokes.len(), |ui, rows| {
         for index in rows.map(|row| strokes.len() - 1 - row) {
             let Some(stroke) = strokes.get(index) else { continue };
-            let is_on = chosen.contains(&index);
+            let is_on = selected.contains(&index);
             ui.horizontal(|ui| {
                 swatch(
                     ui,
@@ -73,7 +77,7 @@ fn list(
                 let row = Button::selectable(is_on, name).min_size(vec2(ui.available_width(), 0.0));
                 if ui.add(row).clicked() {
                     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
-                    let strokes = toggled(chosen, index, adds);
+                    let strokes = toggled(selected, index, adds);
                     requests.act(Action::Stroke(StrokeAction::Choose {
                         layer: layer.clone(),
                         strokes,
@@ -86,11 +90,11 @@ fn list(
 }
 
 /// The selection after a click on a row.
-fn toggled(chosen: &[usize], index: usize, adds: bool) -> Vec<usize> {
-    match (adds, chosen.contains(&index)) {
+fn toggled(selected: &[usize], index: usize, adds: bool) -> Vec<usize> {
+    match (adds, selected.contains(&index)) {
         (false, _) => vec![index],
-        (true, true) => chosen.iter().copied().filter(|&other| other != index).collect(),
-        (true, false) => chosen.iter().copied().chain([index]).collect(),
+        (true, true) => selected.iter().copied().filter(|&other| other != index).collect(),
+        (true, false) => selected.iter().copied().chain([index]).collect(),
     }
 }
 
@@ -98,13 +102,13 @@ fn buttons(
     ui: &mut Ui,
     layer: &LayerPath,
     count: usize,
-    chosen: &[usize],
+    selected: &[usize],
     requests: &mut UiRequests,
 ) {
-    let (layer, strokes) = (|| layer.clone(), || chosen.to_vec());
+    let (layer, strokes) = (|| layer.clone(), || selected.to_vec());
     let mut act = |action: StrokeAction| requests.act(Action::Stroke(action));
     ui.horizontal(|ui| {
-        if let [stroke] = *chosen {
+        if let [stroke] = *selected {
             if stroke + 1 < count && icon_button(ui, Icon::Up, "Stroke up", false).clicked() {
                 act(StrokeAction::Order { layer: layer(), stroke, to: stroke + 1 });
             }

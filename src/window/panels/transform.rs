@@ -49,8 +49,9 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     meshes(ui, session, requests);
     ui.add_space(6.0);
     let Some(open) = session.active() else { return };
-    let chosen = open.outermost_chosen();
-    let transforms = chosen.iter().filter_map(|id| open.document().layer(*id)?.transform.as_ref());
+    let selected = open.outermost_selected();
+    let transforms =
+        selected.iter().filter_map(|id| open.document().layer(*id)?.transform.as_ref());
     if let Some(transform) = transforms.last() {
         ui.label("Pixels");
         if let Some(filter) =
@@ -109,11 +110,11 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let of_shape = session.tools.transform.target == TransformTarget::Shape
         && open.document().surface.is_some();
     let locked = |id| open.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
-    let chosen = open.outermost_chosen();
-    if chosen.is_empty() && !of_shape {
+    let selected = open.outermost_selected();
+    if selected.is_empty() && !of_shape {
         return drop(ui.weak("Select layers to move, scale and turn them"));
     }
-    if !of_shape && chosen.iter().any(|id| locked(*id)) {
+    if !of_shape && selected.iter().any(|id| locked(*id)) {
         return drop(ui.weak("Locked layers cannot be transformed"));
     }
     let (Some(gizmo), Some(before)) = (

@@ -140,7 +140,7 @@ impl MainWindow {
     /// Reads a picture for the selected layer.
     fn read_part(&mut self, part: PicturePart, file: PathBuf) {
         let Some((key, layer)) =
-            self.session.active().and_then(|open| Some((open.key, open.selected?)))
+            self.session.active().and_then(|open| Some((open.key, open.primary?)))
         else {
             return;
         };
@@ -180,7 +180,7 @@ impl MainWindow {
         self.apply(&Action::Clipboard(ClipboardAction::PastePicture { picture, to, at }));
     }
 
-    /// A table of colors for the dialog that is open, or for the chosen adjustment layers.
+    /// A table of colors for the dialog that is open, or for the selected adjustment layers.
     fn read_color_table(&mut self, file: &Path) {
         let budget = Budget::of_this_machine();
         let read = crate::io::files::read_file(file, budget.json_bytes);

@@ -311,9 +311,9 @@ impl MainWindow {
     /// Looks for the drawing that will get a shape; then a dialog asks which.
     pub(super) fn look_for_drawing(&mut self) {
         let Some(open) = self.session.active() else { return };
-        let (key, document, selected) = (open.key, open.document().clone(), open.selected);
+        let (key, document, primary) = (open.key, open.document().clone(), open.primary);
         let look = move |_: &Progress| {
-            let found = shape::find_drawing(&document, selected);
+            let found = shape::find_drawing(&document, primary);
             JobResult::then(move |window: &mut Self, _| {
                 let all = &window.session.open_documents;
                 if let Some(open) = all.iter().find(|other| other.key == key) {

@@ -101,8 +101,8 @@ impl Carrier<'_> {
             None
         } else {
             let filter = layer.transform.as_ref().map_or(TURNED, |transform| transform.filter);
-            let told = LayerTransform::of_map(&next, filter, *to);
-            Some(told.ok_or_else(|| {
+            let carried_by_map = LayerTransform::of_map(&next, filter, *to);
+            Some(carried_by_map.ok_or_else(|| {
                 format!(
                     "“{}” is in a perspective that the corners of the new canvas cannot describe. Apply its \
                      transform first.",

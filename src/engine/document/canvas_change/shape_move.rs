@@ -4,7 +4,7 @@
 
 use super::parts::{carry, outline_mut, same_object};
 use crate::document::FrameBox;
-use crate::document::homes::transform_of;
+use crate::document::attachments::transform_of;
 use crate::document::parts::{OutlineSource, Part};
 use crate::document::selections::selecting;
 use crate::document::{
@@ -91,7 +91,8 @@ impl Document {
             ..self.clone()
         };
         let parts: Vec<Arc<Part>> = parts;
-        let next = if parts.is_empty() { bare } else { bare.with_parts(parts).with_homes_of(self) };
+        let next =
+            if parts.is_empty() { bare } else { bare.with_parts(parts).with_attachments_of(self) };
         if next.surface.is_none() {
             return Err("No part of the shape would be left on the canvas.".into());
         }

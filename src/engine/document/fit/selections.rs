@@ -56,8 +56,8 @@ pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
 }
 
 fn selected(selection: &Selection, canvas: Size) -> Fit {
-    if let Some(told) = &selection.made {
-        return region(told);
+    if let Some(from_region) = &selection.made {
+        return region(from_region);
     }
     let rect = selection.coverage.covered_rect();
     [rect.x0, rect.y0, rect.x1, rect.y1]

@@ -283,8 +283,8 @@ fn a_clipped_layer_left_out_does_not_come_between_the_base_and_what_is_clipped_t
     let clipped = |layer| with(layer, |l| l.clip_below = true);
     let hidden = with(clipped(fill("#00ff00")), |l| l.visible = false);
     let document = document(vec![left_of(30, "#ff0000"), hidden, clipped(fill("#0000ff"))]);
-    let chosen = [document.layers[0].id, document.layers[2].id];
-    let alone = flatten_layers(&document, &chosen, &Progress::default()).unwrap();
+    let selected = [document.layers[0].id, document.layers[2].id];
+    let alone = flatten_layers(&document, &selected, &Progress::default()).unwrap();
     assert_eq!((alone.pixel(10, 10), alone.pixel(40, 10)), ([0, 0, 255, 255], [0; 4]));
 }
 
@@ -301,7 +301,7 @@ fn what_an_opaque_layer_hides_is_never_asked_for() {
         at: TileAt::new(0, 0),
         far: None,
         sought: None,
-        deep: None,
+        floats: None,
     };
     assert_eq!(composer.first_visible(&prepared.stack), 1);
     assert!(composer.stack(&prepared.stack, &mut pixels).is_continue());

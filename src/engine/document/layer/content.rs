@@ -159,8 +159,8 @@ trait LayerKind {
         false
     }
 
-    /// Whether marks of it have homes of their own.
-    fn has_homes(&self) -> bool {
+    /// Whether marks of it have attachments of their own.
+    fn has_attachments(&self) -> bool {
         false
     }
 
@@ -319,9 +319,9 @@ impl Content {
         }
     }
 
-    /// Whether marks of it have homes that differ from the layer's.
-    pub fn has_homes(&self) -> bool {
-        self.kind().has_homes()
+    /// Whether marks of it have attachments that differ from the layer's.
+    pub fn has_attachments(&self) -> bool {
+        self.kind().has_attachments()
     }
 
     /// The same kind without what was painted; `None` for what is not painted on.

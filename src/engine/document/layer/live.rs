@@ -15,8 +15,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub struct Live<T> {
     params: Arc<T>,
     rendered: Arc<RenderedTiles>,
-    /// Whether marks of it have homes of their own, once computed.
-    has_homes: Arc<OnceLock<bool>>,
+    /// Whether marks of it have attachments of their own, once computed.
+    has_attachments: Arc<OnceLock<bool>>,
     /// The box around what is painted, on the scene it was last computed for.
     painted_box: Arc<Mutex<Option<(Scene, Rect)>>>,
 }
@@ -71,7 +71,7 @@ impl<T> Live<T> {
         Self {
             params: Arc::new(params),
             rendered: Arc::default(),
-            has_homes: Arc::default(),
+            has_attachments: Arc::default(),
             painted_box: Arc::default(),
         }
     }
@@ -82,8 +82,8 @@ impl<T> Live<T> {
     }
 
     /// What was once found about the parameters is kept.
-    pub(in crate::document) fn has_homes(&self, sought: impl FnOnce(&T) -> bool) -> bool {
-        *self.has_homes.get_or_init(|| sought(&self.params))
+    pub(in crate::document) fn has_attachments(&self, sought: impl FnOnce(&T) -> bool) -> bool {
+        *self.has_attachments.get_or_init(|| sought(&self.params))
     }
 
     /// The box around what is painted on a scene, computed once.
@@ -159,9 +159,9 @@ impl<T> Live<T> {
 
     /// The same, to be rendered behind contours where it only counted as the same.
     pub fn settled(&self) -> Self {
-        let (params, has_homes, painted_box) =
-            (self.params.clone(), self.has_homes.clone(), self.painted_box.clone());
-        let next = Self { params, rendered: Arc::default(), has_homes, painted_box };
+        let (params, has_attachments, painted_box) =
+            (self.params.clone(), self.has_attachments.clone(), self.painted_box.clone());
+        let next = Self { params, rendered: Arc::default(), has_attachments, painted_box };
         if let Some((scene, old)) = self.lock().clone() {
             let mut cells = TileCells::for_scene(&scene);
             cells.cells.clone_from(&old.cells);

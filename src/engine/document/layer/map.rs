@@ -6,13 +6,13 @@
 //! live ones are mapped, pixels are sampled once, however many transforms there are.
 //!
 //! What lies on a part of the shape is carried by it: first the layer's own transform, then the
-//! part's matrix, then the transforms of the groups around. The innermost home counts; those of
-//! groups around it do not.
+//! part's matrix, then the transforms of the groups around. The innermost attachment counts; those
+//! of groups around it do not.
 
 use super::Layer;
 use crate::math::plane_map::{PixelMove, orthogonal};
 use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2};
-use crate::paint::{HomeFrame, StrokeHome};
+use crate::paint::{Attachment, StrokeAttachment};
 use crate::raster::Resampling;
 use crate::raster::warp::{PixelMap, PointRow};
 
@@ -26,7 +26,7 @@ pub struct LayerMap {
     pub(in crate::document) canvas: Size,
     /// The transform of the layer itself.
     own: PlaneMap,
-    /// Those of the groups around it, without the homes of these.
+    /// Those of the groups around it, without the attachments of these.
     around: PlaneMap,
 }
 
@@ -52,7 +52,7 @@ impl LayerMap {
         Self { plane, ..*self }
     }
 
-    /// With the transform and the home of one more layer inside.
+    /// With the transform and the attachment of one more layer inside.
     pub fn within(&self, layer: &Layer) -> Self {
         let own = layer
             .transform
@@ -61,13 +61,13 @@ impl LayerMap {
             .unwrap_or_default();
         let plane = own.then(&self.outside(layer.on.as_ref()));
         let filter = layer.transform.as_ref().map_or(self.filter, |transform| transform.filter);
-        Self { plane, filter, own, around: self.without_homes(), ..*self }
+        Self { plane, filter, own, around: self.without_attachments(), ..*self }
     }
 
     /// What takes the frame of a layer inside, after its own transform, to the canvas.
-    pub(in crate::document) fn outside(&self, home: Option<&HomeFrame>) -> PlaneMap {
-        match home {
-            Some(home) => home.map().then(&self.without_homes()),
+    pub(in crate::document) fn outside(&self, attachment: Option<&Attachment>) -> PlaneMap {
+        match attachment {
+            Some(attachment) => attachment.map().then(&self.without_attachments()),
             None => self.plane,
         }
     }
@@ -87,29 +87,29 @@ impl LayerMap {
     }
 
     /// As [`LayerMap::plane`] while every part is where it was made.
-    pub(in crate::document) fn without_homes(&self) -> PlaneMap {
+    pub(in crate::document) fn without_attachments(&self) -> PlaneMap {
         self.own.then(&self.around)
     }
 
     /// The same layer where its parts were made: no part carries it.
-    pub(in crate::document) fn at_home(&self) -> Self {
-        Self { plane: self.without_homes(), ..*self }
+    pub(in crate::document) fn unattached(&self) -> Self {
+        Self { plane: self.without_attachments(), ..*self }
     }
 
-    /// For a stroke of the layer that has a home of its own.
-    pub(in crate::document) fn of_stroke(&self, home: &StrokeHome) -> Self {
-        let own = home.own_map().then(&self.own);
-        Self { plane: own.then(&home.frame.map()).then(&self.around), own, ..*self }
+    /// For a stroke of the layer that has an attachment of its own.
+    pub(in crate::document) fn of_stroke(&self, attachment: &StrokeAttachment) -> Self {
+        let own = attachment.own_map().then(&self.own);
+        Self { plane: own.then(&attachment.frame.map()).then(&self.around), own, ..*self }
     }
 
-    /// It moves nothing that has no home of its own.
+    /// It moves nothing that has no attachment of its own.
     pub fn is_none(&self) -> bool {
         self.plane.is_identity_on(self.canvas)
     }
 
-    /// Nor does it move anything that lies on a home of its own.
+    /// Nor does it move anything that lies on an attachment of its own.
     pub(in crate::document) fn is_still(&self) -> bool {
-        self.is_none() && self.without_homes().is_identity_on(self.canvas)
+        self.is_none() && self.without_attachments().is_identity_on(self.canvas)
     }
 
     pub(in crate::document) fn canvas(&self) -> Size {

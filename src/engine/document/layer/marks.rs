@@ -1,9 +1,9 @@
 //! How live layers are rendered without rounding to bytes. Floor 4. Not here: composing the results
-//! (`deep`), rendering marks (`paint`, `shading`).
+//! (`floats`), rendering marks (`paint`, `shading`).
 
 use crate::document::Progress;
 use crate::paint::Scene;
-use crate::raster::{DeepTexture, PlanarTile, TileAt};
+use crate::raster::{FloatTexture, PlanarTile, TileAt};
 use std::sync::Arc;
 
 /// What a live layer is rendered from.
@@ -17,7 +17,7 @@ pub(in crate::document) trait Marks {
     }
 
     /// The texture that tiles are read from, to be kept meanwhile.
-    fn texture(&self) -> Option<Arc<DeepTexture>> {
+    fn texture(&self) -> Option<Arc<FloatTexture>> {
         None
     }
 

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 impl LayerMap {
     /// A layer of which this is the map, as it lies on the canvas: content and mask taken there, no
-    /// transform, no home.
+    /// transform, no attachment.
     pub fn layer_on_canvas(&self, layer: &Arc<Layer>) -> Arc<Layer> {
         let seen = seen(layer, self);
         Arc::new(Layer { transform: None, liquify: None, on: None, ..Layer::clone(&seen) })
@@ -24,11 +24,11 @@ pub(in crate::document) fn on_canvas(layer: &Arc<Layer>, map: &LayerMap) -> Arc<
     seen(layer, &map.within(layer))
 }
 
-/// The same with the layer's own transform and home in the map.
+/// The same with the layer's own transform and attachment in the map.
 pub(in crate::document) fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
     let layer = &without_ink(layer);
     let warp = LayerWarp::of(layer, map);
-    if map.is_none() && warp.is_none() && !layer.content.has_homes() {
+    if map.is_none() && warp.is_none() && !layer.content.has_attachments() {
         return layer.clone();
     }
     let (content, mask) = layer.cache.on_canvas.get(layer, map, warp.as_ref());
@@ -157,7 +157,7 @@ impl CanvasCache {
                 Content::Pixels(own.displaced(map, warp, last))
             }
             (_, Some(last)) => last.content.clone(),
-            (content, None) => match map.is_none() && !content.has_homes() {
+            (content, None) => match map.is_none() && !content.has_attachments() {
                 true => content.clone(),
                 false => content.on_canvas(map, None),
             },

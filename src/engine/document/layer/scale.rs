@@ -8,10 +8,10 @@ use super::Layer;
 use super::map::LayerMap;
 use super::mask::{DerivedMask, MaskKind};
 use super::transform::{LayerTransform, scaled_matrix};
-use crate::math::srgb::{quantize, quantize_deep};
+use crate::math::srgb::{quantize, quantize16};
 use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
-use crate::paint::{Placement, Sample, Selection, Stroke, StrokeHome};
-use crate::raster::tile::deep;
+use crate::paint::{Placement, Sample, Selection, Stroke, StrokeAttachment};
+use crate::raster::tile::sixteen_bit;
 use crate::raster::warp::{warped_plane_onto, warped_tile};
 use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
@@ -177,15 +177,15 @@ impl CanvasScale {
         let selection =
             stroke.selection().map(|own| own.scaled(self.selection(&own.selection), self.per_axis));
         let brush = stroke.brush().scaled(self.length);
-        let home = |home: &Arc<StrokeHome>| {
-            Arc::new(StrokeHome {
-                own: scaled_matrix(home.own, self.per_axis),
-                ..StrokeHome::clone(home)
+        let attachment = |attachment: &Arc<StrokeAttachment>| {
+            Arc::new(StrokeAttachment {
+                own: scaled_matrix(attachment.own, self.per_axis),
+                ..StrokeAttachment::clone(attachment)
             })
         };
         Stroke::new(brush, stroke.operator().scaled(self.length), stroke.color(), samples)
             .within(selection)
-            .on(stroke.home().map(home))
+            .on(stroke.attachment().map(attachment))
     }
 
     pub fn grid(&self, grid: &TileGrid) -> TileGrid {
@@ -238,13 +238,15 @@ impl CanvasScale {
             sums
         };
         let mut row = vec![[0.0; 4]; source.width()];
-        if grid.is_deep_at(source) {
-            let mut pixels = deep::clear_rows();
+        if grid.is_16_bit_at(source) {
+            let mut pixels = sixteen_bit::clear_rows();
             for (pixels, taps) in pixels.iter_mut().zip(&rows) {
                 let levels = sums(taps, &mut row).into_iter().enumerate();
-                levels.for_each(|(x, v)| deep::put(pixels, x, v.map(|v| quantize_deep(v / 255.0))));
+                levels.for_each(|(x, v)| {
+                    sixteen_bit::put(pixels, x, v.map(|v| quantize16(v / 255.0)))
+                });
             }
-            return Tile::from_deep(pixels);
+            return Tile::from_rows16(pixels);
         }
         let mut bytes = Vec::with_capacity(TILE * TILE * 4);
         for taps in &rows {

@@ -53,7 +53,7 @@ impl Document {
         }
         for (part, tiles) in parts.into_iter().zip(pieces) {
             inner.push(Arc::new(Layer {
-                on: self.parts.home(&part.id),
+                on: self.parts.attachment(&part.id),
                 ..paint(part.name.clone(), tiles)
             }));
         }
@@ -92,7 +92,7 @@ impl Document {
         let is_paint = matches!(drawing.content, Content::Pixels(_)) && !drawing.is_warped();
         let is_grouped = !self.layers.iter().any(|layer| layer.id == drawing.id);
         match () {
-            _ if self.home_of(drawing.id).is_some() => {
+            _ if self.attachment_of(drawing.id).is_some() => {
                 Err("This layer is already attached to a part and moves with it.")
             }
             _ if !is_paint => {

@@ -44,12 +44,15 @@ impl DrawnLayer {
     /// A layer as a part sees it. `None` if it is not in the document.
     pub fn of(document: &Document, layer: &Arc<Layer>, part: &Part) -> Option<Self> {
         let map = document.map_of(layer.id)?;
-        let home = document.home_of(layer.id).and_then(|home| document.parts.body_of(&home.part));
+        let attachment = document
+            .attachment_of(layer.id)
+            .and_then(|attachment| document.parts.body_of(&attachment.part));
         let body = document.parts.body_of(&part.id);
-        let is_home = home.zip(body).is_some_and(|(home, body)| home.id == body.id);
-        let map = if is_home { map.at_home() } else { map };
+        let is_attached_alike =
+            attachment.zip(body).is_some_and(|(attachment, body)| attachment.id == body.id);
+        let map = if is_attached_alike { map.unattached() } else { map };
         let warped = document.is_displaced(layer.id).then(|| {
-            let layers = alone(&document.layers, layer.id, is_home).into_iter().collect();
+            let layers = alone(&document.layers, layer.id, is_attached_alike).into_iter().collect();
             let alone = Document { layers, ..Document::empty(document.size) };
             Box::new(WarpedLayer { warps: alone.warps_of(layer.id), alone })
         });
@@ -190,10 +193,10 @@ fn has_surface_selections(layer: &Layer) -> bool {
 /// A layer alone in the groups that it is in, which show nothing else of themselves; `None` if it
 /// is not in this list.
 ///
-/// * `is_home`: what is seen of it is where it would be if no part carried it.
-fn alone(layers: &[Arc<Layer>], id: LayerId, is_home: bool) -> Option<Arc<Layer>> {
+/// * `is_attached_alike`: what is seen of it is where it would be if no part carried it.
+fn alone(layers: &[Arc<Layer>], id: LayerId, is_attached_alike: bool) -> Option<Arc<Layer>> {
     layers.iter().find_map(|layer| {
-        let on = layer.on.clone().filter(|_| !is_home);
+        let on = layer.on.clone().filter(|_| !is_attached_alike);
         let bare = || Layer {
             visible: true,
             opacity: 1.0,
@@ -210,7 +213,7 @@ fn alone(layers: &[Arc<Layer>], id: LayerId, is_home: bool) -> Option<Arc<Layer>
                 Layer { on: on.clone(), ..Layer::clone(layer) }
             }));
         }
-        let inner = alone(&layer.content.group()?.layers, id, is_home)?;
+        let inner = alone(&layer.content.group()?.layers, id, is_attached_alike)?;
         let content = Content::Group(Group { layers: vec![inner], pass_through: true });
         // What is kept of the whole group is of no use.
         Some(Arc::new(Layer { content, cache: LayerCache::default(), ..bare() }))

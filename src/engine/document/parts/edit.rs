@@ -1,5 +1,6 @@
 //! Edits of the list of parts. Each gives a new document with the surface that follows from it;
-//! what lies on a part is carried by it. Floor 4. Not here: what lies where (`document::homes`).
+//! what lies on a part is carried by it. Floor 4. Not here: what lies where
+//! (`document::attachments`).
 
 use super::{CoverageFile, OutlineSource, Part, Parts};
 use crate::document::{Document, LayerId, NamedSelection, Progress};
@@ -68,7 +69,7 @@ impl Document {
             return next;
         }
         let parts = Arc::new(Parts { is_ahead: true, ..Parts::clone(&next.parts) });
-        Document { parts, ..next }.with_homes_placed()
+        Document { parts, ..next }.with_attachments_placed()
     }
 
     /// The same with one part, as [`Document::with_part`] does it.
@@ -105,7 +106,7 @@ impl Document {
     /// where it shows.
     pub fn off_parts(&self, list: Vec<Arc<Part>>) -> Document {
         let parts = Arc::new(Parts { list, ..Parts::default() });
-        let placed = Document { parts, ..self.clone() }.with_homes_placed();
+        let placed = Document { parts, ..self.clone() }.with_attachments_placed();
         Document { parts: Arc::default(), ..placed.detach(|_| true) }
     }
 

@@ -5,7 +5,7 @@ use super::{Inflation, OutlineSource, Part, PartKind, Parts, ProfilePicture};
 use crate::document::{Document, NamedSelection};
 use crate::math::range::{at_most, check_range};
 use crate::math::{COORDINATE, PlaneMap, UNIT, Vec2, Vec3};
-use crate::paint::HomeFrame;
+use crate::paint::Attachment;
 use crate::shading::Light;
 use crate::shape::profiles::MOST_PROFILES;
 use crate::shape::{
@@ -111,8 +111,8 @@ impl Part {
         if self.id.is_empty() {
             return Err("a part has no id".into());
         }
-        if self.id == HomeFrame::CANVAS {
-            return Err(format!("a part cannot have the id “{}”", HomeFrame::CANVAS));
+        if self.id == Attachment::CANVAS {
+            return Err(format!("a part cannot have the id “{}”", Attachment::CANVAS));
         }
         if let Combine::Union { smooth } = self.combine {
             check_range("the union's smoothness", smooth, &Combine::SMOOTH)?;

@@ -58,7 +58,7 @@ impl Document {
 
     /// The same, a step for each part; `None` if canceled.
     pub fn reshaped_with_progress(&self, progress: &Progress) -> Option<Document> {
-        let placed = self.with_homes_placed().with_ink_lifted();
+        let placed = self.with_attachments_placed().with_ink_lifted();
         if placed.is_shaped() {
             placed.parts.forget_flats();
             return Some(placed.with_selections_found());

@@ -27,7 +27,7 @@ pub enum OutlineKey {
     Region(SurfaceRegion, Option<Arc<Surface>>),
     Path(OutlineSource),
     /// Wherever one of some pictures is not black.
-    Told(Vec<Arc<Plane<u8>>>),
+    Profiles(Vec<Arc<Plane<u8>>>),
     Object(Arc<Surface>, u32),
 }
 
@@ -185,7 +185,7 @@ impl OutlineKey {
     pub fn of_part(document: &Document, part: &Part) -> Option<Option<Self>> {
         match (&part.kind, part.outline()) {
             (_, Some(outline)) => Self::of(document, part, outline).map(Some),
-            (PartKind::Profiles { shadings, .. }, None) => Some(Some(Self::Told(
+            (PartKind::Profiles { shadings, .. }, None) => Some(Some(Self::Profiles(
                 shadings.iter().map(|shading| shading.picture.coverage.clone()).collect(),
             ))),
             (_, None) => Some(None),
@@ -224,7 +224,7 @@ impl OutlineKey {
                 a == b && same
             }
             (Self::Path(a), Self::Path(b)) => a == b,
-            (Self::Told(a), Self::Told(b)) => {
+            (Self::Profiles(a), Self::Profiles(b)) => {
                 a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
             }
             (Self::Object(a, x), Self::Object(b, y)) => Arc::ptr_eq(a, b) && x == y,
@@ -267,12 +267,15 @@ impl OutlineKey {
                 let scene = Scene { size: document.size, surface: surface.clone() };
                 covered(&Selection::of_region(*region, &scene).coverage, most_px)
             }
-            Self::Told(pictures) => {
+            Self::Profiles(pictures) => {
                 let size = pictures.first()?.size();
-                let told = |x: usize, y: usize| {
+                let is_inside = |x: usize, y: usize| {
                     pictures.iter().any(|p| p.get(x as i32, y as i32).unwrap_or(0) > 0)
                 };
-                Outline::new((0, 0), &Plane::from_fn(size, |x, y| if told(x, y) { 255 } else { 0 }))
+                Outline::new(
+                    (0, 0),
+                    &Plane::from_fn(size, |x, y| if is_inside(x, y) { 255 } else { 0 }),
+                )
             }
             Self::Path(OutlineSource::Path(points)) => Outline::of_path(points, most_px),
             Self::Path(_) => None,

@@ -12,12 +12,12 @@ const LONGEST: f32 = 320.0;
 /// Its colors, at most.
 const FEW_COLORS: usize = 64;
 /// Colors that are told apart; a photograph has more.
-const TOLD_APART: usize = 1 << 16;
+const MOST_COLORS: usize = 1 << 16;
 
 /// The colors of opaque pixels, the most frequent ones first, at most as many as pixel shading
 /// takes.
 pub fn colors_of(tiles: &TileGrid, canvas: Size) -> Vec<Color> {
-    let counts = counts(tiles, canvas, TOLD_APART);
+    let counts = counts(tiles, canvas, MOST_COLORS);
     let mut colors: Vec<([u8; 3], u32)> = counts.colors.into_iter().collect();
     colors.sort_by_key(|(color, count)| (u32::MAX - count, *color));
     colors.truncate(PixelShading::MOST_COLORS);

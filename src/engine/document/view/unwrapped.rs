@@ -3,7 +3,7 @@
 
 use super::ViewUnavailable;
 use crate::document::{
-    Document, Highlights, Layer, Progress, flatten, flatten_deep, flatten_layer,
+    Document, Highlights, Layer, Progress, flatten, flatten_layer, flatten_to_floats,
 };
 use crate::math::{Rect, Size, Vec2, srgb::quantize, vec2};
 use crate::memory::filled_or_unwind;
@@ -24,7 +24,7 @@ pub struct UnwrapOptions {
     pub settings: UnwrapSettings,
     /// If given, the painting is composed without rounding to 8 bits, and its highlights are
     /// treated this way.
-    pub deep: Option<Highlights>,
+    pub floats: Option<Highlights>,
 }
 
 impl UnwrapOptions {
@@ -34,7 +34,7 @@ impl UnwrapOptions {
 
 impl Default for UnwrapOptions {
     fn default() -> Self {
-        Self { scale: 1, settings: UnwrapSettings { amount: 1.0, smooth_px: 0.0 }, deep: None }
+        Self { scale: 1, settings: UnwrapSettings { amount: 1.0, smooth_px: 0.0 }, floats: None }
     }
 }
 
@@ -95,7 +95,7 @@ pub fn render_unwrapped(
         .or(layout.as_ref().map(|layout| layout.sheet()))
         .ok_or(ViewUnavailable::NothingUnwrapped)?;
     let painting =
-        Painting::of(document, layer, options.deep, progress).ok_or(ViewUnavailable::NoMemory)?;
+        Painting::of(document, layer, options.floats, progress).ok_or(ViewUnavailable::NoMemory)?;
     let scale = options.scale.clamp(*UnwrapOptions::SCALE.start(), *UnwrapOptions::SCALE.end());
     let (size, pixels) = pulled(&painting, view, scale);
     Ok(UnwrappedPicture {
@@ -132,22 +132,22 @@ pub fn placed_over(rect: Rect, picture: Size, canvas: Size) -> Placement {
 /// What is sampled: composed with 8 bits, or without rounding.
 enum Painting {
     Tiles(TileGrid, Size),
-    Deep(Vec<[f32; 4]>, Size),
+    Floats(Vec<[f32; 4]>, Size),
 }
 
 impl Painting {
     fn of(
         document: &Document,
         layer: Option<&Layer>,
-        deep: Option<Highlights>,
+        floats: Option<Highlights>,
         progress: &Progress,
     ) -> Option<Self> {
-        Some(match (layer, deep) {
+        Some(match (layer, floats) {
             (Some(layer), _) => {
                 Painting::Tiles(flatten_layer(document, layer.id, progress)?, document.size)
             }
             (None, Some(highlights)) => {
-                Painting::Deep(flatten_deep(document, highlights, progress)?, document.size)
+                Painting::Floats(flatten_to_floats(document, highlights, progress)?, document.size)
             }
             (None, None) => Painting::Tiles(flatten(document, progress)?, document.size),
         })
@@ -155,11 +155,11 @@ impl Painting {
 
     /// Premultiplied; the canvas's rim is continued beyond it.
     fn pixel(&self, x: i32, y: i32) -> [f32; 4] {
-        let (Painting::Tiles(_, size) | Painting::Deep(_, size)) = self;
+        let (Painting::Tiles(_, size) | Painting::Floats(_, size)) = self;
         let (x, y) = (x.clamp(0, size.width as i32 - 1), y.clamp(0, size.height as i32 - 1));
         match self {
             Painting::Tiles(tiles, _) => tiles.pixel(x, y).map(|v| f32::from(v) / 255.0),
-            Painting::Deep(pixels, size) => pixels[y as usize * size.width as usize + x as usize],
+            Painting::Floats(pixels, size) => pixels[y as usize * size.width as usize + x as usize],
         }
     }
 

@@ -72,8 +72,8 @@ impl<'p> PixelReader<'p> {
         let (x, y) = (x.rem_euclid(TILE as i32) as usize, y.rem_euclid(TILE as i32) as usize);
         match held {
             TileSource::Nothing => [0.0; 4],
-            TileSource::Dry(tile) if tile.is_deep() => {
-                tile.deep_pixel(x, y).map(|v| f32::from(v) / 65535.0)
+            TileSource::Dry(tile) if tile.is_16_bit() => {
+                tile.pixel16(x, y).map(|v| f32::from(v) / 65535.0)
             }
             TileSource::Dry(tile) => {
                 let bytes =

@@ -169,7 +169,7 @@ impl ActiveStroke {
             color: *color,
             samples,
             selection,
-            home: None,
+            attachment: None,
             found: Arc::new(Mutex::new(found)),
         }
     }
@@ -186,7 +186,7 @@ impl ActiveStroke {
             color,
             samples,
             selection,
-            home: None,
+            attachment: None,
             found: Arc::new(Mutex::new(found)),
         }
     }

@@ -117,7 +117,7 @@ pub fn gray(plane: &Plane<f32>) -> Picture {
     let none = || Picture {
         size: Size::new(1, 1),
         texels: crate::raster::picture::Texels::Srgb8([[0; 4]].into()),
-        deep: None,
+        texels16: None,
         encoded: None,
         drawing: None,
     };

@@ -13,7 +13,7 @@ use super::{BlendMode, Mix, TileCoverage, TilePaint, spec};
 use crate::math::srgb;
 use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE;
-use crate::raster::tile::deep::DeepRow;
+use crate::raster::tile::sixteen_bit::Row16;
 use formulas::*;
 
 crate::widest! {
@@ -27,11 +27,11 @@ crate::widest! {
             }
             return;
         }
-        if let (TilePaint::Deep(deep), None, BlendMode::Normal, false, false) =
+        if let (TilePaint::Rows16(rows16), None, BlendMode::Normal, false, false) =
             (paint, coverage.mask(), mix.mode, mix.linear, mix.atop)
         {
-            for (row, deep) in rows.iter_mut().zip(deep.iter()) {
-                deep_over(row, deep, coverage.opacity());
+            for (row, rows16) in rows.iter_mut().zip(rows16.iter()) {
+                over16(row, rows16, coverage.opacity());
             }
             return;
         }
@@ -84,10 +84,10 @@ fn bytes_over(row: &mut PixelRow, bytes: &[u8], opacity: f32) {
 
 /// The same for 16 bits.
 #[inline(always)]
-fn deep_over(row: &mut PixelRow, deep: &DeepRow, opacity: f32) {
+fn over16(row: &mut PixelRow, rows16: &Row16, opacity: f32) {
     let unit = opacity / 65535.0;
     let PixelRow { rgb, a } = row;
-    let [red, green, blue, alpha] = deep;
+    let [red, green, blue, alpha] = rows16;
     for (channel, own) in rgb.iter_mut().zip([red, green, blue]) {
         for x in 0..TILE {
             channel[x] = f32::from(own[x]) * unit + channel[x] * (1.0 - f32::from(alpha[x]) * unit);
@@ -119,10 +119,10 @@ pub(super) fn load(row: &mut PixelRow, paint: &TilePaint<'_>, y: usize, coverage
                 a[x] = ((p >> 24) & 255) as f32 * unit;
             }
         }
-        TilePaint::Deep(deep) => {
+        TilePaint::Rows16(rows16) => {
             let unit = k / 65535.0;
             let PixelRow { rgb, a } = &mut *row;
-            for (channel, own) in rgb.iter_mut().chain([a]).zip(&deep[y]) {
+            for (channel, own) in rgb.iter_mut().chain([a]).zip(&rows16[y]) {
                 for x in 0..TILE {
                     channel[x] = f32::from(own[x]) * unit;
                 }

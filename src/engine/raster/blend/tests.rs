@@ -2,7 +2,7 @@
 
 use super::spec::BlendFunction;
 use super::*;
-use crate::raster::tile::{TILE, TileF32, deep};
+use crate::raster::tile::{TILE, TileF32, sixteen_bit};
 
 /// Straight component values worth trying: ends, edges of the piecewise formulas, and between.
 const VALUES: [f32; 9] = [0.0, 0.1, 0.25, 0.3, 0.5, 0.6, 0.75, 0.9, 1.0];
@@ -249,12 +249,12 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let color = [0.5, 0.25, 0.0, 0.5];
     let tile = PlanarTile::from_pixels(&one_pixel(color));
     let bytes = tile.quantized().unwrap();
-    let deep = tile.to_tile_over(None).unwrap();
+    let quantized = tile.to_tile_over(None).unwrap();
     let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
     for paint in [
         TilePaint::Solid(color),
         TilePaint::of(&bytes),
-        TilePaint::of(&deep),
+        TilePaint::of(&quantized),
         TilePaint::Planar(&tile),
     ] {
         let mut onto = PlanarTile::transparent();
@@ -273,15 +273,15 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
 #[test]
 fn paint_of_16_bits_blends_as_the_floats_that_it_holds() {
     let value = |i: usize, c: u32| (crate::math::hash::unit(i as u32, c, 7) * 65536.0) as u16;
-    let mut rows = deep::clear_rows();
+    let mut rows = sixteen_bit::clear_rows();
     for i in 0..TILE_AREA {
-        deep::put(&mut rows[i / TILE], i % TILE, [0, 1, 2, 3].map(|c| value(i, c)));
+        sixteen_bit::put(&mut rows[i / TILE], i % TILE, [0, 1, 2, 3].map(|c| value(i, c)));
     }
-    let tile = Tile::from_deep(rows).unwrap();
+    let tile = Tile::from_rows16(rows).unwrap();
     let mut floats = PlanarTile::transparent();
     for i in 0..TILE_AREA {
         let (x, y) = (i % TILE, i / TILE);
-        floats.rows_mut()[y].set(x, tile.deep_pixel(x, y).map(|v| f32::from(v) / 65535.0));
+        floats.rows_mut()[y].set(x, tile.pixel16(x, y).map(|v| f32::from(v) / 65535.0));
     }
     let same = |a: &PlanarTile, b: &PlanarTile| {
         (0..TILE_AREA).all(|i| {

@@ -1,6 +1,6 @@
 //! Pixels with straight alpha, as files hold them, cut into tiles and back. Floor 1.
 
-use super::super::tile::{TILE, Tile, TileAt, deep};
+use super::super::tile::{TILE, Tile, TileAt, sixteen_bit};
 use super::TileGrid;
 use crate::math::{Rect, srgb};
 use rayon::prelude::*;
@@ -31,30 +31,24 @@ impl TileGrid {
 
     /// The same for straight values of 16 bits; tiles that bytes hold exactly become tiles of
     /// bytes.
-    pub fn from_straight_deep(
-        rgba: &[[u16; 4]],
-        width: usize,
-        height: usize,
-        x: i32,
-        y: i32,
-    ) -> Self {
-        Self::from_deep_rows(rgba, [width, height], [x, y], deep::premultiplied)
+    pub fn from_straight16(rgba: &[[u16; 4]], width: usize, height: usize, x: i32, y: i32) -> Self {
+        Self::from_straight_rows16(rgba, [width, height], [x, y], sixteen_bit::premultiplied)
     }
 
     /// The same for straight linear light, which is clipped to white, encoded and premultiplied
     /// before it is rounded.
     pub fn from_light(light: &[[f32; 4]], width: usize, height: usize, x: i32, y: i32) -> Self {
-        Self::from_deep_rows(light, [width, height], [x, y], |[r, g, b, a]| {
+        Self::from_straight_rows16(light, [width, height], [x, y], |[r, g, b, a]| {
             // In this order NaN becomes 0.
             let bounded = |v: f32| v.max(0.0).min(1.0);
             let a = bounded(a);
-            let encoded = |v: f32| srgb::quantize_deep(srgb::encode(bounded(v)) * a);
-            [encoded(r), encoded(g), encoded(b), srgb::quantize_deep(a)]
+            let encoded = |v: f32| srgb::quantize16(srgb::encode(bounded(v)) * a);
+            [encoded(r), encoded(g), encoded(b), srgb::quantize16(a)]
         })
     }
 
     /// `of`: a pixel's premultiplied 16 bits; colors above alpha are lowered to it.
-    fn from_deep_rows<T: Copy + Sync>(
+    fn from_straight_rows16<T: Copy + Sync>(
         pixels: &[T],
         [width, height]: [usize; 2],
         [x, y]: [i32; 2],
@@ -63,15 +57,15 @@ impl TileGrid {
         let rect = Rect::new(x, y, x.saturating_add(width as i32), y.saturating_add(height as i32));
         let tile = |at: TileAt| {
             let (area, corner) = (at.rect().intersect(rect), at.rect());
-            let mut rows = deep::clear_rows();
+            let mut rows = sixteen_bit::clear_rows();
             for py in area.y0..area.y1 {
                 let from = (py - y) as usize * width + (area.x0 - x) as usize;
                 let row = &mut rows[(py - corner.y0) as usize];
                 let pixels =
                     pixels[from..from + area.width()].iter().zip((area.x0 - corner.x0) as usize..);
-                pixels.for_each(|(pixel, x)| deep::put(row, x, of(*pixel)));
+                pixels.for_each(|(pixel, x)| sixteen_bit::put(row, x, of(*pixel)));
             }
-            (at, Tile::from_deep(rows).map(Arc::new))
+            (at, Tile::from_rows16(rows).map(Arc::new))
         };
         let places: Vec<TileAt> = TileAt::covering(rect).collect();
         let tiles: Vec<_> = places.into_par_iter().map(tile).collect();
@@ -98,9 +92,9 @@ impl TileGrid {
         out
     }
 
-    /// The same in 16 bits, whatever the tiles hold; [`TileGrid::from_straight_deep`] is the exact
+    /// The same in 16 bits, whatever the tiles hold; [`TileGrid::from_straight16`] is the exact
     /// inverse.
-    pub fn to_straight_deep(&self, rect: Rect) -> Vec<[u16; 4]> {
+    pub fn to_straight16(&self, rect: Rect) -> Vec<[u16; 4]> {
         let mut out = vec![[0; 4]; rect.width() * rect.height()];
         for at in TileAt::covering(rect) {
             let Some(tile) = self.tile(at) else { continue };
@@ -110,7 +104,7 @@ impl TileGrid {
                 let y = (py - corner.y0) as usize;
                 let pixels =
                     out[to..to + area.width()].iter_mut().zip((area.x0 - corner.x0) as usize..);
-                pixels.for_each(|(pixel, x)| *pixel = deep::straight(tile.deep_pixel(x, y)));
+                pixels.for_each(|(pixel, x)| *pixel = sixteen_bit::straight(tile.pixel16(x, y)));
             }
         }
         out
@@ -206,30 +200,34 @@ mod tests {
         texels[0] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0];
         texels[1] = [1.0, 1.0, 1.0, f32::NAN];
         let grid = TileGrid::from_light(&texels, w, h, -3, 5);
-        assert_eq!(
-            (grid.deep_pixel(-3, 5), grid.deep_pixel(-2, 5)),
-            ([0, 65535, 0, 65535], [0; 4])
-        );
+        assert_eq!((grid.pixel16(-3, 5), grid.pixel16(-2, 5)), ([0, 65535, 0, 65535], [0; 4]));
         let texture =
             Texture::new(&Picture::linear(Size::new(w as u32, h as u32), texels.clone()).unwrap());
         for (i, bytes) in texture.levels()[0].texels.iter().enumerate().skip(2) {
             let (x, y) = ((i % w) as i32 - 3, (i / w) as i32 + 5);
-            let deep = grid.deep_pixel(x, y);
+            let pixel16 = grid.pixel16(x, y);
             let alpha = texels[i][3].clamp(0.0, 1.0);
             for c in 0..3 {
                 let exact = srgb::encode(texels[i][c].clamp(0.0, 1.0)) * alpha * 65535.0;
-                assert!((f32::from(deep[c]) - exact).abs() <= 0.51, "{deep:?} for {:?}", texels[i]);
+                assert!(
+                    (f32::from(pixel16[c]) - exact).abs() <= 0.51,
+                    "{pixel16:?} for {:?}",
+                    texels[i]
+                );
             }
             // Rounded twice: a value near the middle between two bytes may become the other.
             let apart = |(d, b): (&u16, &u8)| (i32::from(*d) - i32::from(*b) * 257).abs();
-            assert!(deep.iter().zip(bytes).map(apart).max() <= Some(129), "{deep:?} and {bytes:?}");
+            assert!(
+                pixel16.iter().zip(bytes).map(apart).max() <= Some(129),
+                "{pixel16:?} and {bytes:?}"
+            );
         }
-        assert!(grid.is_deep_in(grid.bounds()));
+        assert!(grid.is_16_bit_in(grid.bounds()));
         // Light that bytes hold exactly takes no more than bytes.
         let plain: Vec<[f32; 4]> =
             (0..w * h).map(|i| [srgb::decode_u8((i % 256) as u8), 0.0, 1.0, 1.0]).collect();
         let plain = TileGrid::from_light(&plain, w, h, 0, 0);
-        assert!(!plain.is_deep_in(plain.bounds()));
+        assert!(!plain.is_16_bit_in(plain.bounds()));
     }
 
     #[test]
@@ -237,12 +235,12 @@ mod tests {
         let value = |i: usize, c: u32| (hash::unit(i as u32, c, 0) * 65536.0) as u16;
         let pixels: Vec<[u16; 4]> =
             (0..130 * 70).map(|i| [0, 1, 2, 3].map(|c| value(i, c))).collect();
-        let grid = TileGrid::from_straight_deep(&pixels, 130, 70, 0, 0);
+        let grid = TileGrid::from_straight16(&pixels, 130, 70, 0, 0);
         let rounded = grid.rounded();
-        assert!(grid.is_deep_in(grid.bounds()) && !rounded.is_deep_in(rounded.bounds()));
+        assert!(grid.is_16_bit_in(grid.bounds()) && !rounded.is_16_bit_in(rounded.bounds()));
         assert!(grid.iter().all(|(at, tile)| rounded.tile(at).unwrap().bytes() == tile.bytes()));
         assert_eq!(
-            TileGrid::from_straight_deep(&[[9, 9, 9, 100]; 4], 2, 2, 0, 0).rounded().iter().count(),
+            TileGrid::from_straight16(&[[9, 9, 9, 100]; 4], 2, 2, 0, 0).rounded().iter().count(),
             0
         );
     }
@@ -255,24 +253,24 @@ mod tests {
         let pixels: Vec<[u16; 4]> = (0..w * h)
             .map(|i| if i % w < 59 { [257 * (i % 97) as u16, 257, 0, 65535] } else { soft(i) })
             .collect();
-        let grid = TileGrid::from_straight_deep(&pixels, w, h, -59, 3);
+        let grid = TileGrid::from_straight16(&pixels, w, h, -59, 3);
         let rect = Rect::new(-59, 3, 71, 73);
-        let straight = grid.to_straight_deep(rect);
-        let again = TileGrid::from_straight_deep(&straight, w, h, -59, 3);
+        let straight = grid.to_straight16(rect);
+        let again = TileGrid::from_straight16(&straight, w, h, -59, 3);
         for (at, tile) in grid.iter() {
             assert!(again.tile(at).unwrap().is_same(tile), "{at:?}");
-            assert_eq!(tile.is_deep(), at.col >= 0, "{at:?}");
+            assert_eq!(tile.is_16_bit(), at.col >= 0, "{at:?}");
         }
         assert_eq!(grid.bytes(), 2 * 16384 + 4 * 49152 + 6 * 8);
         for (x, y) in [(-59, 3), (-1, 40), (0, 70), (70, 72)] {
             let [_, _, _, a] = pixels[(y - 3) as usize * w + (x + 59) as usize];
-            assert_eq!(grid.deep_pixel(x, y)[3], a);
+            assert_eq!(grid.pixel16(x, y)[3], a);
         }
         // Moved, or joined from parts, they are the same.
         let moved = grid.translated(37, -101);
-        assert!(moved.to_straight_deep(Rect::new(-22, -98, 108, -28)) == straight);
-        let mut joined = TileGrid::from_straight_deep(&pixels[..w * 30], w, 30, -59, 3);
-        joined.join(&TileGrid::from_straight_deep(&pixels[w * 30..], w, h - 30, -59, 33));
-        assert!(joined.to_straight_deep(rect) == straight);
+        assert!(moved.to_straight16(Rect::new(-22, -98, 108, -28)) == straight);
+        let mut joined = TileGrid::from_straight16(&pixels[..w * 30], w, 30, -59, 3);
+        joined.join(&TileGrid::from_straight16(&pixels[w * 30..], w, h - 30, -59, 33));
+        assert!(joined.to_straight16(rect) == straight);
     }
 }

@@ -46,13 +46,13 @@ impl PixelSource for GridSource<'_> {
             let Some(tile) = self.grid.tile(at) else { continue };
             let (from, area) = (at.rect(), at.rect().intersect(rect));
             for y in area.y0..area.y1 {
-                if tile.is_deep() {
+                if tile.is_16_bit() {
                     let to = (y - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize;
                     let pixels =
                         out[to..to + area.width()].iter_mut().zip((area.x0 - from.x0) as usize..);
                     let row = (y - from.y0) as usize;
                     pixels.for_each(|(to, x)| {
-                        *to = tile.deep_pixel(x, row).map(|v| f32::from(v) / 65535.0)
+                        *to = tile.pixel16(x, row).map(|v| f32::from(v) / 65535.0)
                     });
                     continue;
                 }

@@ -90,10 +90,12 @@ fn has_means(maps: &ContourMaps) -> bool {
             .iter()
             .zip(valid.row(y))
             .filter(|(c, _)| (1..HARDLY_COVERED).contains(*c));
-        hardly.fold((0, 0), |(told, all), (_, &is_told)| (told + usize::from(is_told), all + 1))
+        hardly.fold((0, 0), |(valid_count, all), (_, &is_valid)| {
+            (valid_count + usize::from(is_valid), all + 1)
+        })
     });
-    let (told, all) = counts.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-    2 * told >= all
+    let (valid_count, all) = counts.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    2 * valid_count >= all
 }
 
 /// Whether the mask is one of shades: then it gives the outer contours itself.
@@ -201,10 +203,12 @@ impl Examined {
         let line = ContourLine::of_shades(maps.coverage, (x, y));
         let [own_at, other_at] = line
             .map_or([Vec2::ZERO; 2], |line| [line, line.turned()].map(ContourLine::near_middle));
-        let told = maps.valid.is_none_or(|valid| valid.at(at.0, at.1)).then(|| window.nbar(CENTER));
+        let valid_count =
+            maps.valid.is_none_or(|valid| valid.at(at.0, at.1)).then(|| window.nbar(CENTER));
         // Files hold a normal toward the viewer where there is no surface.
         let is_mixed = |own: &Continued| {
-            told.is_none_or(|told| is_between(told, own.nbar(own_at), Vec2::ZERO))
+            valid_count
+                .is_none_or(|valid_count| is_between(valid_count, own.nbar(own_at), Vec2::ZERO))
         };
         let amended = continued.filter(is_mixed).map(|own| own.reading(Vec2::ZERO));
         let is_of_middle = mask.has_means && amended.is_none();

@@ -188,8 +188,8 @@ crate::widest! {
             let [ahead, behind] = &mut tangent;
             for (i, (ahead, behind)) in ahead.iter_mut().zip(behind).enumerate() {
                 let along = along(&facing.slope, toward, i);
-                let told = tangents(along, self::along(&facing.nbar, toward, i), facing.nz[i]);
-                (*ahead, *behind) = (told[0], told[1]);
+                let both = tangents(along, self::along(&facing.nbar, toward, i), facing.nz[i]);
+                (*ahead, *behind) = (both[0], both[1]);
             }
             let mut is_open = true;
             for side in 0..2 {

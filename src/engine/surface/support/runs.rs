@@ -69,8 +69,8 @@ fn joined<'s>(dabs: &[&SupportBounds<'s>]) -> Option<SupportBounds<'s>> {
     };
     let (flow, turned) = flow;
     let spread = 0.5 * (high - low) + ROUNDING_PX;
-    let is_told = spread.is_finite() && turned.is_finite() && at.is_finite();
-    is_told.then(|| SupportBounds {
+    let is_finite = spread.is_finite() && turned.is_finite() && at.is_finite();
+    is_finite.then(|| SupportBounds {
         size: first.size,
         at,
         extent,

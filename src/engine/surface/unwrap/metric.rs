@@ -83,8 +83,8 @@ const HOLLOW_RAD: f32 = 15.0 * std::f32::consts::PI / 180.0;
 /// What is left of the pull of the deepest hollows.
 const LEAST_PULL: f32 = 1e-3;
 
-/// c_ij of MATH 8: `max(e^(−(φ/15°)²), 10⁻³)` on hollow links, whose normals turn toward each other
-/// by φ; else 1.
+/// c_ij of MATH 8: `max(e^(−(φ/15°)²), 10⁻³)` on concave links, whose normals turn toward each
+/// other by φ; else 1.
 ///
 /// Where objects touch in a hollow they hardly pull on each other; across raised edges, a cube's,
 /// the print goes on.
@@ -92,7 +92,7 @@ const LEAST_PULL: f32 = 1e-3;
 /// * `a`, `b`: unit normals of two neighbors, camera space.
 /// * `along`: from the first to the second; image axes.
 #[inline(always)]
-pub fn hollow(a: Vec3, b: Vec3, along: Vec2) -> f32 {
+pub fn concave_pull(a: Vec3, b: Vec3, along: Vec2) -> f32 {
     let turned = b - a;
     // Image axes: y of normals points the other way.
     if turned.x * along.x - turned.y * along.y >= 0.0 {
@@ -176,18 +176,18 @@ mod tests {
     }
 
     #[test]
-    fn hollows_hardly_pull_and_edges_do() {
+    fn concave_links_hardly_pull_and_edges_do() {
         let leaning =
             |degrees: f32| vec3(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
         // The right one leans left: a valley.
         let valley =
-            |degrees: f32| hollow(leaning(degrees / 2.0), leaning(-degrees / 2.0), Vec2::X);
+            |degrees: f32| concave_pull(leaning(degrees / 2.0), leaning(-degrees / 2.0), Vec2::X);
         assert!((valley(15.0) - (-1.0f32).exp()).abs() < 1e-4, "{}", valley(15.0));
         assert!((valley(5.0) - (-1.0f32 / 9.0).exp()).abs() < 1e-4);
         assert_eq!(valley(90.0), 1e-3);
-        assert_eq!(hollow(leaning(-40.0), leaning(40.0), Vec2::X), 1.0, "a ridge");
+        assert_eq!(concave_pull(leaning(-40.0), leaning(40.0), Vec2::X), 1.0, "a ridge");
         let (up, down) = (vec3(0.0, 0.5, 0.866), vec3(0.0, -0.5, 0.866));
-        assert_eq!(hollow(up, down, Vec2::Y), 1.0, "a roof: the upper side looks up");
-        assert_eq!(hollow(down, up, Vec2::Y), 1e-3, "a gutter");
+        assert_eq!(concave_pull(up, down, Vec2::Y), 1.0, "a roof: the upper side looks up");
+        assert_eq!(concave_pull(down, up, Vec2::Y), 1e-3, "a gutter");
     }
 }

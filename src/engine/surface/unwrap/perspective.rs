@@ -34,7 +34,7 @@ impl PerspectiveView {
     /// depth, ∇z = (ζ + z) ∇Z/Z, and the normals give ∇Z/Z. Least squares over ζ. `None` where the
     /// depth says nothing.
     fn fitted(self, surface: &Surface) -> Option<Self> {
-        let (mut told, mut squared, mut sum, mut count) = (0.0f64, 0.0f64, 0.0f64, 0u64);
+        let (mut product, mut squared, mut sum, mut count) = (0.0f64, 0.0f64, 0.0f64, 0u64);
         let links = surface.links_plane();
         for y in 0..links.height() {
             for x in (0..links.width())
@@ -55,11 +55,11 @@ impl PerspectiveView {
                         surface.depth(x + 1, y) - surface.depth(x - 1, y),
                         surface.depth(x, y + 1) - surface.depth(x, y - 1),
                     );
-                told += f64::from((step - slope * z).dot(slope));
+                product += f64::from((step - slope * z).dot(slope));
                 squared += f64::from(slope.length_squared());
             }
         }
-        let at_zero = Some(told / squared)
+        let at_zero = Some(product / squared)
             .filter(|at_zero| at_zero.is_finite() && *at_zero > NEAREST)?
             .min(FARTHEST);
         let mean = at_zero + sum / count as f64;

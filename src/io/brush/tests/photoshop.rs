@@ -41,9 +41,9 @@ pub fn new_abr(subversion: u16) -> Vec<u8> {
         let filling = vec![0; length.next_multiple_of(4) - length];
         [words(&[length as u32]), unknown.clone(), tip, filling].concat()
     };
-    let deep: Vec<u8> = [0u16, 257 * 100, 65535].iter().flat_map(|v| v.to_be_bytes()).collect();
+    let pixels16: Vec<u8> = [0u16, 257 * 100, 65535].iter().flat_map(|v| v.to_be_bytes()).collect();
     let tips =
-        [record(tip(4, 3, 8, false, &ramp(12))), record(tip(3, 1, 16, true, &deep))].concat();
+        [record(tip(4, 3, 8, false, &ramp(12))), record(tip(3, 1, 16, true, &pixels16))].concat();
     let block = |key: &[u8; 4], data: &[u8]| {
         [b"8BIM", &key[..], &words(&[data.len() as u32]), data].concat()
     };
@@ -68,8 +68,8 @@ fn photoshop_tips_of_every_version_are_read() {
         assert_eq!(new.len(), 2);
         assert_eq!((new[0].name.as_str(), new[0].brush.size), ("set 1", 4.0));
         assert_eq!(texels(&tips(&new[0])[0])[11], [77, 77, 77, 255]);
-        let deep: Vec<u8> = texels(&tips(&new[1])[0]).iter().map(|t| t[0]).collect();
-        assert_eq!(deep, [0, 100, 255]);
+        let pixels16: Vec<u8> = texels(&tips(&new[1])[0]).iter().map(|t| t[0]).collect();
+        assert_eq!(pixels16, [0, 100, 255]);
     }
 }
 

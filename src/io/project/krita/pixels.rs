@@ -264,12 +264,12 @@ impl KritaPixels {
             }
             _ if format.is_linear => TileGrid::from_light(&texels.collect::<Vec<_>>(), w, h, x, y),
             _ => {
-                let deep = texels.map(|t| t.map(|v| scaled(v, 65535.0) as u16)).collect();
-                let deep = match icc {
-                    Some(icc) => picture::to_srgb_deep(size, deep, format.is_gray, icc),
-                    None => deep,
+                let pixels16 = texels.map(|t| t.map(|v| scaled(v, 65535.0) as u16)).collect();
+                let pixels16 = match icc {
+                    Some(icc) => picture::to_srgb16(size, pixels16, format.is_gray, icc),
+                    None => pixels16,
                 };
-                TileGrid::from_straight_deep(&deep, w, h, x, y)
+                TileGrid::from_straight16(&pixels16, w, h, x, y)
             }
         })
     }

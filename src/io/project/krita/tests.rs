@@ -51,11 +51,11 @@ fn kra() -> Vec<u8> {
     let mut packer = ZipPacker::default();
     packer.store("mimetype", b"application/x-krita").unwrap();
     packer.deflate(MAINDOC, MAIN.as_bytes()).unwrap();
-    let deep = [0, 0x10, 0, 0x20, 0, 0x30, 255, 255];
+    let pixels16 = [0, 0x10, 0, 0x20, 0, 0x30, 255, 255];
     let entries = [
         ("layer1.defaultpixel", vec![30, 20, 10, 255]),
         ("layer1", tiles(&[3, 2, 1, 255], &[(64, 0)], false)),
-        ("layer3", tiles(&deep, &[(0, 0)], true)),
+        ("layer3", tiles(&pixels16, &[(0, 0)], true)),
         ("layer3.defaultpixel", vec![0; 8]),
         ("layer4", tiles(&[50, 100, 200, 128], &[(-64, 0), (0, 0)], true)),
         ("mask1.pixelselection", tiles(&[40], &[(0, 0)], false)),
@@ -90,10 +90,10 @@ fn layers_groups_masks_and_modes_come_back_and_what_is_lost_is_named() {
     assert_eq!(pixel(over, 3, 3), [199, 100, 50, 128]);
     assert_eq!((set.blend, (set.opacity * 255.0).round()), (BlendMode::Multiply, 128.0));
     let Content::Group(set) = &set.content else { panic!("a group") };
-    let deep = &set.layers[0];
-    assert!(!deep.visible && deep.blend == BlendMode::LinearDodge);
-    assert_eq!([pixel(deep, 2, 1), pixel(deep, 3, 1)], [[0; 4], [48, 32, 16, 255]]);
-    let Some(LayerMask { kind: MaskKind::File { coverage, .. }, .. }) = &deep.mask else {
+    let pixels16 = &set.layers[0];
+    assert!(!pixels16.visible && pixels16.blend == BlendMode::LinearDodge);
+    assert_eq!([pixel(pixels16, 2, 1), pixel(pixels16, 3, 1)], [[0; 4], [48, 32, 16, 255]]);
+    let Some(LayerMask { kind: MaskKind::File { coverage, .. }, .. }) = &pixels16.mask else {
         panic!("a mask")
     };
     assert_eq!([coverage.at(0, 0), coverage.at(66, 3)], [40, 255]);

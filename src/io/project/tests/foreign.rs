@@ -81,7 +81,7 @@ fn what_lies_on_parts_stays_live_when_something_else_is_damaged_or_changed() {
             back.document.layer_named(name).unwrap_or_else(|| panic!("{name}: {:?}", back.notes));
         (layer.content.kind_name(), layer.on.clone())
     };
-    let home = |name: &str| document.layer_named(name).unwrap().on.clone();
+    let attachment = |name: &str| document.layer_named(name).unwrap().on.clone();
     // The pixels of a layer are gone.
     let damaged =
         changed(&bytes, |name, bytes| (!name.starts_with("rilievo/pixels/")).then_some(bytes));
@@ -96,8 +96,8 @@ fn what_lies_on_parts_stays_live_when_something_else_is_damaged_or_changed() {
     });
     for bytes in [damaged, reordered] {
         let back = read_back(&bytes);
-        assert_eq!(live(&back, "Base"), ("fill", home("Base")));
-        assert_eq!(live(&back, "Ink"), ("strokes", home("Ink")));
+        assert_eq!(live(&back, "Base"), ("fill", attachment("Base")));
+        assert_eq!(live(&back, "Ink"), ("strokes", attachment("Ink")));
         let said = back.notes.join("; ");
         assert!(!said.is_empty(), "something is told");
         assert!(!said.contains("surface is lost"), "{said}");

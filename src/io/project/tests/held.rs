@@ -118,8 +118,8 @@ fn what_differs_is_called_by_its_name() {
     let shape = TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 3.0, 0.0]);
     assert_eq!(told(|layer| layer.opacity = 0.5), "“Fill”: its opacity");
     assert_eq!(
-        told(|layer| layer.on = Some(crate::document::HomeFrame::canvas())),
-        "“Fill”: its home"
+        told(|layer| layer.on = Some(crate::document::Attachment::canvas())),
+        "“Fill”: its attachment"
     );
     let moved =
         Layer { transform: Some(LayerTransform { shape, filter: Default::default() }), ..fill() };

@@ -90,9 +90,9 @@ fn steps(whole: &[i64], twice: bool) -> impl Iterator<Item = u64> {
     let (mut last, mut pace) = (0i64, 0i64);
     whole.iter().map(move |&v| {
         let step = v.wrapping_sub(last);
-        let told = if twice { step.wrapping_sub(pace) } else { step };
+        let stored = if twice { step.wrapping_sub(pace) } else { step };
         (last, pace) = (v, step);
-        ((told << 1) ^ (told >> 63)) as u64
+        ((stored << 1) ^ (stored >> 63)) as u64
     })
 }
 
@@ -146,9 +146,9 @@ fn take_column(rest: &mut &[u8], count: usize) -> Option<Vec<f32>> {
     }
     let (mut last, mut pace) = (0i64, 0i64);
     let mut one = || {
-        let told = take(rest)?;
-        let told = (told >> 1) as i64 ^ -((told & 1) as i64);
-        pace = if twice { pace.wrapping_add(told) } else { told };
+        let stored = take(rest)?;
+        let stored = (stored >> 1) as i64 ^ -((stored & 1) as i64);
+        pace = if twice { pace.wrapping_add(stored) } else { stored };
         last = last.wrapping_add(pace);
         if k == ANY_FLOAT { float_at(last) } else { Some((last as f64 / scale(k)) as f32) }
     };

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 actions! {
     ClipboardAction {
-        /// From the chosen layers, or from all that shows.
+        /// From the selected layers, or from all that shows.
         "copy" Copy { merged: bool }
         "cut" Cut {}
         /// In place, above the selected layer.
@@ -48,7 +48,7 @@ pub struct Copied {
     /// Straight RGBA.
     pub rgba: Arc<Vec<u8>>,
     /// The same with 16 bits, if some of it has them.
-    deep: Option<Arc<Vec<[u16; 4]>>>,
+    texels16: Option<Arc<Vec<[u16; 4]>>>,
 }
 
 impl Copied {
@@ -60,8 +60,8 @@ impl Copied {
     /// All of it as paint, with its corner at a pixel.
     fn tiles(&self, x: i32, y: i32) -> TileGrid {
         let (width, height) = (self.rect.width(), self.rect.height());
-        match &self.deep {
-            Some(deep) => TileGrid::from_straight_deep(deep, width, height, x, y),
+        match &self.texels16 {
+            Some(texels16) => TileGrid::from_straight16(texels16, width, height, x, y),
             None => TileGrid::from_straight_rgba(&self.rgba, width, height, x, y),
         }
     }
@@ -84,7 +84,7 @@ impl ClipboardAction {
         open.forget_preview();
         let said = match self {
             ClipboardAction::Copy { merged } => {
-                match copy(open.document(), &open.outermost_chosen(), *merged) {
+                match copy(open.document(), &open.outermost_selected(), *merged) {
                     Ok(copied) => {
                         session.copied = Some(copied);
                         return session.say("Copied.");
@@ -162,13 +162,13 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
         return Err("Nothing is visible where you selected.");
     }
     let rgba = Arc::new(tiles.to_straight_rgba(rect));
-    let deep = tiles.is_deep_in(rect).then(|| Arc::new(tiles.to_straight_deep(rect)));
-    Ok(Copied { layers, canvas: document.size, rect, rgba, deep })
+    let texels16 = tiles.is_16_bit_in(rect).then(|| Arc::new(tiles.to_straight16(rect)));
+    Ok(Copied { layers, canvas: document.size, rect, rgba, texels16 })
 }
 
 fn cut(open: &mut OpenDocument) -> Result<Copied, &'static str> {
     let document = open.document();
-    let ids = open.outermost_chosen();
+    let ids = open.outermost_selected();
     if ids.iter().any(|id| document.layer(*id).is_some_and(|layer| layer.lock != LayerLock::None)) {
         return Err(if ids.len() > 1 {
             "One of the layers is locked. Unlock it to cut from it."
@@ -195,7 +195,7 @@ fn paste(open: &mut OpenDocument, copied: &Copied) {
         next = with;
     }
     if open.commit("Paste", next) {
-        open.choose_layers(ids);
+        open.select_layers(ids);
     }
 }
 
@@ -234,8 +234,8 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
         return session.say(NOTHING_COPIED);
     };
     let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
-    let picture = match &copied.deep {
-        Some(deep) => Picture::srgb16(size, deep.to_vec()),
+    let picture = match &copied.texels16 {
+        Some(texels16) => Picture::srgb16(size, texels16.to_vec()),
         None => Picture::srgb8(size, copied.rgba.as_chunks::<4>().0.to_vec()),
     };
     let Some(picture) = picture else { return };
@@ -247,7 +247,7 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
 /// is cut.
 fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
     let document = open.document();
-    let id = open.selected.ok_or(NO_LAYER)?;
+    let id = open.primary.ok_or(NO_LAYER)?;
     let old = document.layer(id).ok_or(NO_LAYER)?;
     if cut && old.lock != LayerLock::None {
         return Err(LOCKED);
@@ -256,7 +256,7 @@ fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
         if cut {
             return Err("Nothing is selected.");
         }
-        let layer = crate::session::LayerPaths::of(document, &open.outermost_chosen());
+        let layer = crate::session::LayerPaths::of(document, &open.outermost_selected());
         LayerAction::Duplicate { layer }.step_on(open);
         return Ok(());
     };
@@ -270,7 +270,7 @@ fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
     let next =
         left.with_inserted(layer, LayerSlot { index: place.index + 1, ..place }).ok_or(NO_LAYER)?;
     if open.commit(if cut { "Layer via cut" } else { "Layer via copy" }, next) {
-        open.selected = Some(new);
+        open.primary = Some(new);
     }
     Ok(())
 }

@@ -117,15 +117,15 @@ impl FileAction {
                 let Some(open) = session.active() else { return Ok(()) };
                 let is_exr =
                     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
-                let options = ShapeOptions { is_directx: *directx, is_deep: *bits > 8, is_exr };
+                let options = ShapeOptions { is_directx: *directx, is_16_bit: *bits > 8, is_exr };
                 let terms = Terms::export(unless_forced(session), session.reads());
                 export_maps(open.document(), file, maps, options, &terms)?;
             }
             FileAction::ExportUnwrapped { file, scale, deep } => {
                 let Some(open) = session.active() else { return Ok(()) };
                 let settings = session.unwrap_settings();
-                let deep = deep.then_some(Highlights::Clipped);
-                let options = UnwrapOptions { scale: *scale, settings, deep };
+                let floats = deep.then_some(Highlights::Clipped);
+                let options = UnwrapOptions { scale: *scale, settings, floats };
                 let terms = Terms::export(unless_forced(session), session.reads());
                 unwrapped::export(
                     &open.drawn_document(),
@@ -143,7 +143,7 @@ impl FileAction {
             FileAction::Use { part, file } => {
                 let read = pictures::read(*part, file)?;
                 if let Some(open) = session.active_mut()
-                    && let Some(layer) = open.selected
+                    && let Some(layer) = open.primary
                 {
                     pictures::put(open, layer, read);
                     open.reads.push(file.clone());

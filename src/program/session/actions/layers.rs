@@ -28,7 +28,7 @@ use crate::tools::transform::{self, mapped};
 use flattening::bake_displacement;
 use new::{lit_layer, make_layer, selecting};
 use steps::{
-    EditStep, clear_layers, delete, duplicate, group, homed, moves, paint_mask,
+    EditStep, attach, clear_layers, delete, duplicate, group, moves, paint_mask,
     selection_after_move, ungroup,
 };
 
@@ -37,7 +37,7 @@ actions! {
     /// among them follow it.
     LayerAction {
         "select" Select { layer: LayerPath }
-        /// These are chosen, the primary one too; `anchor`: where a range begins that is extended
+        /// These are selected, the primary one too; `anchor`: where a range begins that is extended
         /// later.
         "choose" Choose { layer: LayerPaths, primary: LayerPath, anchor: Option<LayerPath> }
         /// Above the selected layer; into it, if it is a group.
@@ -99,7 +99,7 @@ actions! {
         /// What they show is moved by a map of the canvas (a, b, c, d, e, f); shown only, until it
         /// is `done`.
         "take along" TakeAlong { layer: LayerPaths, by: [f64; 6], done: bool }
-        /// The gizmo of the chosen layers is turned about this point, by shares of its sides.
+        /// The gizmo of the selected layers is turned about this point, by shares of its sides.
         "pivot" Pivot { at: Vec2 }
         /// Into a group of their own, in the place of the topmost.
         "group" Group { layer: LayerPaths }
@@ -110,7 +110,7 @@ actions! {
         "set" Set { layer: LayerPaths, to: Property, done: bool }
         /// On a part of the shape by its id, on `canvas`, or on what is around it; it shows where
         /// it showed.
-        "home" Home { layer: LayerPaths, part: Option<String> }
+        "home" Attach { layer: LayerPaths, part: Option<String> }
         /// The strokes or pixels of a layer are removed, or the selected ones.
         "clear" Clear { layer: LayerPaths }
     }
@@ -118,7 +118,11 @@ actions! {
 
 impl LayerAction {
     /// The action that chooses some layers, the primary one last; `None` if there are none.
-    pub fn choosing(document: &Document, ids: &[LayerId], anchor: Option<LayerId>) -> Option<Self> {
+    pub fn select_layers(
+        document: &Document,
+        ids: &[LayerId],
+        anchor: Option<LayerId>,
+    ) -> Option<Self> {
         let primary = LayerPath::of(document, *ids.last()?)?;
         if ids.len() == 1 {
             return Some(LayerAction::Select { layer: primary });
@@ -180,7 +184,7 @@ impl LayerAction {
         let id = |path: &LayerPath| path.find(open.document()).map(|layer| layer.id);
         match self {
             LayerAction::Select { layer } => {
-                open.choose_layers(id(layer).into_iter().collect());
+                open.select_layers(id(layer).into_iter().collect());
                 open.on_mask = false;
             }
             LayerAction::Choose { layer, primary, anchor } => {
@@ -190,11 +194,11 @@ impl LayerAction {
                 };
                 ids.retain(|id| *id != primary);
                 ids.push(primary);
-                open.choose_range(ids, anchor.as_ref().and_then(id));
+                open.select_range(ids, anchor.as_ref().and_then(id));
                 open.on_mask = false;
             }
             LayerAction::OnMask { layer, on } => {
-                open.choose_layers(id(layer).into_iter().collect());
+                open.select_layers(id(layer).into_iter().collect());
                 open.on_mask = *on;
                 // Only if there is one to paint on.
                 open.repair();
@@ -271,7 +275,8 @@ impl LayerAction {
     fn edit(&self, open: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
         let document = open.document();
         let layer = |path: &LayerPath| path.find(document).cloned();
-        let chosen = |layer: &LayerPaths| layer.find(document).map(|ids| document.outermost(&ids));
+        let selected =
+            |layer: &LayerPaths| layer.find(document).map(|ids| document.outermost(&ids));
         let (label, document, select) = match self {
             LayerAction::Add { kind } => {
                 let new = selecting(document, make_layer(*kind, document, gradient_settings));
@@ -297,20 +302,20 @@ impl LayerAction {
                 let layer = layer(path)?;
                 paint_mask(document, &layer, *hides)?
             }
-            LayerAction::Delete { layer } => delete(document, &chosen(layer)?)?,
-            LayerAction::Duplicate { layer } => duplicate(document, &chosen(layer)?)?,
+            LayerAction::Delete { layer } => delete(document, &selected(layer)?)?,
+            LayerAction::Duplicate { layer } => duplicate(document, &selected(layer)?)?,
             LayerAction::Move { layer: paths, group, index } => {
                 let group = group
                     .as_ref()
                     .map(|path| layer(path).map(|layer| layer.id).ok_or(()))
                     .transpose()
                     .ok()?;
-                let ids = chosen(paths)?;
+                let ids = selected(paths)?;
                 let next = document.with_moved_layers(&ids, LayerSlot { group, index: *index })?;
                 (moves(&ids), next, selection_after_move(open, ids))
             }
             LayerAction::Nudge { layer, by } => {
-                let ids = chosen(layer)?;
+                let ids = selected(layer)?;
                 (
                     moves(&ids),
                     document.with_nudged_layers(&ids, *by)?,
@@ -319,33 +324,33 @@ impl LayerAction {
             }
             LayerAction::Mirror { layer, upright } => {
                 let mirror = transform::mirror(*upright);
-                let next = transform::transform_about_middle(document, &chosen(layer)?, mirror)?;
+                let next = transform::transform_about_middle(document, &selected(layer)?, mirror)?;
                 ("Mirror layer", next, Vec::new())
             }
             LayerAction::Turn { layer, degrees } => {
                 let turn: PlaneMap = transform::turn(f64::from(*degrees))?;
-                let next = transform::transform_about_middle(document, &chosen(layer)?, turn)?;
+                let next = transform::transform_about_middle(document, &selected(layer)?, turn)?;
                 ("Turn layer", next, Vec::new())
             }
             LayerAction::ApplyTransform { layer } => {
                 let apply = |next: Document, id| bake_displacement(&next, id, &Progress::default());
-                let next = chosen(layer)?.into_iter().try_fold(document.clone(), apply)?;
+                let next = selected(layer)?.into_iter().try_fold(document.clone(), apply)?;
                 ("Apply transform", next, Vec::new())
             }
             LayerAction::Mesh { layer, columns, rows } => {
                 let mesh = |next: Document, id| transform::mesh::meshed(&next, id, *columns, *rows);
-                let next = chosen(layer)?.into_iter().try_fold(document.clone(), mesh)?;
+                let next = selected(layer)?.into_iter().try_fold(document.clone(), mesh)?;
                 ("Mesh", next, Vec::new())
             }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
                 return self.perform_long(document, &Progress::default());
             }
-            LayerAction::Group { layer } => group(document, &chosen(layer)?)?,
-            LayerAction::Ungroup { layer } => ungroup(document, &chosen(layer)?)?,
-            LayerAction::Home { layer, part } => {
-                homed(document, &layer.find(document)?, part.as_deref()).ok()?
+            LayerAction::Group { layer } => group(document, &selected(layer)?)?,
+            LayerAction::Ungroup { layer } => ungroup(document, &selected(layer)?)?,
+            LayerAction::Attach { layer, part } => {
+                attach(document, &layer.find(document)?, part.as_deref()).ok()?
             }
-            LayerAction::Clear { layer } => clear_layers(document, &chosen(layer)?)?,
+            LayerAction::Clear { layer } => clear_layers(document, &selected(layer)?)?,
             LayerAction::Select { .. }
             | LayerAction::Choose { .. }
             | LayerAction::Solo { .. }
@@ -447,7 +452,7 @@ fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bo
 pub fn above(open: &OpenDocument) -> LayerSlot {
     let document = open.document();
     let highest = document.below_top_ink();
-    let Some(layer) = open.selected.and_then(|id| document.layer(id)) else {
+    let Some(layer) = open.primary.and_then(|id| document.layer(id)) else {
         return LayerSlot::top_level(highest);
     };
     if layer.content.group().is_some() {

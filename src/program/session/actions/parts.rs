@@ -73,8 +73,8 @@ impl ReplayValue for InflationPreset {
 actions! {
     /// `part` is always an id.
     PartAction {
-        /// From the selected layer, the selection or the chosen part, as its kind says; in front of
-        /// all others.
+        /// From the primary layer, the selection or the selected part, as its kind says; in front
+        /// of all others.
         "add" Add { kind: NewPart }
         /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat
         /// colors (`true`) or from each place of them (`"places"`), and a lit Base.
@@ -155,7 +155,7 @@ impl PartAction {
     fn step(&self, open: &mut OpenDocument) -> Result<(), PartRefusal> {
         let document = open.document();
         let of = |id: &str| document.parts.part(id).cloned().ok_or(NO_PART);
-        let (label, next, chosen) = match self {
+        let (label, next, selected) = match self {
             PartAction::Add { kind } => {
                 let part = new::make_part(*kind, open)?;
                 let id = part.id.clone();
@@ -198,14 +198,14 @@ impl PartAction {
             PartAction::Ink { layer } => {
                 let (next, lines) = ink::on_top(document, layer)?;
                 if open.commit("Lines on top", next) {
-                    open.selected = Some(lines);
+                    open.primary = Some(lines);
                 }
                 return Ok(());
             }
             PartAction::Paper { layer } => {
                 let (next, lines) = ink::without_paper(document, layer)?;
                 if open.commit("Make paper transparent", next) {
-                    open.selected = Some(lines);
+                    open.primary = Some(lines);
                 }
                 return Ok(());
             }
@@ -214,7 +214,7 @@ impl PartAction {
                     layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
                 let (next, group) = document.cut_by_parts(layer)?;
                 if open.commit("Cut drawing by parts", next) {
-                    open.selected = Some(group);
+                    open.primary = Some(group);
                 }
                 return Ok(());
             }
@@ -224,7 +224,7 @@ impl PartAction {
             | PartAction::Settings { .. } => return Ok(()),
         };
         if open.commit(label, next) {
-            open.part = chosen.or(open.part.take());
+            open.part = selected.or(open.part.take());
             open.repair();
         }
         Ok(())

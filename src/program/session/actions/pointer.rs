@@ -116,7 +116,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     if let Some(why) = open.why_hidden_beside().filter(|_| paints && !open.quick_mask) {
         return session.notes.push(why);
     }
-    let (strokes, layers) = (open.chosen_strokes(), open.outermost_chosen());
+    let (strokes, layers) = (open.selected_strokes(), open.outermost_selected());
     let document = match works_in_place(tool, open) {
         Ok(document) => document,
         Err(why) => return session.notes.push(why.into()),
@@ -141,7 +141,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         return begin(session, (gesture, outcome));
     }
     let context = ToolContext {
-        layer: open.selected,
+        layer: open.primary,
         layers: &layers,
         strokes: &strokes,
         part: open.part.as_deref(),
@@ -174,11 +174,11 @@ fn targets(
     session: &Session,
     document: &Document,
     tool: ToolKind,
-    chosen: &[LayerId],
+    selected: &[LayerId],
     is_line: bool,
     px_per_pt: f32,
 ) -> SnapTargets {
-    let moving = if matches!(tool, ToolKind::Move | ToolKind::Transform) { chosen } else { &[] };
+    let moving = if matches!(tool, ToolKind::Move | ToolKind::Transform) { selected } else { &[] };
     match is_line || tool.is_snapping_tool() {
         true => SnapTargets::of(document, &session.tools.aids, moving, px_per_pt),
         false => SnapTargets::default(),
@@ -242,7 +242,7 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
     let is_moved_whole = tool == ToolKind::Move
         && (open.has_several()
             || open
-                .selected
+                .primary
                 .and_then(|id| document.layer(id))
                 .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
     let looks_only = is_moved_whole
@@ -258,7 +258,7 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
                 | ToolKind::Crop
                 | ToolKind::Assistants
         );
-    let Some(layer) = open.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };
+    let Some(layer) = open.primary.filter(|_| !looks_only) else { return Ok(document.clone()) };
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
     let is_group = applied.layer(layer).is_some_and(|layer| layer.content.group().is_some());
@@ -287,7 +287,7 @@ fn take(session: &mut Session, outcome: Outcome) {
         Outcome::Preview(document) => open.show("", document),
         Outcome::Commit { label, document, select } => {
             if open.commit(label, document) {
-                open.selected = select.or(open.selected);
+                open.primary = select.or(open.primary);
                 open.last_end = stroke_end.or(open.last_end);
             }
             session.tools.lasso.clear();
@@ -303,8 +303,8 @@ fn choose(session: &mut Session, choice: DocumentChoice) {
     let Some(open) = session.active_mut() else { return };
     match choice {
         DocumentChoice::Strokes(strokes) => {
-            if let Some(layer) = open.selected {
-                open.choose_strokes(layer, strokes);
+            if let Some(layer) = open.primary {
+                open.select_strokes(layer, strokes);
             }
         }
         DocumentChoice::Part(part) => open.part = Some(part),

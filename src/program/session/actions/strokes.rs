@@ -26,7 +26,7 @@ actions! {
         "bake" Bake { layer: LayerPath, strokes: Vec<usize> }
         /// On a part of the shape by its id, on `canvas`, or on what the layer lies on; they show
         /// where they showed.
-        "home" Home { layer: LayerPath, strokes: Vec<usize>, part: Option<String> }
+        "home" Attach { layer: LayerPath, strokes: Vec<usize>, part: Option<String> }
         /// Takes its brush, operator and color as the current ones.
         "take" Take { layer: LayerPath, stroke: usize }
     }
@@ -64,8 +64,8 @@ impl StrokeAction {
         match self {
             StrokeAction::Choose { layer, strokes } => {
                 if let Some(id) = id(layer) {
-                    open.selected = Some(id);
-                    open.choose_strokes(id, strokes.clone());
+                    open.primary = Some(id);
+                    open.select_strokes(id, strokes.clone());
                 }
             }
             StrokeAction::Take { layer, stroke } => {
@@ -87,10 +87,10 @@ impl StrokeAction {
                 }
             }
             _ => {
-                if let Some((label, next, layer, chosen)) = self.edit(document)
+                if let Some((label, next, layer, selected)) = self.edit(document)
                     && open.commit(label, next)
                 {
-                    open.choose_strokes(layer, chosen);
+                    open.select_strokes(layer, selected);
                 }
             }
         }
@@ -124,7 +124,7 @@ impl StrokeAction {
                 let id = id(layer)?;
                 ("Delete stroke", document.without_strokes(id, strokes)?, id, Vec::new())
             }
-            StrokeAction::Home { layer, strokes, part } => {
+            StrokeAction::Attach { layer, strokes, part } => {
                 let id = id(layer)?;
                 let next = document.with_strokes_on(id, strokes, part.as_deref())?;
                 ("Carry with part", next, id, strokes.clone())
@@ -160,6 +160,6 @@ impl Style {
         }
         Stroke::new(brush, operator, color, stroke.samples().to_vec())
             .within(stroke.selection().cloned())
-            .on(stroke.home().cloned())
+            .on(stroke.attachment().cloned())
     }
 }

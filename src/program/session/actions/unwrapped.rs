@@ -4,7 +4,7 @@
 use crate::document::view::{UnwrapOptions, placed_over, render_unwrapped};
 use crate::document::{Document, Highlights, Progress};
 use crate::io::Terms;
-use crate::io::export::deep::encode as encode_deep;
+use crate::io::export::high_depth::encode as encode_floats;
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile, encode};
 use crate::math::srgb::Color;
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
@@ -26,8 +26,8 @@ pub fn export(
     let target = OutputFile::new(file, terms)?;
     let format = ExportFormat::of(file)?;
     // A file of light keeps highlights.
-    let deep = (format == ExportFormat::Exr).then_some(Highlights::Kept).or(options.deep);
-    let options = UnwrapOptions { deep, ..options };
+    let floats = (format == ExportFormat::Exr).then_some(Highlights::Kept).or(options.floats);
+    let options = UnwrapOptions { floats, ..options };
     let seen = match render_unwrapped(document, None, options, progress) {
         _ if progress.is_canceled() => return Ok(()),
         seen => seen.map_err(|why| Error::unsupported(file, why))?,
@@ -35,8 +35,8 @@ pub fn export(
     // A JPEG has no transparency for what lies between the pieces.
     let background = (format == ExportFormat::Jpeg).then_some(Color::WHITE);
     let written = ExportOptions { background, ..ExportOptions::default() };
-    if deep.is_some() {
-        return target.replace(&encode_deep(file, format, &seen.pixels, seen.size, &written)?);
+    if floats.is_some() {
+        return target.replace(&encode_floats(file, format, &seen.pixels, seen.size, &written)?);
     }
     let Some(Texels::Srgb8(texels)) = seen.picture().map(|picture| picture.texels) else {
         return Ok(());

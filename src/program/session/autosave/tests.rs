@@ -166,7 +166,7 @@ fn a_folder_that_cannot_be_had_is_told_once_and_tried_again() {
 }
 
 #[test]
-fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
+fn what_was_selected_and_in_hand_comes_back_with_the_drawing() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = painted(folder.path());
     let story = r#"{"in":"layer","do":"add","kind":"paint"}
@@ -183,9 +183,9 @@ fn what_was_chosen_and_in_hand_comes_back_with_the_drawing() {
         .bring_back(lost(folder.path()).pop().unwrap(), &Progress::default())
         .unwrap()
         .unwrap();
-    let chosen = open.document().layer(open.selected.unwrap()).unwrap();
+    let selected = open.document().layer(open.primary.unwrap()).unwrap();
     assert_eq!(
-        (chosen.name.as_str(), open.on_mask, tool),
+        (selected.name.as_str(), open.on_mask, tool),
         ("Background", true, Some(ToolKind::Eraser))
     );
 }

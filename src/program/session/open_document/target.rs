@@ -4,17 +4,17 @@
 //! documents and which undo never takes away.
 
 use super::OpenDocument;
-use super::chosen::ChosenLayers;
+use super::selected_layers::SelectedLayers;
 use crate::document::{Document, LayerId};
 use crate::session::replay::{ReplayValue, record};
 use crate::session::{LayerPath, LayerPaths};
 use serde_json::Value;
 
-/// What is chosen, and what the brush paints on.
+/// What is selected, and what the brush paints on.
 #[derive(Clone, Debug, Default)]
 pub struct EditTarget {
-    selected: Option<LayerId>,
-    layers: ChosenLayers,
+    primary: Option<LayerId>,
+    layers: SelectedLayers,
     part: Option<String>,
     strokes: Option<(LayerId, Vec<usize>)>,
     on_mask: bool,
@@ -37,10 +37,10 @@ impl OpenDocument {
     /// What the next edit applies to.
     pub(super) fn target(&self) -> EditTarget {
         EditTarget {
-            selected: self.selected,
-            layers: self.chosen_layers.without_gizmo(),
+            primary: self.primary,
+            layers: self.selected_layers.without_gizmo(),
             part: self.part.clone(),
-            strokes: self.chosen.clone(),
+            strokes: self.selected_strokes.clone(),
             on_mask: self.on_mask,
             quick_mask: self.quick_mask,
         }
@@ -48,9 +48,9 @@ impl OpenDocument {
 
     /// Goes back to a target; where something of it is gone, another takes its place.
     pub(super) fn aim(&mut self, target: EditTarget) {
-        let EditTarget { selected, layers, part, strokes, on_mask, quick_mask } = target;
-        self.chosen_layers.choose_as(layers);
-        (self.selected, self.part, self.chosen) = (selected, part, strokes);
+        let EditTarget { primary, layers, part, strokes, on_mask, quick_mask } = target;
+        self.selected_layers.select_as(layers);
+        (self.primary, self.part, self.selected_strokes) = (primary, part, strokes);
         (self.on_mask, self.quick_mask) = (on_mask, quick_mask);
         self.repair();
     }
@@ -68,10 +68,10 @@ impl OpenDocument {
     pub(in crate::session) fn stored_target(&self) -> Value {
         let document = self.document();
         let stored = StoredTarget {
-            primary: self.selected.and_then(|id| LayerPath::of(document, id)),
-            layers: LayerPaths::of(document, &self.chosen_layers()),
+            primary: self.primary.and_then(|id| LayerPath::of(document, id)),
+            layers: LayerPaths::of(document, &self.selected_layers()),
             part: self.part.clone(),
-            strokes: self.chosen_strokes(),
+            strokes: self.selected_strokes(),
             on_mask: self.on_mask,
             quick_mask: self.quick_mask,
         };
@@ -90,14 +90,14 @@ impl OpenDocument {
 
 impl StoredTarget {
     fn found(self, document: &Document) -> EditTarget {
-        let selected = self.primary.and_then(|path| path.find(document)).map(|layer| layer.id);
+        let primary = self.primary.and_then(|path| path.find(document)).map(|layer| layer.id);
         let mut layers = self.layers.find(document).unwrap_or_default();
-        layers.extend(selected);
+        layers.extend(primary);
         EditTarget {
-            selected,
-            layers: ChosenLayers::of(layers),
+            primary,
+            layers: SelectedLayers::of(layers),
             part: self.part,
-            strokes: selected.map(|layer| (layer, self.strokes)),
+            strokes: primary.map(|layer| (layer, self.strokes)),
             on_mask: self.on_mask,
             quick_mask: self.quick_mask,
         }

@@ -1,6 +1,6 @@
-//! Seeded stories of transforms, canvases, parts, homes and maps: what stands afterwards is saved,
-//! opens as it was, and shows the same picture. `KEPT_STORIES=5000 cargo test kept::` searches
-//! further.
+//! Seeded stories of transforms, canvases, parts, attachments and maps: what stands afterwards is
+//! saved, opens as it was, and shows the same picture. `KEPT_STORIES=5000 cargo test kept::`
+//! searches further.
 
 mod lines;
 

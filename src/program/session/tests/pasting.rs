@@ -113,7 +113,7 @@ fn what_was_copied_here_is_pasted_as_an_image_layer_too() {
 }
 
 #[test]
-fn soft_paint_that_is_pasted_as_an_image_layer_is_saved_with_its_16_bits() {
+fn smooth_paint_that_is_pasted_as_an_image_layer_is_saved_with_its_16_bits() {
     let mut session = replay(PAPER);
     let value = |i: u16| [i * 11, 65535 - i * 7, i, 65535 - i * 3];
     let soft = Picture::srgb16(Size::new(40, 30), (0..1200).map(value).collect()).unwrap();

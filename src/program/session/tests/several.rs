@@ -19,9 +19,12 @@ fn story(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
 
-fn chosen(session: &Session) -> Vec<String> {
+fn selected(session: &Session) -> Vec<String> {
     let open = session.active().unwrap();
-    open.chosen_layers().iter().map(|id| open.document().layer(*id).unwrap().name.clone()).collect()
+    open.selected_layers()
+        .iter()
+        .map(|id| open.document().layer(*id).unwrap().name.clone())
+        .collect()
 }
 
 fn done(session: &Session) -> &str {
@@ -33,15 +36,15 @@ fn steps(session: &Session) -> usize {
 }
 
 #[test]
-fn layers_are_chosen_together_and_one_of_them_is_painted_on() {
+fn layers_are_selected_together_and_one_of_them_is_painted_on() {
     let mut session = five();
     assert_eq!(
-        (chosen(&session), session.layer().unwrap().name.as_str()),
+        (selected(&session), session.layer().unwrap().name.as_str()),
         (vec!["Fill".into(), "Paint".into()], "Paint")
     );
     assert_eq!(session.layer_paths().written(), serde_json::json!(["1", "3"]));
     story(&mut session, r#"{"in":"layer","do":"select","layer":"1"}"#);
-    assert_eq!(chosen(&session), ["Fill"]);
+    assert_eq!(selected(&session), ["Fill"]);
 }
 
 #[test]
@@ -76,7 +79,7 @@ fn several_layers_are_grouped_copied_moved_dissolved_and_deleted() {
     story(&mut session, r#"{"in":"layer","do":"duplicate","layer":["1","3"]}"#);
     assert_eq!(names(&session)[3..6], ["Paint", "Fill copy", "Paint copy"]);
     assert_eq!(
-        (chosen(&session), done(&session)),
+        (selected(&session), done(&session)),
         (vec!["Fill copy".into(), "Paint copy".into()], "Duplicate layers")
     );
     story(&mut session, r#"{"in":"layer","do":"group","layer":["1","4","5"]}"#);
@@ -87,7 +90,7 @@ fn several_layers_are_grouped_copied_moved_dissolved_and_deleted() {
     story(&mut session, r#"{"in":"layer","do":"move","layer":["1","2"],"group":"3","index":0}"#);
     assert_eq!(names(&session)[1..4], ["Gradient", "Paint", "Fill"]);
     assert_eq!(
-        (chosen(&session), done(&session)),
+        (selected(&session), done(&session)),
         (vec!["Gradient".into(), "Paint".into()], "Move layers")
     );
     story(&mut session, r#"{"in":"layer","do":"ungroup","layer":["1","2"]}"#);
@@ -140,17 +143,17 @@ fn several_layers_are_moved_by_the_tool_and_cut_and_pasted_together() {
         (done(&session), red(&session, 70), red(&session, 110)),
         ("Move layers", false, true)
     );
-    assert_eq!(chosen(&session), ["Paint", "Strokes"], "both stay chosen");
+    assert_eq!(selected(&session), ["Paint", "Strokes"], "both stay selected");
     story(&mut session, r#"{"in":"clipboard","do":"cut"}"#);
     assert!(!red(&session, 110));
     story(&mut session, r#"{"in":"clipboard","do":"paste"}"#);
     assert_eq!(
-        (red(&session, 110), chosen(&session)),
+        (red(&session, 110), selected(&session)),
         (true, vec!["Paint 2".into(), "Strokes 2".into()])
     );
     let open = session.active().unwrap();
     let kinds = open
-        .chosen_layers()
+        .selected_layers()
         .into_iter()
         .map(|id| open.document().layer(id).unwrap().content.kind_name());
     assert_eq!(kinds.collect::<Vec<_>>(), ["pixels", "strokes"]);

@@ -106,14 +106,14 @@ proptest! {
 }
 
 #[test]
-fn a_layer_that_comes_back_is_chosen() {
+fn a_layer_that_comes_back_is_selected() {
     let mut session = replay(&format!("{PAPER}{STROKE}"));
-    let chosen = |session: &Session| session.layer().map(|layer| layer.name.clone());
+    let selected = |session: &Session| session.layer().map(|layer| layer.name.clone());
     let step = |session: &mut Session, what: &str| {
         session.replay(Path::new("story"), &format!(r#"{{"in":"edit","do":"{what}"}}"#)).unwrap();
     };
     step(&mut session, "undo");
-    assert_eq!(chosen(&session).as_deref(), Some("Background"));
+    assert_eq!(selected(&session).as_deref(), Some("Background"));
     step(&mut session, "redo");
-    assert_eq!(chosen(&session).as_deref(), Some("Strokes"));
+    assert_eq!(selected(&session).as_deref(), Some("Strokes"));
 }

@@ -45,8 +45,8 @@ fn played(first: u64, count: u64) -> BTreeMap<String, Fault> {
     let mut faults: BTreeMap<String, Fault> = BTreeMap::new();
     let folder = starts::StoryFolder::new();
     for seed in first..first + count {
-        let told = story(seed, &folder);
-        if let Some(broken) = told.broken {
+        let outcome = story(seed, &folder);
+        if let Some(broken) = outcome.broken {
             let fault =
                 faults.entry(broken.kind).or_insert(Fault { count: 0, seed, what: broken.what });
             fault.count += 1;
@@ -63,11 +63,11 @@ fn given(name: &str) -> Option<u64> {
 /// A story made short, as a replay next to its files: `rilievo replay --force` takes it.
 fn replay_of(seed: u64) -> PathBuf {
     let folder = starts::StoryFolder::new();
-    let told = story(seed, &folder);
+    let outcome = story(seed, &folder);
     let target = std::env::temp_dir().join(format!("rilievo-story-{seed}"));
     starts::write_assets(&target);
-    let Some(broken) = told.broken else { return target };
-    let (actions, broken) = shrink::shrunk(told.actions, broken, &folder);
+    let Some(broken) = outcome.broken else { return target };
+    let (actions, broken) = shrink::shrunk(outcome.actions, broken, &folder);
     let lines: Vec<String> = actions.iter().map(|action| action.written().to_string()).collect();
     let there =
         |text: &str| text.replace(&*folder.path().to_string_lossy(), &target.to_string_lossy());

@@ -1,9 +1,9 @@
-//! Undo and redo put the user back where the step was made: the layers that were chosen, and mask
+//! Undo and redo put the user back where the step was made: the layers that were selected, and mask
 //! or paint.
 
 use super::*;
 
-/// A paper with two paint layers; the lower one, of the name `Paint`, is chosen.
+/// A paper with two paint layers; the lower one, of the name `Paint`, is selected.
 pub(super) fn two_layers() -> Session {
     replay(&format!(
         r#"{PAPER}
@@ -33,11 +33,11 @@ pub(super) fn drawn_with(tool: &str) -> String {
     )
 }
 
-/// The names of the chosen layers, the primary one last.
-fn chosen(session: &Session) -> Vec<String> {
+/// The names of the selected layers, the primary one last.
+fn selected(session: &Session) -> Vec<String> {
     let open = session.active().unwrap();
-    let mut ids = open.chosen_layers();
-    ids.sort_by_key(|id| open.selected == Some(*id));
+    let mut ids = open.selected_layers();
+    ids.sort_by_key(|id| open.primary == Some(*id));
     ids.iter().map(|id| open.document().layer(*id).unwrap().name.clone()).collect()
 }
 
@@ -46,12 +46,12 @@ fn after_an_undone_gradient_the_next_stroke_goes_where_the_last_one_would_have()
     let mut session = two_layers();
     for step in [&drawn_with("gradient"), r#"{"in":"layer","do":"add","kind":"group"}"#] {
         act(&mut session, step);
-        let made = chosen(&session);
-        assert_ne!(made, ["Paint"], "the new layer is chosen");
+        let made = selected(&session);
+        assert_ne!(made, ["Paint"], "the new layer is selected");
         undo(&mut session);
-        assert_eq!(chosen(&session), ["Paint"]);
+        assert_eq!(selected(&session), ["Paint"]);
         redo(&mut session);
-        assert_eq!(chosen(&session), made);
+        assert_eq!(selected(&session), made);
         undo(&mut session);
     }
     let before = names(&session);
@@ -59,24 +59,24 @@ fn after_an_undone_gradient_the_next_stroke_goes_where_the_last_one_would_have()
     assert_eq!(
         names(&session),
         before,
-        "the stroke is on the layer that was chosen, not on a new one"
+        "the stroke is on the layer that was selected, not on a new one"
     );
 }
 
 #[test]
-fn redo_chooses_what_was_chosen_right_after_the_step_and_not_what_was_chosen_later() {
+fn redo_selects_what_was_selected_right_after_the_step_and_not_what_was_selected_later() {
     let mut session = two_layers();
     act(&mut session, &drawn_with("brush"));
     act(&mut session, r#"{"in":"layer","do":"select","layer":"2"}"#);
     undo(&mut session);
-    assert_eq!(chosen(&session), ["Paint"]);
+    assert_eq!(selected(&session), ["Paint"]);
     act(&mut session, r#"{"in":"layer","do":"select","layer":"0"}"#);
     redo(&mut session);
-    assert_eq!(chosen(&session), ["Paint"]);
+    assert_eq!(selected(&session), ["Paint"]);
 }
 
 #[test]
-fn several_deleted_layers_come_back_chosen_and_a_click_in_the_history_chooses_too() {
+fn several_deleted_layers_come_back_selected_and_a_click_in_the_history_selects_too() {
     let mut session = two_layers();
     act(
         &mut session,
@@ -84,11 +84,11 @@ fn several_deleted_layers_come_back_chosen_and_a_click_in_the_history_chooses_to
     );
     act(&mut session, r#"{"in":"layer","do":"delete","layer":["1","2"]}"#);
     act(&mut session, &drawn_with("brush"));
-    assert_eq!(chosen(&session), ["Strokes"]);
+    assert_eq!(selected(&session), ["Strokes"]);
     act(&mut session, r#"{"in":"edit","do":"walk","steps":-2}"#);
-    assert_eq!(chosen(&session), ["Paint 2", "Paint"]);
+    assert_eq!(selected(&session), ["Paint 2", "Paint"]);
     act(&mut session, r#"{"in":"edit","do":"walk","steps":1}"#);
-    assert_eq!(chosen(&session), ["Background"]);
+    assert_eq!(selected(&session), ["Background"]);
 }
 
 #[test]
@@ -113,13 +113,13 @@ fn a_stroke_on_a_mask_is_undone_on_the_mask_and_the_tool_stays_in_hand() {
 }
 
 #[test]
-fn chosen_strokes_are_those_that_were_chosen_before_they_were_ordered() {
+fn selected_strokes_are_those_that_were_selected_before_they_were_ordered() {
     let mut session = replay(&format!(
         r#"{PAPER}{STROKE}
         {{"in":"stroke","do":"duplicate","layer":"1","strokes":[0]}}
         {{"in":"stroke","do":"order","layer":"1","stroke":1,"to":0}}"#
     ));
-    let strokes = |session: &Session| session.active().unwrap().chosen_strokes();
+    let strokes = |session: &Session| session.active().unwrap().selected_strokes();
     assert_eq!(strokes(&session), [0]);
     undo(&mut session);
     assert_eq!(strokes(&session), [1], "the same stroke, where it lies now");

@@ -19,8 +19,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             ),
         );
     };
-    let told = SurfaceRegion { at: pen.place(), ..context.tools.select.region };
-    let Some(field) = RegionField::new(surface, told.kind, told.at) else {
+    let region = SurfaceRegion { at: pen.place(), ..context.tools.select.region };
+    let Some(field) = RegionField::new(surface, region.kind, region.at) else {
         return (
             None,
             Outcome::Refused(
@@ -33,8 +33,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         how: context.tools.select.how(pen.keys),
         field,
         from: pen.place(),
-        begun: told,
-        told,
+        begun: region,
+        region,
         settings: context.tools.select,
         px_per_pt: context.px_per_pt,
     };
@@ -49,16 +49,16 @@ struct RegionGesture {
     from: Vec2,
     begun: SurfaceRegion,
     /// With the tolerance of the drag so far.
-    told: SurfaceRegion,
+    region: SurfaceRegion,
     settings: SelectSettings,
     px_per_pt: f32,
 }
 
 impl RegionGesture {
     fn outcome(&self, is_done: bool) -> Outcome {
-        let selection = Selection::provisional(self.field.region(&self.told), Some(self.told));
+        let selection = Selection::provisional(self.field.region(&self.region), Some(self.region));
         let document = combined(&self.document, selection, self.how);
-        let select = SelectSettings { region: self.told, ..self.settings };
+        let select = SelectSettings { region: self.region, ..self.settings };
         tuned(document, select, is_done)
     }
 }
@@ -68,7 +68,7 @@ impl Gesture for RegionGesture {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let by_px = pen.place().x - self.from.x;
         let range = self.begun.kind.tolerances();
-        self.told.tolerance = dragged(self.begun.tolerance, by_px, self.px_per_pt, &range);
+        self.region.tolerance = dragged(self.begun.tolerance, by_px, self.px_per_pt, &range);
         self.outcome(false)
     }
 

@@ -1,5 +1,5 @@
-//! The shape tool: the part under the pen is chosen and moved; handles around the chosen one scale,
-//! turn, puff and tilt it. Floor 5. Not here: numbers without a handle (the panel).
+//! The shape tool: the part under the pen is selected and moved; handles around the selected one
+//! scale, turn, puff and tilt it. Floor 5. Not here: numbers without a handle (the panel).
 
 use super::map_about;
 use crate::document::Document;
@@ -204,16 +204,16 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let (part, area) = areas.iter().find(|(part, _)| part.id == id)?;
         Some((part.clone(), PartGizmo::of(part, area, context.px_per_pt)))
     };
-    let chosen = context.part.and_then(gizmo_of);
+    let selected = context.part.and_then(gizmo_of);
     let on_handle =
-        chosen.and_then(|(part, gizmo)| Some((part, gizmo, gizmo.handle_at(pen.place())?)));
+        selected.and_then(|(part, gizmo)| Some((part, gizmo, gizmo.handle_at(pen.place())?)));
     let held = on_handle.or_else(|| {
         let part = crate::document::parts::forms::nearest_at(&areas, pen.place())?;
         let (part, gizmo) = gizmo_of(&part.id)?;
         Some((part, gizmo, PartHandle::Body))
     });
     let Some((part, gizmo, handle)) = held else { return (None, Outcome::Idle) };
-    let chosen = Outcome::Choose(DocumentChoice::Part(part.id.clone()));
+    let selected = Outcome::Choose(DocumentChoice::Part(part.id.clone()));
     let gesture = PartGesture {
         document: document.clone(),
         part,
@@ -222,7 +222,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         from: pen.place(),
         found: None,
     };
-    (Some(Box::new(gesture)), chosen)
+    (Some(Box::new(gesture)), selected)
 }
 
 struct PartGesture {
@@ -254,9 +254,9 @@ impl PartGesture {
         let by = to - self.from;
         let mapped = |map: Affine2| {
             let matrix = map * part.matrix;
-            let is_told = matrix.is_finite()
+            let is_finite = matrix.is_finite()
                 && matrix.to_cols_array().iter().all(|v| Part::MATRIX.contains(v));
-            is_told.then(|| Part { matrix, ..part.clone() })
+            is_finite.then(|| Part { matrix, ..part.clone() })
         };
         match self.handle {
             PartHandle::Body => mapped(Affine2::from_translation(moved_by(by, pen.keys.shift))),

@@ -87,8 +87,8 @@ impl Gesture for SculptGesture {
             let (at, pressure) =
                 (back.transform_point2(pen.place()), pen.sample.pressure.max(0.0).min(1.0));
             let is_new = samples.last().is_none_or(|last| last.0.distance(at) >= APART_PX);
-            let is_told = COORDINATE.contains(&at.x) && COORDINATE.contains(&at.y);
-            if is_new && is_told && samples.len() < SculptStroke::MOST / 4 {
+            let is_allowed = COORDINATE.contains(&at.x) && COORDINATE.contains(&at.y);
+            if is_new && is_allowed && samples.len() < SculptStroke::MOST / 4 {
                 samples.push((at, pressure));
             }
         }

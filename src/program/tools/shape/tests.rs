@@ -27,7 +27,7 @@ fn pen(x: f32, y: f32, keys: ModifierKeys) -> PenSample {
     PenSample { keys, ..PenSample::at(vec2(x, y)) }
 }
 
-/// A drag with a tool and a part chosen; the outcomes of press and release.
+/// A drag with a tool and a selected part; the outcomes of press and release.
 fn dragged(
     document: &Document,
     tool: ToolKind,
@@ -54,7 +54,7 @@ fn committed(outcome: Option<Outcome>) -> (String, Document) {
 const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false };
 
 #[test]
-fn the_part_under_the_pen_is_chosen_and_moved_by_whole_pixels_with_its_surface() {
+fn the_part_under_the_pen_is_selected_and_moved_by_whole_pixels_with_its_surface() {
     let document = scene();
     let (first, last) =
         dragged(&document, ToolKind::Shape, "square", &[(330.0, 300.0), (340.4, 310.6)], NONE);
@@ -69,7 +69,7 @@ fn the_part_under_the_pen_is_chosen_and_moved_by_whole_pixels_with_its_surface()
 }
 
 #[test]
-fn handles_puff_tilt_scale_and_turn_the_chosen_part() {
+fn handles_puff_tilt_scale_and_turn_the_selected_part() {
     let document = scene();
     let areas = document.part_areas();
     let gizmo = PartGizmo::of(&areas[0].0, &areas[0].1, 1.0);

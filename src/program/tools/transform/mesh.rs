@@ -1,5 +1,5 @@
-//! Meshes under the transform tool: points that are dragged, one or those that are chosen. Floor 5.
-//! Not here: what a mesh does (`document::layer`).
+//! Meshes under the transform tool: points that are dragged, one or those that are selected. Floor
+//! 5. Not here: what a mesh does (`document::layer`).
 
 use crate::document::{Document, Layer, LayerId, LayerTransform, Mesh, MeshFrame, TransformShape};
 use crate::math::{PlaneMap, Vec2, vec2};
@@ -48,8 +48,8 @@ pub fn points_of(document: &Document, layer: &Layer) -> Option<(Arc<Mesh>, Vec<V
     Some((mesh.clone(), points))
 }
 
-/// What a press does at the points of the chosen layer's mesh; `None` if it has none. Shift adds a
-/// point to those chosen, or removes it.
+/// What a press does at the points of the selected layer's mesh; `None` if it has none. Shift adds
+/// a point to those selected, or removes it.
 pub(super) fn press(
     context: &ToolContext,
     pen: PenSample,
@@ -63,29 +63,29 @@ pub(super) fn press(
     if distance(&nearest) > GRAB_PT * context.px_per_pt {
         return None;
     }
-    let mut chosen: Vec<usize> =
+    let mut selected: Vec<usize> =
         context.tools.transform.mesh_points.iter().copied().filter(|k| *k < points.len()).collect();
     if pen.keys.shift {
-        match chosen.iter().position(|k| *k == nearest) {
-            Some(place) => drop(chosen.remove(place)),
-            None => chosen.push(nearest),
+        match selected.iter().position(|k| *k == nearest) {
+            Some(place) => drop(selected.remove(place)),
+            None => selected.push(nearest),
         }
-        return Some((None, choose_points(chosen)));
+        return Some((None, choose_points(selected)));
     }
-    if !chosen.contains(&nearest) {
-        chosen = vec![nearest];
+    if !selected.contains(&nearest) {
+        selected = vec![nearest];
     }
     let to_canvas = document.map_of(*id)?.outside_own();
     let gesture = MeshGesture {
         document: document.clone(),
         layer: *id,
         mesh,
-        chosen: chosen.clone(),
+        selected: selected.clone(),
         to_canvas,
         from: pen.place(),
         by: Vec2::ZERO,
     };
-    Some((Some(Box::new(gesture)), choose_points(chosen)))
+    Some((Some(Box::new(gesture)), choose_points(selected)))
 }
 
 fn choose_points(points: Vec<usize>) -> Outcome {
@@ -96,7 +96,7 @@ struct MeshGesture {
     document: Document,
     layer: LayerId,
     mesh: Arc<Mesh>,
-    chosen: Vec<usize>,
+    selected: Vec<usize>,
     to_canvas: PlaneMap,
     from: Vec2,
     /// Px of the list that holds the layer.
@@ -106,7 +106,7 @@ struct MeshGesture {
 impl MeshGesture {
     fn with(&self) -> Option<Document> {
         let mut points = self.mesh.points().to_vec();
-        self.chosen.iter().for_each(|k| points[*k] += self.by);
+        self.selected.iter().for_each(|k| points[*k] += self.by);
         let filter = self.document.layer(self.layer)?.transform.as_ref()?.filter;
         with_mesh(&self.document, self.layer, self.mesh.with_points(points)?, filter)
     }

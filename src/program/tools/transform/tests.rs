@@ -311,13 +311,13 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     let id = plain.layers[0].id;
     let document = mesh::meshed(&plain, id, 3, 3).unwrap();
     assert!(!document.layers[0].is_warped(), "an even mesh moves nothing");
-    let with_points = |chosen: &[usize]| {
+    let with_points = |selected: &[usize]| {
         let mut tools = ToolSettings::default();
-        tools.transform.mesh_points = chosen.to_vec();
+        tools.transform.mesh_points = selected.to_vec();
         tools
     };
-    let drag = |chosen: &[usize], from: Vec2, to: Vec2| {
-        let tools = with_points(chosen);
+    let drag = |selected: &[usize], from: Vec2, to: Vec2| {
+        let tools = with_points(selected);
         let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &tools) };
         let (gesture, outcome) = press(&context, PenSample::at(from));
         assert!(!outcome.settings().transform.mesh_points.is_empty());
@@ -336,16 +336,16 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     assert_eq!(moved.points()[0], vec2(40.0, 30.0));
     let both = drag(&[4, 5], vec2(100.0, 60.0), vec2(100.0, 70.0));
     assert_eq!([both.points()[4].y, both.points()[5].y, both.points()[3].y], [70.0, 70.0, 60.0]);
-    // With Shift points are chosen, and deselected.
+    // With Shift points are selected, and deselected.
     let shift = ModifierKeys { shift: true, ..ModifierKeys::default() };
     let tools = with_points(&[4]);
     let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &tools) };
-    let chosen_at = |p: Vec2| {
+    let selected_at = |p: Vec2| {
         let pen = PenSample { keys: shift, ..PenSample::at(p) };
         let mut tools = tools.clone();
         press(&context, pen).1.apply_settings(&mut tools);
         tools.transform.mesh_points
     };
-    assert_eq!(chosen_at(vec2(40.0, 30.0)), [4, 0]);
-    assert_eq!(chosen_at(vec2(100.0, 60.0)), [0; 0]);
+    assert_eq!(selected_at(vec2(40.0, 30.0)), [4, 0]);
+    assert_eq!(selected_at(vec2(100.0, 60.0)), [0; 0]);
 }

@@ -32,7 +32,7 @@ pub fn draw(
     let Some((open, layer)) = session.active().zip(session.layer()) else { return };
     if open.has_several() {
         return open
-            .outermost_chosen()
+            .outermost_selected()
             .into_iter()
             .for_each(|id| bounds(painter, open.shown_document(), id, to_screen));
     }

@@ -19,8 +19,9 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     let document = open.shown_document();
-    // All chosen rows move with a chosen one.
-    let held = |id: LayerId| if open.is_chosen(id) { open.outermost_chosen() } else { vec![id] };
+    // All selected rows move with a selected one.
+    let held =
+        |id: LayerId| if open.is_selected(id) { open.outermost_selected() } else { vec![id] };
     response.dnd_set_drag_payload(layer.id);
     if let Some(row) = response.dnd_hover_payload::<LayerId>()
         && !held(*row).contains(&layer.id)

@@ -1,4 +1,4 @@
-//! The context menu of a layer: for all chosen ones if it is among them. Floor 7.
+//! The context menu of a layer: for all selected ones if it is among them. Floor 7.
 
 use super::{color_of, set};
 use crate::document::{Layer, LayerLabel};
@@ -14,8 +14,8 @@ pub fn show(
     path: &LayerPath,
     requests: &mut UiRequests,
 ) {
-    let is_chosen = session.active().is_some_and(|open| open.is_chosen(layer.id));
-    let paths = if is_chosen { session.layer_paths() } else { path.into() };
+    let is_selected = session.active().is_some_and(|open| open.is_selected(layer.id));
+    let paths = if is_selected { session.layer_paths() } else { path.into() };
     type MenuAction = fn(LayerPaths) -> LayerAction;
     let entries: [(&str, MenuAction); 7] = [
         ("Duplicate", |layer| LayerAction::Duplicate { layer }),

@@ -7,7 +7,7 @@ use crate::icons::{Icon, sized_button};
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, SelectionAction};
-use crate::session::chosen::range;
+use crate::session::selected_layers::range;
 use crate::session::{Action, LayerPath, OpenDocument, Property, Session};
 use crate::theme::{ACCENT, strengthen_hints};
 use crate::thumbnails::Thumbnails;
@@ -54,7 +54,7 @@ impl LayerRow<'_> {
         let Some(open) = session.active() else { return };
         let (_, rect) = ui.allocate_space(vec2(ui.available_width(), ROW_PT));
         let response = ui.interact(rect, row_id(layer.id), Sense::click_and_drag());
-        let is_selected = open.is_chosen(layer.id);
+        let is_selected = open.is_selected(layer.id);
         let label = format!("Layer {}{}", layer.name, if is_selected { ", selected" } else { "" });
         response.widget_info(|| {
             egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label)
@@ -68,7 +68,7 @@ impl LayerRow<'_> {
         if let Some(color) = color_of(layer.label) {
             ui.painter().rect_filled(rect.with_max_x(rect.left() + LABEL_PT), 2.0, color);
         }
-        if open.has_several() && open.selected == Some(layer.id) {
+        if open.has_several() && open.primary == Some(layer.id) {
             // The brush paints on this one.
             ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.4, ACCENT), StrokeKind::Inside);
         }
@@ -106,7 +106,7 @@ impl LayerRow<'_> {
     fn choose(&self, ids: &[LayerId], anchor: Option<LayerId>, requests: &mut UiRequests) {
         requests
             .actions
-            .extend(LayerAction::choosing(self.document, ids, anchor).map(Action::Layer));
+            .extend(LayerAction::select_layers(self.document, ids, anchor).map(Action::Layer));
     }
 
     /// Selects a row, or all from it to the start of the range.
@@ -177,7 +177,7 @@ impl LayerRow<'_> {
         let is_on = self
             .session
             .active()
-            .is_some_and(|open| open.on_mask && open.selected == Some(self.layer.id));
+            .is_some_and(|open| open.on_mask && open.primary == Some(self.layer.id));
         let (rect, response) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::click());
         let label = format!("Mask of {}", self.layer.name);
         response

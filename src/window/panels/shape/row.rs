@@ -33,14 +33,14 @@ pub fn show(
     let lies_on = part.on().is_some_and(|on| document.parts.part(on).is_some());
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
-    let is_chosen = session.active().is_some_and(|open| open.part.as_ref() == Some(&part.id));
-    if is_chosen {
+    let is_selected = session.active().is_some_and(|open| open.part.as_ref() == Some(&part.id));
+    if is_selected {
         show_once(ui, &response, &part.id);
     }
     let label = format!("Part {}", part.name);
     response
-        .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, &label));
-    let fill = match (is_chosen, response.hovered()) {
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label));
+    let fill = match (is_selected, response.hovered()) {
         (true, _) => ui.visuals().selection.bg_fill,
         (false, true) => ui.visuals().widgets.hovered.weak_bg_fill,
         _ => ui.visuals().faint_bg_color,
@@ -49,7 +49,7 @@ pub fn show(
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
     inner.spacing_mut().item_spacing.x = 3.0;
-    if is_chosen {
+    if is_selected {
         strengthen_hints(&mut inner);
     }
     inner.add_space(2.0 + if lies_on { INDENT_PT } else { 0.0 });
@@ -72,7 +72,7 @@ pub fn show(
     response.on_hover_text("Drag it up to bring it forward; double-click to rename it");
 }
 
-/// Brings a part's row into sight when the part becomes the chosen one, as by a click on the
+/// Brings a part's row into sight when the part becomes the selected one, as by a click on the
 /// canvas.
 fn show_once(ui: &Ui, row: &Response, part: &str) {
     let shown = Id::unique("shown part");

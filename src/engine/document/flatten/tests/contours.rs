@@ -295,14 +295,15 @@ fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centers_lie() {
             let surface = disc(hard);
             let document = Document { surface: Some(surface.clone()), ..document(layers.clone()) };
             let bytes = flatten(&document, &Progress::default()).unwrap();
-            let deep = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
+            let floats =
+                flatten_to_floats(&document, Highlights::Clipped, &Progress::default()).unwrap();
             let bytes = |x: i32, y: i32| bytes.pixel(x, y).map(|v| f32::from(v) / 255.0);
-            let deep = |x: i32, y: i32| deep[y as usize * SIZE.width as usize + x as usize];
-            for (depth, rim) in [("8", rim(&surface, bytes)), ("16", rim(&surface, deep))] {
+            let floats = |x: i32, y: i32| floats[y as usize * SIZE.width as usize + x as usize];
+            for (depth, rim) in [("8", rim(&surface, bytes)), ("16", rim(&surface, floats))] {
                 let (bare, whole) = if depth == "8" {
                     (bytes(1, 1), bytes(50, 34))
                 } else {
-                    (deep(1, 1), deep(50, 34))
+                    (floats(1, 1), floats(50, 34))
                 };
                 let what = format!("{name}, {depth} bits, hard: {hard}");
                 assert!(rim.len() > 100, "{what}: {}", rim.len());

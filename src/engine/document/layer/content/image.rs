@@ -7,7 +7,7 @@ use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::math::{Mat2, Vec2};
 use crate::paint::{ImageFilter, PlacedImage, Placement, Scene};
 use crate::raster::sampler::TapRule;
-use crate::raster::{DeepTexture, PlanarTile, TileAt};
+use crate::raster::{FloatTexture, PlanarTile, TileAt};
 use crate::surface::{Bend, Deformation};
 use std::sync::Arc;
 
@@ -16,8 +16,8 @@ impl Marks for PlacedImage {
         self.render_pixels(scene, at)
     }
 
-    fn texture(&self) -> Option<Arc<DeepTexture>> {
-        Some(self.source.deep_texture())
+    fn texture(&self) -> Option<Arc<FloatTexture>> {
+        Some(self.source.float_texture())
     }
 
     fn texture_bytes(&self) -> u64 {

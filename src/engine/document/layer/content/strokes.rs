@@ -106,7 +106,7 @@ impl LayerKind for Live<StrokeList> {
         let mut on_canvas = |stroke: &Arc<Stroke>| match seen.get(&Arc::as_ptr(stroke)) {
             Some(seen) => Arc::clone(seen),
             None => {
-                let own = stroke.home().map(|home| map.of_stroke(home));
+                let own = stroke.attachment().map(|attachment| map.of_stroke(attachment));
                 taken_along(stroke, own.as_ref().unwrap_or(map), &mut selections)
             }
         };
@@ -114,8 +114,10 @@ impl LayerKind for Live<StrokeList> {
         Some(Content::Strokes(Live::new(StrokeList { strokes })))
     }
 
-    fn has_homes(&self) -> bool {
-        Live::has_homes(self, |list| list.strokes.iter().any(|stroke| stroke.home().is_some()))
+    fn has_attachments(&self) -> bool {
+        Live::has_attachments(self, |list| {
+            list.strokes.iter().any(|stroke| stroke.attachment().is_some())
+        })
     }
 
     fn without_paint(&self) -> Option<Content> {

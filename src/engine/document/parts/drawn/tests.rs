@@ -9,7 +9,7 @@ use crate::document::{
 };
 use crate::math::srgb::Color;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
-use crate::paint::{Brush, HomeFrame, Sample, Stroke};
+use crate::paint::{Attachment, Brush, Sample, Stroke};
 use crate::raster::{Lattice, Plane, Resampling};
 use crate::surface::{Operator, Surface};
 
@@ -132,7 +132,7 @@ const EDITS: [LayerEdit; 14] = [
     ("a mask and liquify", |layer| layer.liquify = lattice(vec2(7.0, -4.0))),
     ("hidden", |layer| layer.visible = false),
     ("on a part", |layer| {
-        layer.on = Some(HomeFrame { matrix: Affine2::IDENTITY, ..HomeFrame::on("orange") })
+        layer.on = Some(Attachment { matrix: Affine2::IDENTITY, ..Attachment::on("orange") })
     }),
     ("another name", |layer| layer.name.push_str(" 2")),
     ("nothing else", |layer| {

@@ -77,7 +77,7 @@ pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, 
     if let Some(next) = open.document().with_inserted(layer, above(open))
         && open.commit("Paste", next)
     {
-        open.choose_layers(vec![id]);
+        open.select_layers(vec![id]);
     }
 }
 

@@ -91,7 +91,7 @@ pub(super) fn bake(document: &Document, layer: &Layer, progress: &Progress) -> O
             (1.0, None, Default::default(), false);
     })?;
     let tiles = flatten_to_paint(&bare.with_only(&[layer.id])?, progress)?;
-    // What was drawn lies on the canvas; the layer's home carries it from there.
+    // What was drawn lies on the canvas; the layer's attachment carries it from there.
     let transform = document.transform_to_canvas(layer.id)?;
     document.with_layer(layer.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });

@@ -7,12 +7,12 @@ use crate::io::recipe::{LiveLook, PaintedBall, PartMaterial};
 use crate::session::OpenDocument;
 use crate::shading::{LitSphere, Model};
 
-/// The step that puts a document in a look: its name, the document, and what is chosen then.
+/// The step that puts a document in a look: its name, the document, and what is selected then.
 pub(super) fn apply_look(document: &Document, name: &str) -> Option<EditStep> {
     document.surface.as_ref()?;
     let next = LiveLook::of_key(name)?.on(document).ok()?;
-    let chosen = next.layers.last().map(|layer| layer.id);
-    Some(("Look", next, chosen.into_iter().collect()))
+    let selected = next.layers.last().map(|layer| layer.id);
+    Some(("Look", next, selected.into_iter().collect()))
 }
 
 /// Gives a part, or what is selected, a material: a step, or a preview of one.
@@ -21,7 +21,7 @@ pub(super) fn give_material(open: &mut OpenDocument, name: &str, part: Option<&s
     match given {
         Some((next, layer)) if done => {
             if open.commit("Material", next) {
-                open.choose_layers(vec![layer]);
+                open.select_layers(vec![layer]);
             }
         }
         Some((next, _)) => open.show("Material", next),

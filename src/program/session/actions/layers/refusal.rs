@@ -2,7 +2,7 @@
 //! Floor 6.
 
 use super::LayerAction;
-use super::steps::homed;
+use super::steps::attach;
 use crate::document::parts::forms::visible_place;
 use crate::document::{Content, Document, Layer, LayerId, LayerLock, Mesh};
 use crate::io::recipe::{LiveLook, PaintedBall, PartMaterial};
@@ -24,7 +24,7 @@ impl LayerAction {
         };
         let lies_lowest =
             |id: &LayerId| document.place_of(*id).is_none_or(|place| place.index == 0);
-        let chosen = |layer: &LayerPaths| layer.find(document).ok_or("Select a layer first.");
+        let selected = |layer: &LayerPaths| layer.find(document).ok_or("Select a layer first.");
         let refusal = match self {
             LayerAction::Delete { layer }
             | LayerAction::Duplicate { layer }
@@ -37,18 +37,18 @@ impl LayerAction {
             | LayerAction::Group { layer }
             | LayerAction::Set { layer, .. }
             | LayerAction::TakeAlong { layer, .. }
-            | LayerAction::Clear { layer } => chosen(layer).map(drop),
+            | LayerAction::Clear { layer } => selected(layer).map(drop),
             LayerAction::Mesh { layer, columns, rows }
                 if [columns, rows].iter().all(|n| Mesh::SIDE.contains(n)) =>
             {
-                chosen(layer).and_then(|ids| match ids.iter().all(shows) {
+                selected(layer).and_then(|ids| match ids.iter().all(shows) {
                     true => Ok(()),
                     false => Err("The layer holds nothing that a mesh could displace."),
                 })
             }
             LayerAction::Mesh { .. } => Err("A mesh has 2 to 33 points along a side."),
             LayerAction::Ungroup { layer } => {
-                chosen(layer).and_then(|ids| match ids.iter().any(is_group) {
+                selected(layer).and_then(|ids| match ids.iter().any(is_group) {
                     true if ids.iter().filter(|id| is_group(id)).any(is_warped) => {
                         Err("A mesh or liquify displaces the group: apply or remove it first.")
                     }
@@ -105,10 +105,10 @@ impl LayerAction {
                     false => Err("Select a painter's light that lights what is beneath first."),
                 }
             }
-            LayerAction::Home { layer, part } => {
-                chosen(layer).and_then(|ids| homed(document, &ids, part.as_deref()).map(drop))
+            LayerAction::Attach { layer, part } => {
+                selected(layer).and_then(|ids| attach(document, &ids, part.as_deref()).map(drop))
             }
-            LayerAction::MergeDown { layer } => chosen(layer).and_then(|ids| match &ids[..] {
+            LayerAction::MergeDown { layer } => selected(layer).and_then(|ids| match &ids[..] {
                 [one] if lies_lowest(one) => Err("There is no layer beneath to merge with."),
                 _ => Ok(()),
             }),

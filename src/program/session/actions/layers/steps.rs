@@ -1,4 +1,4 @@
-//! Steps of several layers: the resulting document, and which layers are chosen then. Floor 6.
+//! Steps of several layers: the resulting document, and which layers are selected then. Floor 6.
 
 use super::sibling;
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, MaskKind};
@@ -6,16 +6,16 @@ use crate::raster::Plane;
 use crate::session::OpenDocument;
 use std::sync::Arc;
 
-/// A step: its name, the document, and what is chosen then.
+/// A step: its name, the document, and what is selected then.
 pub(super) type EditStep = (&'static str, Document, Vec<LayerId>);
 
 pub(super) fn moves(ids: &[LayerId]) -> &'static str {
     if ids.len() > 1 { "Move layers" } else { "Move layer" }
 }
 
-/// What was moved is chosen; if it was already, the primary one stays the same.
+/// What was moved is selected; if it was already, the primary one stays the same.
 pub(super) fn selection_after_move(open: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
-    if open.outermost_chosen() == ids { Vec::new() } else { ids }
+    if open.outermost_selected() == ids { Vec::new() } else { ids }
 }
 
 /// A layer's mask as a picture to paint on; a new one hides or shows everything.
@@ -75,7 +75,7 @@ pub(super) fn ungroup(document: &Document, ids: &[LayerId]) -> Option<EditStep> 
             continue;
         };
         let applied = group?;
-        let home = applied.layer(*id)?.on.clone();
+        let attachment = applied.layer(*id)?.on.clone();
         let group = applied.layer(*id)?.content.group()?.clone();
         let place = applied.place_of(*id)?;
         next = applied.without_layer(*id)?;
@@ -85,8 +85,8 @@ pub(super) fn ungroup(document: &Document, ids: &[LayerId]) -> Option<EditStep> 
                 LayerSlot { index: place.index + i, ..place },
             )?;
             // What carried the group then carries each of them.
-            if let Some(home) = home.as_ref().filter(|_| inner.on.is_none()) {
-                next = next.with_layer_on(inner.id, Some(&home.part)).unwrap_or(next);
+            if let Some(attachment) = attachment.as_ref().filter(|_| inner.on.is_none()) {
+                next = next.with_layer_on(inner.id, Some(&attachment.part)).unwrap_or(next);
             }
             freed.push(inner.id);
         }
@@ -96,12 +96,12 @@ pub(super) fn ungroup(document: &Document, ids: &[LayerId]) -> Option<EditStep> 
 
 /// Layers on a part of the shape, on the canvas, or on what is around each; or why not, for the
 /// user.
-pub(super) fn homed(
+pub(super) fn attach(
     document: &Document,
     ids: &[LayerId],
     part: Option<&str>,
 ) -> Result<EditStep, &'static str> {
-    if part.is_some_and(|part| document.parts.home(part).is_none()) {
+    if part.is_some_and(|part| document.parts.attachment(part).is_none()) {
         return Err("There is no such part.");
     }
     let on = |next: Document, id: &LayerId| next.with_layer_on(*id, part);

@@ -33,7 +33,7 @@ impl FirstShape {
     /// Into an open document, as one step.
     pub fn put(self, open: &mut OpenDocument) {
         if open.commit("Give it a shape", self.document) {
-            (open.part, open.selected) = (Some(self.part), Some(self.base));
+            (open.part, open.primary) = (Some(self.part), Some(self.base));
             open.noted = self.note.or(open.noted.take());
         }
     }

@@ -57,11 +57,11 @@ pub fn detail(document: &Document, layer: LayerId) -> Result<CoverageFile, PartR
     Ok(CoverageFile { file, coverage: Arc::new(coverage) })
 }
 
-/// The chosen layers as shadings, the lowest first.
+/// The selected layers as shadings, the lowest first.
 pub fn shadings(open: &OpenDocument) -> Result<Vec<ProfilePicture>, PartRefusal> {
-    let (document, chosen) = (open.document(), open.chosen_layers());
+    let (document, selected) = (open.document(), open.selected_layers());
     let all = document.walk().into_iter().map(|(_, layer)| layer);
-    let layers: Vec<&Arc<Layer>> = all.filter(|layer| chosen.contains(&layer.id)).collect();
+    let layers: Vec<&Arc<Layer>> = all.filter(|layer| selected.contains(&layer.id)).collect();
     if !(2..=MOST_PROFILES).contains(&layers.len()) {
         return Err(
             "Select two to five layers with Ctrl, each a shading of the drawing with the light \

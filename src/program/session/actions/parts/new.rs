@@ -1,4 +1,4 @@
-//! New parts: from the selected layer, the selection or the chosen stroke, or bodies in the middle
+//! New parts: from the primary layer, the selection or the selected stroke, or bodies in the middle
 //! of the canvas. Floor 6.
 
 use super::{PartRefusal, free_id, grays};
@@ -100,20 +100,20 @@ pub fn make_part(kind: NewPart, open: &OpenDocument) -> Result<Part, PartRefusal
         NewPart::Sweep => {
             PartKind::Sweep { balls: of_stroke(open).unwrap_or_else(|| tail(document)), puff: 1.0 }
         }
-        NewPart::Touches => PartKind::Touches { on: form_of_chosen(open)?, touches: Vec::new() },
-        NewPart::Sculpt => PartKind::Sculpt { on: form_of_chosen(open)?, strokes: Vec::new() },
+        NewPart::Touches => PartKind::Touches { on: form_of_selected(open)?, touches: Vec::new() },
+        NewPart::Sculpt => PartKind::Sculpt { on: form_of_selected(open)?, strokes: Vec::new() },
         NewPart::Lines => PartKind::Lines {
-            on: form_of_chosen(open)?,
+            on: form_of_selected(open)?,
             ink: of_layer(open)?,
             lines: Lines::default(),
         },
         NewPart::Relief => {
             let picture = grays::detail(document, selected(open)?)?;
-            PartKind::Relief { on: form_of_chosen(open)?, picture, detail: Detail::default() }
+            PartKind::Relief { on: form_of_selected(open)?, picture, detail: Detail::default() }
         }
         NewPart::Profiles => PartKind::Profiles { outline: None, shadings: grays::shadings(open)? },
     };
-    let name = match (kind, open.selected.and_then(|id| document.layer(id))) {
+    let name = match (kind, open.primary.and_then(|id| document.layer(id))) {
         (
             NewPart::InflateLayer | NewPart::Lathe | NewPart::Lines | NewPart::Relief,
             Some(layer),
@@ -143,8 +143,8 @@ pub fn free_name(document: &Document, base: &str) -> String {
     std::iter::once(base.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or(base)
 }
 
-/// The chosen part, or the one that it lies on.
-fn form_of_chosen(open: &OpenDocument) -> Result<String, PartRefusal> {
+/// The selected part, or the one that it lies on.
+fn form_of_selected(open: &OpenDocument) -> Result<String, PartRefusal> {
     let part = open.part.as_deref().and_then(|id| open.document().parts.part(id));
     let part = part.ok_or("No part is selected. Add one first, or give the drawing a shape.")?;
     Ok(part.on().unwrap_or(&part.id).to_owned())
@@ -153,7 +153,7 @@ fn form_of_chosen(open: &OpenDocument) -> Result<String, PartRefusal> {
 const NO_LAYER: PartRefusal = "No layer is selected.";
 
 fn selected(open: &OpenDocument) -> Result<LayerId, PartRefusal> {
-    open.selected.ok_or(NO_LAYER)
+    open.primary.ok_or(NO_LAYER)
 }
 
 fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
@@ -179,10 +179,10 @@ fn of_selection(document: &Document) -> Option<OutlineSource> {
     }))
 }
 
-/// Balls along the chosen or last stroke of the selected layer.
+/// Balls along the selected or last stroke of the primary layer.
 fn of_stroke(open: &OpenDocument) -> Option<Vec<Ball>> {
-    let strokes = open.document().strokes(open.selected?);
-    let stroke = match open.chosen_strokes().last() {
+    let strokes = open.document().strokes(open.primary?);
+    let stroke = match open.selected_strokes().last() {
         Some(&index) => strokes.get(index)?,
         None => strokes.last()?,
     };

@@ -96,7 +96,10 @@ fn a_drawing_that_is_one_part_goes_where_the_part_goes() {
             "{x} {y}: {a:?} {b:?}"
         );
     }
-    assert_eq!(shown(&session).layers[0].on.as_ref().map(|home| &*home.part), Some("part-1"));
+    assert_eq!(
+        shown(&session).layers[0].on.as_ref().map(|attachment| &*attachment.part),
+        Some("part-1")
+    );
 }
 
 #[test]
@@ -211,22 +214,28 @@ fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
         flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
     };
     let before = picture(&session);
-    let home =
-        |session: &Session| shown(session).layers[1].on.as_ref().map(|home| home.part.to_string());
+    let attachment = |session: &Session| {
+        shown(session).layers[1].on.as_ref().map(|attachment| attachment.part.to_string())
+    };
     tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":"part-1"}"#);
-    assert!(home(&session).as_deref() == Some("part-1") && picture(&session) == before);
+    assert!(attachment(&session).as_deref() == Some("part-1") && picture(&session) == before);
     tell(&mut session, r#"{"in":"stroke","do":"home","layer":"1","strokes":[1],"part":"part-2"}"#);
-    let homes = |session: &Session| {
+    let attachments = |session: &Session| {
         let layer = shown(session).layers[1].id;
         let strokes = shown(session).strokes(layer);
-        strokes.iter().map(|s| s.home().map(|home| home.frame.part.to_string())).collect::<Vec<_>>()
+        strokes
+            .iter()
+            .map(|s| s.attachment().map(|attachment| attachment.frame.part.to_string()))
+            .collect::<Vec<_>>()
     };
-    assert_eq!(homes(&session), [None, Some("part-2".to_owned())]);
+    assert_eq!(attachments(&session), [None, Some("part-2".to_owned())]);
     assert!(picture(&session) == before);
     tell(&mut session, r#"{"in":"stroke","do":"home","layer":"1","strokes":[1],"part":null}"#);
     tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":null}"#);
     assert!(
-        home(&session).is_none() && homes(&session) == [None, None] && picture(&session) == before
+        attachment(&session).is_none()
+            && attachments(&session) == [None, None]
+            && picture(&session) == before
     );
     assert!(session.said.is_empty(), "{:?}", session.said);
     tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":"nobody"}"#);

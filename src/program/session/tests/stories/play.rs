@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// How a story went: what was done, without what failed in words, and the promise that was broken.
-pub struct Told {
+pub struct PlayedStory {
     pub actions: Vec<Action>,
     pub broken: Option<Broken>,
 }
@@ -41,7 +41,7 @@ impl Asks {
 }
 
 /// Plays the story of a seed.
-pub fn story(seed: u64, folder: &StoryFolder) -> Told {
+pub fn story(seed: u64, folder: &StoryFolder) -> PlayedStory {
     folder.begin();
     let mut dice = Dice::new(seed);
     let files = Arc::new(StoryFiles::new(folder.path()));
@@ -53,14 +53,14 @@ pub fn story(seed: u64, folder: &StoryFolder) -> Told {
     for step in 0..=steps {
         for action in &next {
             if let Err(broken) = play.perform(action) {
-                return Told { actions: play.actions, broken: Some(broken) };
+                return PlayedStory { actions: play.actions, broken: Some(broken) };
             }
         }
         dice.facts = Facts::of(&play.session, &files);
         next = if step < steps { step_of(&mut dice) } else { Vec::new() };
     }
     let broken = play.end().err();
-    Told { actions: play.actions, broken }
+    PlayedStory { actions: play.actions, broken }
 }
 
 /// Plays these actions; the promise that they break.

@@ -4,7 +4,7 @@
 use super::names;
 use crate::document::{Document, MemoryUse, Progress, flatten, flatten_rounding_once};
 use crate::io::export::ExportOptions;
-use crate::io::export::deep::encode_document;
+use crate::io::export::high_depth::encode_document;
 use crate::io::project::{self, Archive};
 use crate::io::{Budget, picture, psd, recipe};
 use crate::raster::picture::Texels;

@@ -106,7 +106,7 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
     let picture = ImageBuffer::from_fn(40, 30, |x, y| {
         Rgba([(x * 6) as u8, (y * 8) as u8, (x * y) as u8, (255 - 4 * x) as u8])
     });
-    let deep = ImageBuffer::from_fn(32, 32, |x, y| {
+    let texels16 = ImageBuffer::from_fn(32, 32, |x, y| {
         Rgb([(x * 2000 + 17) as u16, (y * 2000 + 3) as u16, (x * y * 60) as u16])
     });
     let gray = ImageBuffer::from_fn(48, 36, |x, y| Luma([((x * 5) ^ (y * 7)) as u8]));
@@ -124,7 +124,7 @@ fn pictures() -> Vec<(String, Vec<u8>)> {
         ("depth.png", DynamicImage::ImageLuma16(depth)),
         ("picture.png", DynamicImage::ImageRgba8(picture)),
         ("inked.png", DynamicImage::ImageRgba8(inked)),
-        ("picture-deep.png", DynamicImage::ImageRgb16(deep)),
+        ("picture-deep.png", DynamicImage::ImageRgb16(texels16)),
         ("gray.png", DynamicImage::ImageLuma8(gray)),
     ];
     let encoded = |image: DynamicImage| {

@@ -66,7 +66,7 @@ fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     let group = shown(&session).layers[1].content.group().unwrap();
     let on = |layer: &std::sync::Arc<Layer>| layer.on.as_ref().map(|on| on.part.to_string());
     assert_eq!(group.layers.iter().filter_map(on).collect::<Vec<_>>(), ids(&session));
-    assert_eq!(session.active().unwrap().selected, Some(shown(&session).layers[1].id));
+    assert_eq!(session.active().unwrap().primary, Some(shown(&session).layers[1].id));
     assert!(!shown(&session).layers[0].visible && shown(&session).parts.list == before.parts.list);
     tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
     assert!(

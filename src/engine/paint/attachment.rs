@@ -1,21 +1,21 @@
-//! Home frames: marks have their coordinates on the canvas or on a part of the document's shape,
+//! Attachments: marks have their coordinates on the canvas or on a part of the document's shape,
 //! which carries them where it goes. Floor 3. Parts themselves are `document::parts`;
-//! `document::layer` combines homes with the transforms of layers.
+//! `document::layer` combines attachments with the transforms of layers.
 
 use crate::math::{Affine2, PlaneMap};
 use std::sync::Arc;
 
 /// The part that marks lie on, and where it is.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HomeFrame {
-    /// The id of the part, or [`HomeFrame::CANVAS`].
+pub struct Attachment {
+    /// The id of the part, or [`Attachment::CANVAS`].
     pub part: Arc<str>,
     /// Canvas from part at its current position: resolved again whenever the document is shaped.
     pub matrix: Affine2,
 }
 
-impl HomeFrame {
-    /// The name of the canvas as a home in documents. No part has this id.
+impl Attachment {
+    /// The name of the canvas as an attachment in documents. No part has this id.
     pub const CANVAS: &'static str = "canvas";
 
     /// On a part whose position is not known yet.
@@ -44,22 +44,22 @@ impl HomeFrame {
     }
 }
 
-/// The home of a stroke that differs from its layer's.
+/// The attachment of a stroke that differs from its layer's.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StrokeHome {
+pub struct StrokeAttachment {
     /// What carries the stroke.
-    pub frame: HomeFrame,
+    pub frame: Attachment,
     /// Where the stroke's own frame lies within its layer's: a, b, c, d, e, f as in a layer's
     /// transform.
     pub own: [f64; 6],
 }
 
-impl StrokeHome {
-    /// The map of a home that has not moved.
+impl StrokeAttachment {
+    /// The map of an attachment that has not moved.
     pub const UNMOVED: [f64; 6] = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 
     /// A stroke on something that has not moved since.
-    pub fn new(frame: HomeFrame) -> Self {
+    pub fn new(frame: Attachment) -> Self {
         Self { frame, own: Self::UNMOVED }
     }
 

@@ -4,7 +4,7 @@
 use super::super::prepare::PreparedDocument;
 use super::*;
 use crate::document::{Content, Group, Layer, Live, StrokeList, flatten};
-use crate::document::{flatten_deep, flatten_rounding_once, flatten_to_paint};
+use crate::document::{flatten_rounding_once, flatten_to_floats, flatten_to_paint};
 use crate::math::srgb::{self, Color};
 use crate::math::{Size, Vec2, hash, vec2, vec3};
 use crate::paint::{
@@ -95,8 +95,8 @@ fn levels(values: impl Iterator<Item = f32>) -> usize {
 fn a_gradient_of_4096_pixels_has_4096_levels() {
     let size = Size::new(4096, 2);
     let picture = document(size, vec![gradient(vec2(0.0, 1.0), vec2(4096.0, 1.0), Operator::None)]);
-    let deep = flatten_deep(&picture, Highlights::Clipped, &Progress::default()).unwrap();
-    let found = levels(deep[..4096].iter().map(|p| (p[0] * 65535.0).round()));
+    let floats = flatten_to_floats(&picture, Highlights::Clipped, &Progress::default()).unwrap();
+    let found = levels(floats[..4096].iter().map(|p| (p[0] * 65535.0).round()));
     assert!(found >= 4090, "{found} levels of 16 bits");
 }
 
@@ -130,7 +130,8 @@ fn every_kind_of_layer_is_the_picture_of_bytes_before_it_is_rounded() {
         let part = layers[..n].to_vec();
         let document = Document { surface: surface.clone(), ..document(size, part) };
         let bytes = flatten(&document, &Progress::default()).unwrap();
-        let deep = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
+        let floats =
+            flatten_to_floats(&document, Highlights::Clipped, &Progress::default()).unwrap();
         let apart = |(i, float): (usize, &[f32; 4])| {
             let byte = bytes.pixel(i as i32 % 140, i as i32 / 140);
             byte.iter()
@@ -138,7 +139,7 @@ fn every_kind_of_layer_is_the_picture_of_bytes_before_it_is_rounded() {
                 .map(|(b, f)| (f32::from(*b) - f * 255.0).abs())
                 .fold(0.0, f32::max)
         };
-        let farthest = deep.iter().enumerate().map(apart).fold(0.0, f32::max);
+        let farthest = floats.iter().enumerate().map(apart).fold(0.0, f32::max);
         // Layers of bytes are rounded one by one; scaling multiplies the error.
         assert!(
             farthest < if n == layers.len() { 3.0 } else { 2.5 },
@@ -173,7 +174,8 @@ fn a_picture_that_is_rounded_once_is_the_one_of_floats_whatever_the_blend_mode()
             mode,
         );
         let document = document(size, vec![below, above]);
-        let deep = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
+        let floats =
+            flatten_to_floats(&document, Highlights::Clipped, &Progress::default()).unwrap();
         let apart = |bytes: crate::raster::TileGrid| {
             let of_pixel = |(i, float): (usize, &[f32; 4])| {
                 let byte = bytes.pixel(i as i32 % 256, i as i32 / 256);
@@ -182,7 +184,7 @@ fn a_picture_that_is_rounded_once_is_the_one_of_floats_whatever_the_blend_mode()
                     .map(|(b, f)| (f32::from(*b) - f * 255.0).abs())
                     .fold(0.0, f32::max)
             };
-            deep.iter().enumerate().map(of_pixel).fold(0.0, f32::max)
+            floats.iter().enumerate().map(of_pixel).fold(0.0, f32::max)
         };
         let once = apart(flatten_rounding_once(&document, &Progress::default()).unwrap());
         let by_layer = apart(flatten(&document, &Progress::default()).unwrap());
@@ -200,7 +202,7 @@ fn light_beyond_white_stays_in_files_of_light_alone() {
     let mut veil = Layer::new("veil", Content::Fill(Color::BLACK));
     veil.opacity = 0.5;
     let shown = |layers: Vec<Layer>, highlights| {
-        flatten_deep(&document(size, layers), highlights, &Progress::default()).unwrap()[70]
+        flatten_to_floats(&document(size, layers), highlights, &Progress::default()).unwrap()[70]
     };
     let bright = shown(vec![image(sun.clone(), size, Operator::None)], Highlights::Kept);
     assert!((srgb::decode(bright[0]) - 9.0).abs() < 1e-3, "{bright:?}");
@@ -216,14 +218,14 @@ fn tiles_rendered_together_are_taken_and_those_of_other_places_are_rendered() {
     let size = Size::new(140, 120);
     let document = Document { surface: Some(balls(size)), ..document(size, vec![strokes(5)]) };
     let prepared = PreparedDocument::new(&document, &Progress::default()).unwrap();
-    let mut deep = DeepTiles::new(&prepared, Highlights::Clipped);
+    let mut floats = FloatTiles::new(&prepared, Highlights::Clipped);
     let node = &prepared.stack[0];
     let list = document.strokes(node.layer.id).to_vec();
     let (known, other) = (TileAt::new(0, 0), TileAt::new(1, 1));
     let mut red = PlanarTile::transparent();
     red.rows_mut()[3].set(4, [1.0, 0.0, 0.0, 1.0]);
-    deep.together.insert(TileKey::of(node, known, &node.scene), Some(red));
-    let pixel = |at, x: usize, y: usize| match deep.content(
+    floats.together.insert(TileKey::of(node, known, &node.scene), Some(red));
+    let pixel = |at, x: usize, y: usize| match floats.content(
         node,
         node.layer.content.marks().unwrap(),
         at,
@@ -243,20 +245,20 @@ fn textures_of_floats_are_held_while_tiles_are_composed() {
     let picture = Picture::srgb8(size, vec![[50; 4]; 64 * 64]).unwrap();
     let document = document(size, vec![image(picture, size, Operator::None), strokes(1)]);
     let prepared = PreparedDocument::new(&document, &Progress::default()).unwrap();
-    assert_eq!(DeepTiles::new(&prepared, Highlights::Kept).texture_count(), 1);
+    assert_eq!(FloatTiles::new(&prepared, Highlights::Kept).texture_count(), 1);
 }
 
 #[test]
-fn a_placed_picture_of_more_than_8_bits_becomes_paint_of_16_even_if_nothing_is_soft() {
+fn a_placed_picture_of_more_than_8_bits_becomes_paint_of_16_even_if_nothing_is_smooth() {
     let size = Size::new(100, 70);
     let value = |i: usize, c: u32| (hash::unit(i as u32, c, 4) * 65536.0) as u16;
-    let deep: Vec<[u16; 4]> =
+    let texels: Vec<[u16; 4]> =
         (0..size.area()).map(|i| [value(i, 0), value(i, 1), value(i, 2), 65535]).collect();
     let bytes =
-        Picture::srgb8(size, deep.iter().map(|t| t.map(|v| (v / 257) as u8)).collect()).unwrap();
-    let light = deep.iter().map(|t| t.map(|v| srgb::decode(f32::from(v) / 65535.0))).collect();
-    let wide = Picture::srgb16(size, deep.clone()).unwrap();
-    for (picture, is_deep) in
+        Picture::srgb8(size, texels.iter().map(|t| t.map(|v| (v / 257) as u8)).collect()).unwrap();
+    let light = texels.iter().map(|t| t.map(|v| srgb::decode(f32::from(v) / 65535.0))).collect();
+    let wide = Picture::srgb16(size, texels.clone()).unwrap();
+    for (picture, is_16_bit) in
         [(wide, true), (Picture::linear(size, light).unwrap(), true), (bytes.clone(), false)]
     {
         // One is in a group and clipped, as a layer may be.
@@ -265,21 +267,21 @@ fn a_placed_picture_of_more_than_8_bits_becomes_paint_of_16_even_if_nothing_is_s
         let base = image(bytes.clone(), size, Operator::None);
         let group = Group { layers: vec![base.into(), clipped.into()], pass_through: false };
         let grouped = Layer::new("group", Content::Group(group));
-        assert_eq!(is_kept_deep(grouped, size), is_deep);
+        assert_eq!(is_kept_in_16_bits(grouped, size), is_16_bit);
         let tiles = flatten_to_paint(&document(size, vec![alone]), &Progress::default()).unwrap();
-        assert_eq!(tiles.is_deep_in(size.rect()), is_deep);
-        let found = tiles.to_straight_deep(size.rect());
+        assert_eq!(tiles.is_16_bit_in(size.rect()), is_16_bit);
+        let found = tiles.to_straight16(size.rect());
         let apart = found
             .iter()
-            .zip(&deep)
+            .zip(&texels)
             .flat_map(|(a, b)| a.iter().zip(b))
             .map(|(a, b)| a.abs_diff(*b))
             .max();
-        assert!(!is_deep || apart <= Some(1), "{apart:?}");
+        assert!(!is_16_bit || apart <= Some(1), "{apart:?}");
     }
 }
 
-fn is_kept_deep(layer: Layer, size: Size) -> bool {
+fn is_kept_in_16_bits(layer: Layer, size: Size) -> bool {
     let tiles = flatten_to_paint(&document(size, vec![layer]), &Progress::default()).unwrap();
-    tiles.is_deep_in(size.rect())
+    tiles.is_16_bit_in(size.rect())
 }

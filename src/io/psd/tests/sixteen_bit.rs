@@ -4,11 +4,11 @@
 use super::foreign::attack;
 use super::made::*;
 use super::read_back;
-use crate::deep_paint::read_within_budget;
 use crate::document::{Content, Document};
 use crate::math::{Rect, srgb};
 use crate::project::ProjectContents;
 use crate::raster::TileGrid;
+use crate::sixteen_bit_paint::read_within_budget;
 use crate::{Budget, Remedy};
 use std::path::Path;
 
@@ -55,7 +55,7 @@ fn tiles(document: &Document, layer: usize) -> &TileGrid {
 
 /// The greatest difference of any channel from what was stored.
 fn greatest_difference(tiles: &TileGrid) -> u16 {
-    let pixels = tiles.to_straight_deep(RECT);
+    let pixels = tiles.to_straight16(RECT);
     let of =
         |(i, pixel): (usize, &[u16; 4])| (0..3).map(move |c| (i, c, pixel[c])).collect::<Vec<_>>();
     pixels.iter().enumerate().flat_map(of).map(|(i, c, v)| v.abs_diff(value(i, c))).max().unwrap()
@@ -85,7 +85,7 @@ fn pictures_and_layers_of_more_than_8_bits_become_paint_of_16() {
         }
     }
     let eight = file_of(8, |v| vec![(v >> 8) as u8], true);
-    assert!(!tiles(&read_back(&eight.bytes()).document, 0).is_deep_in(RECT));
+    assert!(!tiles(&read_back(&eight.bytes()).document, 0).is_16_bit_in(RECT));
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn gray_and_half_transparent_pixels_keep_16_bits() {
     let document = read_back(&gray.bytes()).document;
     let own = document.walk().into_iter().find(|(_, layer)| layer.name == "soft").unwrap().1;
     let Content::Pixels(pixels) = &own.content else { panic!("a paint layer") };
-    for (i, [r, g, b, a]) in pixels.tiles.to_straight_deep(RECT).into_iter().enumerate() {
+    for (i, [r, g, b, a]) in pixels.tiles.to_straight16(RECT).into_iter().enumerate() {
         assert_eq!(a, value(i, 1) | 0x4000);
         // Premultiplied by a quarter at least.
         assert!(r == g && g == b && r.abs_diff(value(i, 0)) <= 2, "{r} for {}", value(i, 0));
@@ -120,7 +120,7 @@ fn a_wide_profile_is_applied_in_16_bits() {
     let mut made = file_of(16, short, false);
     made.resources = vec![(1039, moxcms::ColorProfile::new_display_p3().encode().unwrap())];
     let document = read_back(&made.bytes()).document;
-    let pixels = tiles(&document, 0).to_straight_deep(RECT);
+    let pixels = tiles(&document, 0).to_straight16(RECT);
     assert!(greatest_difference(tiles(&document, 0)) > 1000, "sRGB is narrower");
     let distinct: std::collections::BTreeSet<u16> = pixels.iter().map(|pixel| pixel[1]).collect();
     assert!(distinct.len() > 4000, "{} levels", distinct.len());
@@ -147,7 +147,7 @@ fn short_of_memory_a_file_of_16_bits_is_read_with_8() {
         let (rounded, note) = read(free).unwrap();
         assert!(note.is_some_and(|note| note.contains("8 bits a channel")), "{free}");
         let (found, wanted) = (tiles(&rounded.document, 0), tiles(&whole.document, 0));
-        assert!(!found.is_deep_in(RECT) && wanted.is_deep_in(RECT));
+        assert!(!found.is_16_bit_in(RECT) && wanted.is_16_bit_in(RECT));
         let pairs = wanted.to_straight_rgba(RECT).into_iter().zip(found.to_straight_rgba(RECT));
         assert!(pairs.map(|(a, b)| a.abs_diff(b)).max() <= Some(1));
     }

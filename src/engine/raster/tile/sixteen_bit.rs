@@ -1,29 +1,29 @@
-//! Pixels of 16 bits, which a tile holds in addition to its bytes if something soft was painted:
+//! Pixels of 16 bits, which a tile holds in addition to its bytes where its paint is smooth:
 //! premultiplied, 65535 is full. Floor 1. Each channel of a row is separate, so that loading a row
 //! takes no shuffles.
 
 use super::TILE;
-use crate::math::srgb::quantize_deep;
+use crate::math::srgb::quantize16;
 
 /// One row of a tile: red, green, blue, each no greater than alpha, and alpha.
-pub type DeepRow = [[u16; TILE]; 4];
+pub type Row16 = [[u16; TILE]; 4];
 
 /// A row without paint.
-pub const CLEAR_ROW: DeepRow = [[0; TILE]; 4];
+pub const CLEAR_ROW: Row16 = [[0; TILE]; 4];
 
 /// One level of 8 bits in 16 bits.
 pub const LEVEL: u16 = 257;
 
-/// This many pixels of a tile must be soft for it to be kept in 16 bits. Edges of ink leave one or
-/// two by chance.
-const LEAST_SOFT: u32 = 8;
+/// This many pixels of a tile must be smooth for it to be kept in 16 bits. Edges of ink leave one
+/// or two by chance.
+const LEAST_SMOOTH: u32 = 8;
 
 /// A value nearer to a byte than a sixteenth of a level counts as that byte: strokes leave such
 /// residues.
 const TRACE: u16 = LEVEL / 16;
 
 /// A tile of transparent rows.
-pub fn clear_rows() -> Box<[DeepRow]> {
+pub fn clear_rows() -> Box<[Row16]> {
     vec![CLEAR_ROW; TILE].into_boxed_slice()
 }
 
@@ -36,13 +36,13 @@ pub fn byte_of(v: u16) -> u8 {
 
 /// A pixel of a tile's rows.
 #[inline(always)]
-pub fn pixel_of(rows: &[DeepRow], x: usize, y: usize) -> [u16; 4] {
+pub fn pixel_of(rows: &[Row16], x: usize, y: usize) -> [u16; 4] {
     rows.get(y).map_or([0; 4], |row| std::array::from_fn(|c| row[c].get(x).copied().unwrap_or(0)))
 }
 
 /// Puts a pixel into a row; colors above alpha are lowered to it.
 #[inline(always)]
-pub fn put(row: &mut DeepRow, x: usize, [r, g, b, a]: [u16; 4]) {
+pub fn put(row: &mut Row16, x: usize, [r, g, b, a]: [u16; 4]) {
     for (channel, value) in row.iter_mut().zip([r.min(a), g.min(a), b.min(a), a]) {
         channel[x] = value;
     }
@@ -58,13 +58,13 @@ fn off_byte(v: u16) -> u16 {
 
 crate::widest! {
     /// Rounds a premultiplied row of floats; colors above alpha are lowered to it.
-    pub fn quantize_row(row: [&[f32; TILE]; 4], deep: &mut DeepRow) {
-        for (channel, deep) in row.into_iter().zip(deep.iter_mut()) {
+    pub fn quantize_row(row: [&[f32; TILE]; 4], rows16: &mut Row16) {
+        for (channel, rows16) in row.into_iter().zip(rows16.iter_mut()) {
             for x in 0..TILE {
-                deep[x] = quantize_deep(channel[x]);
+                rows16[x] = quantize16(channel[x]);
             }
         }
-        let [r, g, b, a] = deep;
+        let [r, g, b, a] = rows16;
         for channel in [r, g, b] {
             for x in 0..TILE {
                 channel[x] = channel[x].min(a[x]);
@@ -73,9 +73,9 @@ crate::widest! {
     }
 
     /// Rounds rows to bytes, four a pixel; whether bytes hold every value exactly.
-    pub fn to_bytes(deep: &[DeepRow], bytes: &mut [u8]) -> bool {
+    pub fn to_bytes(rows16: &[Row16], bytes: &mut [u8]) -> bool {
         let mut off = 0;
-        for (row, bytes) in deep.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
+        for (row, bytes) in rows16.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
             for (c, channel) in row.iter().enumerate() {
                 for x in 0..TILE {
                     let byte = byte_of(channel[x]);
@@ -88,8 +88,8 @@ crate::widest! {
     }
 
     /// Bytes, four a pixel, in 16 bits.
-    pub fn of_bytes(bytes: &[u8], deep: &mut [DeepRow]) {
-        for (bytes, row) in bytes.chunks_exact(4 * TILE).zip(deep) {
+    pub fn of_bytes(bytes: &[u8], rows16: &mut [Row16]) {
+        for (bytes, row) in bytes.chunks_exact(4 * TILE).zip(rows16) {
             for (c, channel) in row.iter_mut().enumerate() {
                 for x in 0..TILE {
                     channel[x] = u16::from(bytes[4 * x + c]) * LEVEL;
@@ -98,8 +98,8 @@ crate::widest! {
         }
     }
 
-    /// For each pixel of a row whether it is soft, 1 or 0: see [`is_soft`].
-    fn soft_in_row(above: &DeepRow, row: &DeepRow, below: &DeepRow, soft: &mut [u16; TILE]) {
+    /// For each pixel of a row whether it is smooth, 1 or 0: see [`is_smooth`].
+    fn find_smooth(above: &Row16, row: &Row16, below: &Row16, smooth: &mut [u16; TILE]) {
         let (mut off, mut steps) = ([0u16; TILE], [0u16; TILE]);
         for c in 0..4 {
             // The border is repeated beyond the tile.
@@ -115,31 +115,31 @@ crate::widest! {
             }
         }
         for x in 0..TILE {
-            soft[x] = u16::from(off[x] > TRACE) & u16::from(steps[x] < LEVEL);
+            smooth[x] = u16::from(off[x] > TRACE) & u16::from(steps[x] < LEVEL);
         }
     }
 }
 
-/// Whether bytes would lose what was painted: some pixels are soft. A pixel is soft if bytes cannot
-/// hold it, and all four neighbors differ by less than a level of 8 bits in every channel.
+/// Whether bytes would lose what was painted: some pixels are smooth. A pixel is smooth if bytes
+/// cannot hold it, and all four neighbors differ by less than a level of 8 bits in every channel.
 ///
-/// In soft pixels rounding makes steps that are wider than a pixel, which show as bands, and faint
-/// paint that builds up stroke by stroke is rounded away. At an edge, where neighbors are levels
-/// apart, neither shows: so ink, including its rims, stays in bytes.
+/// In smooth pixels rounding makes steps that are wider than a pixel, which show as bands, and
+/// faint paint that builds up stroke by stroke is rounded away. At an edge, where neighbors are
+/// levels apart, neither shows: so ink, including its rims, stays in bytes.
 ///
 /// * `row`: puts a row in place, the top one first; each is requested once.
-pub fn is_soft(mut row: impl FnMut(usize, &mut DeepRow)) -> bool {
+pub fn is_smooth(mut row: impl FnMut(usize, &mut Row16)) -> bool {
     // Three rows at a time, so that they stay in the first-level cache.
-    let (mut window, mut count, mut soft) = ([CLEAR_ROW; 3], 0u32, [0u16; TILE]);
+    let (mut window, mut count, mut smooth) = ([CLEAR_ROW; 3], 0u32, [0u16; TILE]);
     row(0, &mut window[0]);
     for y in 0..TILE {
         if y + 1 < TILE {
             row(y + 1, &mut window[(y + 1) % 3]);
         }
         let at = |y: usize| &window[y % 3];
-        soft_in_row(at(y.saturating_sub(1)), at(y), at((y + 1).min(TILE - 1)), &mut soft);
-        count += u32::from(soft.iter().sum::<u16>());
-        if count >= LEAST_SOFT {
+        find_smooth(at(y.saturating_sub(1)), at(y), at((y + 1).min(TILE - 1)), &mut smooth);
+        count += u32::from(smooth.iter().sum::<u16>());
+        if count >= LEAST_SMOOTH {
             return true;
         }
     }
@@ -171,19 +171,20 @@ mod tests {
     use super::*;
     use crate::math::hash;
 
-    /// [`is_soft`], pixel by pixel.
-    fn soft_pixels(deep: &[DeepRow]) -> usize {
-        let at = |x: i32, y: i32| pixel_of(deep, x.clamp(0, 63) as usize, y.clamp(0, 63) as usize);
-        let is_soft = |i: usize| {
+    /// [`is_smooth`], pixel by pixel.
+    fn count_smooth(rows16: &[Row16]) -> usize {
+        let at =
+            |x: i32, y: i32| pixel_of(rows16, x.clamp(0, 63) as usize, y.clamp(0, 63) as usize);
+        let is_smooth = |i: usize| {
             let (x, y) = ((i % TILE) as i32, (i / TILE) as i32);
             let near = |(dx, dy)| (0..4).all(|c| at(x, y)[c].abs_diff(at(x + dx, y + dy)[c]) < 257);
             at(x, y).iter().any(|v| (17..=240).contains(&(v % 257)))
                 && [(-1, 0), (1, 0), (0, -1), (0, 1)].into_iter().all(near)
         };
-        (0..TILE_AREA).filter(|&i| is_soft(i)).count()
+        (0..TILE_AREA).filter(|&i| is_smooth(i)).count()
     }
 
-    fn painted(value: impl Fn(usize, usize) -> [u16; 4]) -> Box<[DeepRow]> {
+    fn painted(value: impl Fn(usize, usize) -> [u16; 4]) -> Box<[Row16]> {
         let mut rows = clear_rows();
         (0..TILE_AREA).for_each(|i| put(&mut rows[i / TILE], i % TILE, value(i % TILE, i / TILE)));
         rows
@@ -211,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_soft_is_what_the_definition_says() {
+    fn what_is_smooth_is_what_the_definition_says() {
         let ramp = |per_px: usize| painted(|x, _| [0, 0, 0, (20_003 + x * per_px) as u16]);
         let dots = |n: usize| {
             painted(|x, y| if x % 9 == 4 && y == 5 && x / 9 < n { [0, 0, 0, 100] } else { [0; 4] })
@@ -230,11 +231,11 @@ mod tests {
                 0,
             ),
         ];
-        for (i, (rows, soft)) in cases.iter().enumerate() {
-            assert_eq!(soft_pixels(rows), *soft, "case {i}");
+        for (i, (rows, smooth)) in cases.iter().enumerate() {
+            assert_eq!(count_smooth(rows), *smooth, "case {i}");
             assert_eq!(
-                is_soft(|y, row| *row = rows[y]),
-                soft_pixels(rows) >= LEAST_SOFT as usize,
+                is_smooth(|y, row| *row = rows[y]),
+                count_smooth(rows) >= LEAST_SMOOTH as usize,
                 "case {i}"
             );
         }
@@ -244,8 +245,8 @@ mod tests {
                 [gentle / 2, gentle, 0, gentle.saturating_mul(1 + (seed as u16) % 3)]
             });
             assert_eq!(
-                is_soft(|y, row| *row = noise[y]),
-                soft_pixels(&noise) >= LEAST_SOFT as usize,
+                is_smooth(|y, row| *row = noise[y]),
+                count_smooth(&noise) >= LEAST_SMOOTH as usize,
                 "seed {seed}"
             );
         }
@@ -265,8 +266,8 @@ mod tests {
     #[test]
     fn floats_are_rounded_and_colors_lowered_to_alpha() {
         let [r, g, b, a] = [0.9, 0.25, f32::NAN, 0.5].map(|v| [v; TILE]);
-        let mut deep = CLEAR_ROW;
-        quantize_row([&r, &g, &b, &a], &mut deep);
-        assert_eq!(pixel_of(&[deep], 9, 0), [32768, 16384, 0, 32768]);
+        let mut rows16 = CLEAR_ROW;
+        quantize_row([&r, &g, &b, &a], &mut rows16);
+        assert_eq!(pixel_of(&[rows16], 9, 0), [32768, 16384, 0, 32768]);
     }
 }

@@ -57,8 +57,8 @@ fn what_lies_on_parts_is_written_as_it_was_read_and_stands_where_they_stand() {
     let base = document.layer_named("Base").unwrap();
     assert_eq!(base.on.as_ref().unwrap().matrix.translation.to_array(), [5.0, 3.0]);
     let strokes = document.strokes(document.layer_named("Ink").unwrap().id);
-    assert_eq!(strokes[1].home().unwrap().frame.part(), Some("eye"));
-    assert!(strokes[2].home().unwrap().frame.is_canvas());
+    assert_eq!(strokes[1].attachment().unwrap().frame.part(), Some("eye"));
+    assert!(strokes[2].attachment().unwrap().frame.is_canvas());
     let written = recipe::write(&document);
     let again = read(&written).unwrap();
     assert_eq!(document.difference(&again), None);
@@ -76,11 +76,11 @@ fn what_lies_on_parts_is_written_as_it_was_read_and_stands_where_they_stand() {
     );
     // One that is elsewhere makes a different document.
     let moved = document.with_layer(base.id, |layer| layer.on = None).unwrap();
-    assert!(moved.difference(&again).is_some_and(|what| what.contains("home")));
+    assert!(moved.difference(&again).is_some_and(|what| what.contains("attachment")));
 }
 
 #[test]
-fn a_project_gives_homes_back() {
+fn a_project_gives_attachments_back() {
     let document = read(&body(&json!({ "layers": on_parts() }))).unwrap();
     let file = Path::new("a.ora");
     let bytes = project::write(file, &document, &Progress::default()).unwrap().unwrap();
@@ -91,7 +91,7 @@ fn a_project_gives_homes_back() {
 }
 
 #[test]
-fn a_home_that_is_no_part_is_refused_by_its_path() {
+fn an_attachment_to_no_part_is_refused_by_its_path() {
     let says = |layers: Value| refused(&body(&json!({ "layers": layers })));
     let fill = json!({ "kind": "fill", "on": "nose" });
     assert_eq!(
@@ -123,7 +123,7 @@ fn a_layer_on_the_canvas_stays_so_outside_of_groups_too() {
     let plain = json!({ "format": "rilievo", "version": 2, "canvas": { "width": 48, "height": 40 },
         "layers": [{ "kind": "fill", "color": "#000000", "on": "canvas" }] });
     let document = read(&plain).unwrap();
-    assert!(document.layers[0].on.as_ref().is_some_and(|home| home.is_canvas()));
+    assert!(document.layers[0].on.as_ref().is_some_and(|attachment| attachment.is_canvas()));
     assert_eq!(recipe::write(&document), plain);
 }
 

@@ -1,6 +1,6 @@
 //! Paint of 16 bits a channel as far as there is memory for it: what does not fit is read with 8,
-//! and a note says so. Floor 5. Readers ask [`Budget::deep_paint`]; which tiles have 16 bits is the
-//! rule of `raster::tile::deep`.
+//! and a note says so. Floor 5. Readers ask [`Budget::sixteen_bit_paint`]; which tiles have 16 bits
+//! is the rule of `raster::tile::sixteen_bit`.
 
 #![warn(missing_docs)]
 
@@ -32,12 +32,12 @@ pub fn read_within_budget<T>(
         Ok(found) => is_held(document(found), budget),
         Err(error) => error.remedy() != Some(Remedy::MoreMemory),
     };
-    if fits || !budget.deep_paint {
+    if fits || !budget.sixteen_bit_paint {
         return first.map(|found| (found, None));
     }
     // Freed first: both together would not fit.
     let refused = first.err();
-    let rounded = Budget { deep_paint: false, ..*budget };
+    let rounded = Budget { sixteen_bit_paint: false, ..*budget };
     match (read(&rounded), refused) {
         (Ok(found), _) => Ok((found, Some(NOTE.to_owned()))),
         (Err(_), Some(first)) => Err(first),
@@ -50,13 +50,13 @@ const NOTE: &str = "its paint was read with 8 bits a channel: there is too littl
 /// Whether a document has no paint of 16 bits, or fits the budget together with what flattening it
 /// takes.
 fn is_held(document: &Document, budget: &Budget) -> bool {
-    let is_deep = document.walk().into_iter().any(|(_, layer)| match &layer.content {
-        Content::Pixels(pixels) => pixels.tiles.is_deep_in(pixels.tiles.bounds()),
+    let is_16_bit = document.walk().into_iter().any(|(_, layer)| match &layer.content {
+        Content::Pixels(pixels) => pixels.tiles.is_16_bit_in(pixels.tiles.bounds()),
         _ => false,
     });
     let mut held = MemoryCount::default();
     held.add(document, true);
-    !is_deep
+    !is_16_bit
         || budget
             .room_for("", held.used().total().saturating_add(document.flattening_bytes()))
             .is_ok()

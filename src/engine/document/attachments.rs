@@ -1,5 +1,5 @@
-//! Edits of homes: what lies on which part of the shape. Whatever else changes, it shows where it
-//! showed. Floor 4. Not here: how homes and transforms are combined (`LayerMap`).
+//! Edits of attachments: what lies on which part of the shape. Whatever else changes, it shows
+//! where it showed. Floor 4. Not here: how attachments and transforms are combined (`LayerMap`).
 
 use super::layer::content::strokes::{SeenSelections, taken_along};
 use super::{
@@ -7,11 +7,11 @@ use super::{
     TransformShape,
 };
 use crate::math::{Affine2, PlaneMap};
-use crate::paint::{HomeFrame, Stroke, StrokeHome};
+use crate::paint::{Attachment, Stroke, StrokeAttachment};
 use std::sync::Arc;
 
-/// Which home replaces another; `None`: that of the group around, or the canvas.
-type Rehome<'a> = dyn Fn(&HomeFrame) -> Option<HomeFrame> + 'a;
+/// Which attachment replaces another; `None`: that of the group around, or the canvas.
+type ReplaceAttachment<'a> = dyn Fn(&Attachment) -> Option<Attachment> + 'a;
 
 impl Parts {
     /// Where the frame of a part is: canvas from part. What lies on another part has its frame.
@@ -20,30 +20,34 @@ impl Parts {
         self.body_of(id).map(|part| part.matrix)
     }
 
-    /// The home that a part is; `None` if there is no such part.
-    pub fn home(&self, id: &str) -> Option<HomeFrame> {
-        if id == HomeFrame::CANVAS {
-            return Some(HomeFrame::canvas());
+    /// The attachment that a part is; `None` if there is no such part.
+    pub fn attachment(&self, id: &str) -> Option<Attachment> {
+        if id == Attachment::CANVAS {
+            return Some(Attachment::canvas());
         }
-        Some(HomeFrame { matrix: self.frame_of(id)?, ..HomeFrame::on(id) })
+        Some(Attachment { matrix: self.frame_of(id)?, ..Attachment::on(id) })
     }
 }
 
 impl Document {
-    /// The part that carries a layer: its own home or that of the nearest group around it. `None`
-    /// for the canvas.
-    pub fn home_of(&self, id: LayerId) -> Option<&HomeFrame> {
+    /// The part that carries a layer: its own attachment or that of the nearest group around it.
+    /// `None` for the canvas.
+    pub fn attachment_of(&self, id: LayerId) -> Option<&Attachment> {
         fn find<'d>(
             layers: &'d [Arc<Layer>],
             id: LayerId,
-            around: Option<&'d HomeFrame>,
-        ) -> Option<&'d HomeFrame> {
+            around: Option<&'d Attachment>,
+        ) -> Option<&'d Attachment> {
             layers.iter().find_map(|layer| {
-                let home = layer.on.as_ref().or(around);
-                if layer.id == id { home } else { find(&layer.content.group()?.layers, id, home) }
+                let attachment = layer.on.as_ref().or(around);
+                if layer.id == id {
+                    attachment
+                } else {
+                    find(&layer.content.group()?.layers, id, attachment)
+                }
             })
         }
-        find(&self.layers, id, None).filter(|home| !home.is_canvas())
+        find(&self.layers, id, None).filter(|attachment| !attachment.is_canvas())
     }
 
     /// With a layer on a part of the shape, by its id, or on what is around the layer. It shows
@@ -51,12 +55,13 @@ impl Document {
     /// layer's place there cannot be expressed.
     pub fn with_layer_on(&self, id: LayerId, part: Option<&str>) -> Option<Document> {
         let on = match part {
-            Some(part) => Some(self.parts.home(part)?),
+            Some(part) => Some(self.parts.attachment(part)?),
             None => None,
         };
         let around = self.map_around(id)?;
-        let layer =
-            preserve_look_on(self.layer(id)?, on, (&around, &around), &|home| Some(home.clone()))?;
+        let layer = preserve_look_on(self.layer(id)?, on, (&around, &around), &|attachment| {
+            Some(attachment.clone())
+        })?;
         self.with_layer(id, |old| *old = Layer::clone(&layer))
     }
 
@@ -65,19 +70,19 @@ impl Document {
     pub fn with_strokes_on(
         &self,
         layer: LayerId,
-        chosen: &[usize],
+        selected: &[usize],
         part: Option<&str>,
     ) -> Option<Document> {
-        let home = match part {
-            Some(part) => Some(self.parts.home(part)?),
+        let attachment = match part {
+            Some(part) => Some(self.parts.attachment(part)?),
             None => None,
         };
         let map = self.map_of(layer)?;
         let mut selections = SeenSelections::new();
         self.with_strokes(layer, |strokes| {
-            for &index in chosen {
+            for &index in selected {
                 let stroke = strokes.get_mut(index)?;
-                *stroke = stroke_on(stroke, home.clone(), (&map, &map), &mut selections)?;
+                *stroke = stroke_on(stroke, attachment.clone(), (&map, &map), &mut selections)?;
             }
             Some(())
         })
@@ -85,19 +90,19 @@ impl Document {
 
     /// With everything on the parts that it is on in another document, showing where it shows. What
     /// cannot be expressed stays on what is around it.
-    pub(in crate::document) fn with_homes_of(&self, other: &Document) -> Document {
+    pub(in crate::document) fn with_attachments_of(&self, other: &Document) -> Document {
         let mut next = self.clone();
         for (_, layer) in other.walk() {
-            if let Some(home) = &layer.on {
-                next = next.with_layer_on(layer.id, Some(&home.part)).unwrap_or(next);
+            if let Some(attachment) = &layer.on {
+                next = next.with_layer_on(layer.id, Some(&attachment.part)).unwrap_or(next);
             }
-            if !layer.content.has_homes() {
+            if !layer.content.has_attachments() {
                 continue;
             }
             for (i, stroke) in other.strokes(layer.id).iter().enumerate() {
-                if let Some(home) = stroke.home() {
+                if let Some(attachment) = stroke.attachment() {
                     next = next
-                        .with_strokes_on(layer.id, &[i], Some(&home.frame.part))
+                        .with_strokes_on(layer.id, &[i], Some(&attachment.frame.part))
                         .unwrap_or(next);
                 }
             }
@@ -114,8 +119,8 @@ impl Document {
         }
     }
 
-    /// With every home where its part is now; itself if nothing moved.
-    pub(in crate::document) fn with_homes_placed(&self) -> Document {
+    /// With every attachment where its part is now; itself if nothing moved.
+    pub(in crate::document) fn with_attachments_placed(&self) -> Document {
         match placed(&self.layers, &self.parts) {
             Some(layers) => Document { layers, ..self.clone() },
             None => self.clone(),
@@ -126,20 +131,22 @@ impl Document {
     /// it.
     pub(in crate::document) fn detach(&self, is_gone: impl Fn(&str) -> bool) -> Document {
         let none = LayerMap::none(self.size);
-        let rehome =
-            |home: &HomeFrame| (home.is_canvas() || !is_gone(&home.part)).then(|| home.clone());
+        let replace = |attachment: &Attachment| {
+            (attachment.is_canvas() || !is_gone(&attachment.part)).then(|| attachment.clone())
+        };
         let lifted = |layer: &Arc<Layer>| {
-            preserve_look(layer, (&none, &none), &rehome).unwrap_or_else(|| bare(layer, &rehome))
+            preserve_look(layer, (&none, &none), &replace).unwrap_or_else(|| bare(layer, &replace))
         };
         Document { layers: self.layers.iter().map(lifted).collect(), ..self.clone() }
     }
 
-    /// A layer of another document: homes that do not exist here are removed.
+    /// A layer of another document: attachments that do not exist here are removed.
     pub(in crate::document) fn adopt(&self, layer: Layer) -> Layer {
         let alone =
             Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(self.size) };
         let known = |id: &str| self.parts.part(id).is_some();
-        let all_known = alone.are_all_homes(&mut |home| home.part().is_none_or(known));
+        let all_known =
+            alone.are_all_attachments(&mut |attachment| attachment.part().is_none_or(known));
         if all_known {
             return layer;
         }
@@ -147,17 +154,18 @@ impl Document {
         lifted.layers.first().map_or(layer, |layer| Layer::clone(layer))
     }
 
-    /// Whether a condition holds for every home, of layers and of strokes.
-    pub(in crate::document) fn are_all_homes(
+    /// Whether a condition holds for every attachment, of layers and of strokes.
+    pub(in crate::document) fn are_all_attachments(
         &self,
-        agrees: &mut dyn FnMut(&HomeFrame) -> bool,
+        agrees: &mut dyn FnMut(&Attachment) -> bool,
     ) -> bool {
         self.walk().into_iter().all(|(_, layer)| {
             layer.on.as_ref().is_none_or(&mut *agrees)
                 && match &layer.content {
-                    Content::Strokes(live) if layer.content.has_homes() => {
-                        let homes = live.params().strokes.iter().filter_map(|stroke| stroke.home());
-                        homes.map(|home| &home.frame).all(&mut *agrees)
+                    Content::Strokes(live) if layer.content.has_attachments() => {
+                        let attachments =
+                            live.params().strokes.iter().filter_map(|stroke| stroke.attachment());
+                        attachments.map(|attachment| &attachment.frame).all(&mut *agrees)
                     }
                     _ => true,
                 }
@@ -165,34 +173,42 @@ impl Document {
     }
 }
 
-/// A layer and all in it without the homes that go, wherever it moves: for one whose place cannot
-/// be expressed.
-fn bare(layer: &Arc<Layer>, rehome: &Rehome) -> Arc<Layer> {
-    let mut next = Layer { on: layer.on.as_ref().and_then(rehome), ..Layer::clone(layer) };
+/// A layer and all in it without the attachments that go, wherever it moves: for one whose place
+/// cannot be expressed.
+fn bare(layer: &Arc<Layer>, replace: &ReplaceAttachment) -> Arc<Layer> {
+    let mut next = Layer { on: layer.on.as_ref().and_then(replace), ..Layer::clone(layer) };
     match &mut next.content {
         Content::Group(group) => {
-            group.layers = group.layers.iter().map(|layer| bare(layer, rehome)).collect()
+            group.layers = group.layers.iter().map(|layer| bare(layer, replace)).collect()
         }
-        Content::Strokes(live) if layer.content.has_homes() => {
-            let home = |stroke: &Arc<Stroke>| {
-                let goes = stroke.home().is_some_and(|home| rehome(&home.frame).is_none());
+        Content::Strokes(live) if layer.content.has_attachments() => {
+            let attachment = |stroke: &Arc<Stroke>| {
+                let goes = stroke
+                    .attachment()
+                    .is_some_and(|attachment| replace(&attachment.frame).is_none());
                 if goes { Arc::new(Stroke::clone(stroke).on(None)) } else { stroke.clone() }
             };
-            *live =
-                Live::new(StrokeList { strokes: live.params().strokes.iter().map(home).collect() });
+            *live = Live::new(StrokeList {
+                strokes: live.params().strokes.iter().map(attachment).collect(),
+            });
         }
         _ => {}
     }
     Arc::new(next)
 }
 
-/// Layers with their homes where the parts are; `None` if all are there already.
+/// Layers with their attachments where the parts are; `None` if all are there already.
 fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
-    let next = |home: &HomeFrame| parts.home(&home.part).filter(|next| next != home);
+    let next = |attachment: &Attachment| {
+        parts.attachment(&attachment.part).filter(|next| next != attachment)
+    };
     let stroke = |stroke: &Arc<Stroke>| {
-        let home = stroke.home()?;
-        let frame = next(&home.frame)?;
-        Some(Arc::new(stroke.moved_home(Arc::new(StrokeHome { frame, ..StrokeHome::clone(home) }))))
+        let attachment = stroke.attachment()?;
+        let frame = next(&attachment.frame)?;
+        Some(Arc::new(stroke.with_moved_attachment(Arc::new(StrokeAttachment {
+            frame,
+            ..StrokeAttachment::clone(attachment)
+        }))))
     };
     let mut out: Option<Vec<Arc<Layer>>> = None;
     for (i, layer) in layers.iter().enumerate() {
@@ -200,7 +216,7 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
         let content = match &layer.content {
             Content::Group(group) => placed(&group.layers, parts)
                 .map(|layers| Content::Group(Group { layers, ..group.clone() })),
-            Content::Strokes(live) if layer.content.has_homes() => {
+            Content::Strokes(live) if layer.content.has_attachments() => {
                 let strokes = &live.params().strokes;
                 let moved: Vec<Option<Arc<Stroke>>> = strokes.iter().map(stroke).collect();
                 moved.iter().any(Option::is_some).then(|| {
@@ -231,17 +247,17 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
 pub(in crate::document) fn preserve_look(
     layer: &Arc<Layer>,
     (old, new): (&LayerMap, &LayerMap),
-    rehome: &Rehome,
+    replace: &ReplaceAttachment,
 ) -> Option<Arc<Layer>> {
-    preserve_look_on(layer, layer.on.as_ref().and_then(rehome), (old, new), rehome)
+    preserve_look_on(layer, layer.on.as_ref().and_then(replace), (old, new), replace)
 }
 
-/// The same on another home.
+/// The same on another attachment.
 fn preserve_look_on(
     layer: &Arc<Layer>,
-    on: Option<HomeFrame>,
+    on: Option<Attachment>,
     (old, new): (&LayerMap, &LayerMap),
-    rehome: &Rehome,
+    replace: &ReplaceAttachment,
 ) -> Option<Arc<Layer>> {
     let (was, outside) = (old.within(layer), new.outside(on.as_ref()));
     let (stood, mut next) = (old.outside(layer.on.as_ref()), Layer { on, ..Layer::clone(layer) });
@@ -263,16 +279,18 @@ fn preserve_look_on(
             let layers: Option<Vec<_>> = group
                 .layers
                 .iter()
-                .map(|layer| preserve_look(layer, (&was, &now), rehome))
+                .map(|layer| preserve_look(layer, (&was, &now), replace))
                 .collect();
             let layers = layers?;
             let is_same = layers.iter().zip(&group.layers).all(|(a, b)| Arc::ptr_eq(a, b));
             (!is_same).then(|| Content::Group(Group { layers, ..group.clone() }))
         }
-        Content::Strokes(live) if layer.content.has_homes() => {
+        Content::Strokes(live) if layer.content.has_attachments() => {
             let mut selections = SeenSelections::new();
-            let strokes = live.params().strokes.iter().map(|stroke| match stroke.home() {
-                Some(home) => stroke_on(stroke, rehome(&home.frame), (&was, &now), &mut selections),
+            let strokes = live.params().strokes.iter().map(|stroke| match stroke.attachment() {
+                Some(attachment) => {
+                    stroke_on(stroke, replace(&attachment.frame), (&was, &now), &mut selections)
+                }
                 None => Some(stroke.clone()),
             });
             let strokes: Vec<Arc<Stroke>> = strokes.collect::<Option<_>>()?;
@@ -290,26 +308,26 @@ fn preserve_look_on(
     Some(Arc::new(Layer { content: content.unwrap_or_else(|| layer.content.clone()), ..next }))
 }
 
-/// A stroke on another home, or on its layer's, of a layer whose map was `was` and is `now`.
+/// A stroke on another attachment, or on its layer's, of a layer whose map was `was` and is `now`.
 fn stroke_on(
     stroke: &Arc<Stroke>,
-    frame: Option<HomeFrame>,
+    frame: Option<Attachment>,
     (was, now): (&LayerMap, &LayerMap),
     selections: &mut SeenSelections,
 ) -> Option<Arc<Stroke>> {
-    let plane = stroke.home().map_or(was.plane, |home| was.of_stroke(home).plane);
+    let plane = stroke.attachment().map_or(was.plane, |attachment| was.of_stroke(attachment).plane);
     let Some(frame) = frame else {
         let map = now.with_plane(plane.then(&now.plane.inverse()));
         return Some(Arc::new(Stroke::clone(&taken_along(stroke, &map, selections)).on(None)));
     };
-    let mut home = StrokeHome::new(frame);
-    let own = plane.then(&now.of_stroke(&home).plane.inverse());
+    let mut attachment = StrokeAttachment::new(frame);
+    let own = plane.then(&now.of_stroke(&attachment).plane.inverse());
     if !own.is_identity_on(now.canvas) {
-        home.own = own.coefficients()?;
+        attachment.own = own.coefficients()?;
     }
-    match stroke.home() {
-        Some(known) if **known == home => Some(stroke.clone()),
-        _ => Some(Arc::new(stroke.moved_home(Arc::new(home)))),
+    match stroke.attachment() {
+        Some(known) if **known == attachment => Some(stroke.clone()),
+        _ => Some(Arc::new(stroke.with_moved_attachment(Arc::new(attachment)))),
     }
 }
 

@@ -3,17 +3,17 @@
 use std::path::Path;
 
 /// What could not be converted goes to standard error: it is no failure, but the user must see it.
-pub fn tell(file: &Path, notes: &[String]) {
+pub fn print_notes(file: &Path, notes: &[String]) {
     for note in notes {
         // A note that repeats an error already names its file.
         let named = format!("{}", file.display());
         let sentence =
             if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
-        say(&format!("rilievo: {sentence}"));
+        print_line(&format!("rilievo: {sentence}"));
     }
 }
 
 /// A line on standard error, in which a name cannot control the terminal.
-pub fn say(line: &str) {
+pub fn print_line(line: &str) {
     eprintln!("{}", super::printable(line));
 }

@@ -3,7 +3,7 @@
 
 use super::{ExportFormat, ExportOptions, png};
 use crate::document::{
-    Document, Highlights, Progress, flatten, flatten_deep, flatten_rounding_once,
+    Document, Highlights, Progress, flatten, flatten_rounding_once, flatten_to_floats,
 };
 use crate::math::{Size, srgb};
 use crate::project::Cancelable;
@@ -26,7 +26,7 @@ pub fn encode_document(
         // Without room for textures of floats, layers are rounded to bytes one by one, as on the
         // screen.
         let is_exact =
-            budget.room(file, "a picture that is rounded once", document.deep_bytes()).is_ok();
+            budget.room(file, "a picture that is rounded once", document.float_bytes()).is_ok();
         let pixels = if is_exact {
             flatten_rounding_once(document, progress)
         } else {
@@ -53,9 +53,9 @@ pub(super) fn flatten_within_budget(
     progress: &Progress,
 ) -> Cancelable<Vec<[f32; 4]>> {
     let asked =
-        document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64 + document.deep_bytes();
+        document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64 + document.float_bytes();
     budget.room(file, "a picture of more than 8 bits", asked)?;
-    Ok(flatten_deep(document, highlights, progress))
+    Ok(flatten_to_floats(document, highlights, progress))
 }
 
 /// A file of light keeps what is brighter than white.
@@ -63,8 +63,8 @@ fn highlights(format: ExportFormat) -> Highlights {
     if format == ExportFormat::Exr { Highlights::Kept } else { Highlights::Clipped }
 }
 
-/// The bytes of a picture file, of pixels as [`crate::document::flatten_deep`] gives them; `file`
-/// is for messages.
+/// The bytes of a picture file, of pixels as [`crate::document::flatten_to_floats`] gives them;
+/// `file` is for messages.
 ///
 /// Fails for formats of 8 bits.
 pub fn encode(
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gradient_of_4096_pixels_has_4000_levels_in_every_deep_file() {
+    fn a_gradient_of_4096_pixels_has_4000_levels_in_every_file_of_more_than_8_bits() {
         let document = gradient_4096();
         let distinct = |values: Vec<u32>| {
             values.into_iter().collect::<std::collections::BTreeSet<u32>>().len()
@@ -246,7 +246,7 @@ mod tests {
 
     #[test]
     fn an_airbrush_over_sixty_strokes_has_ten_times_the_levels_in_16_bits() {
-        let document = crate::project::sample::softly_painted();
+        let document = crate::project::sample::smoothly_painted();
         let written = |bits| {
             let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
             let (file, budget) = (Path::new("a.png"), Budget::default());

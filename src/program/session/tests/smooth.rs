@@ -41,7 +41,7 @@ fn levels(paint: &PixelLayer) -> usize {
     let all = paint
         .tiles
         .iter()
-        .flat_map(|(_, tile)| tile.deep_rows().iter().flat_map(|row| row[3]).collect::<Vec<_>>());
+        .flat_map(|(_, tile)| tile.to_rows16().iter().flat_map(|row| row[3]).collect::<Vec<_>>());
     all.collect::<std::collections::BTreeSet<u16>>().len()
 }
 
@@ -64,7 +64,7 @@ fn an_airbrush_over_many_strokes_is_kept_finely_through_undo_cut_paste_and_mergi
             "{copied}: {}",
             levels(&paint(&session))
         );
-        let red = paint(&session).tiles.deep_pixel(90, 75);
+        let red = paint(&session).tiles.pixel16(90, 75);
         assert!(red.iter().any(|v| v % 257 != 0), "{copied}: {red:?}");
     }
     let mut session = airbrushed();
@@ -73,19 +73,19 @@ fn an_airbrush_over_many_strokes_is_kept_finely_through_undo_cut_paste_and_mergi
         "the same strokes, the same paint"
     );
     tell(&mut session, r#"{"in":"layer","do":"merge down","layer":"1"}"#);
-    assert!(paint(&session).tiles.deep_pixel(90, 75).iter().any(|v| v % 257 != 0));
+    assert!(paint(&session).tiles.pixel16(90, 75).iter().any(|v| v % 257 != 0));
 }
 
 #[test]
 fn a_faint_eraser_takes_airbrushed_paint_away_and_what_is_left_is_saved() {
     let mut session = airbrushed();
-    let before = paint(&session).tiles.deep_pixel(90, 75)[3];
+    let before = paint(&session).tiles.pixel16(90, 75)[3];
     tell(
         &mut session,
         r#"{"in":"hand","do":"brush","brush":{"size":120,"hardness":0,"flow":0.001,"erases":true}}"#,
     );
     tell(&mut session, &drawn("eraser", 90));
-    let after = paint(&session).tiles.deep_pixel(90, 75)[3];
+    let after = paint(&session).tiles.pixel16(90, 75)[3];
     assert!(after < before && before - after < 900, "{before} to {after}");
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.ora");
@@ -98,7 +98,7 @@ fn a_faint_eraser_takes_airbrushed_paint_away_and_what_is_left_is_saved() {
 }
 
 #[test]
-fn baked_soft_strokes_are_as_fine_as_they_were_alive() {
+fn baked_smooth_strokes_are_as_fine_as_they_were_alive() {
     let mut session = replay(&AIR.replace(r#"{"in":"layer","do":"add","kind":"paint"}"#, ""));
     (0..6).for_each(|i| tell(&mut session, &drawn("brush", 60 + i)));
     assert!(matches!(session.active().unwrap().document().layers[1].content, Content::Strokes(_)));
@@ -123,7 +123,7 @@ fn a_picture_of_16_bits_keeps_them_when_it_is_opened_or_placed_and_baked() {
     for session in [opened, placed] {
         let tiles = paint(&session).tiles;
         let apart = |(x, y, pixel): (u32, u32, &image::Luma<u16>)| {
-            tiles.deep_pixel(x as i32, y as i32)[0].abs_diff(pixel.0[0])
+            tiles.pixel16(x as i32, y as i32)[0].abs_diff(pixel.0[0])
         };
         assert!(picture.enumerate_pixels().map(apart).max() <= Some(1));
     }
@@ -146,7 +146,7 @@ fn a_photoshop_file_of_16_bits_is_not_saved_over_with_8() {
         |file: &Path| crate::session::storage::open(file).unwrap_or_else(|e| panic!("{e}"));
     let wide = opened(&file(16, &[0x12, 0x34]));
     let Content::Pixels(pixels) = &wide.open.document().layers[0].content else { panic!("paint") };
-    assert_eq!(pixels.tiles.deep_pixel(0, 0), [0x1234, 0x1234, 0x1234, 65535]);
+    assert_eq!(pixels.tiles.pixel16(0, 0), [0x1234, 0x1234, 0x1234, 65535]);
     assert!(wide.notes[0].contains("8 for other programs"), "{:?}", wide.notes);
     assert_eq!(wide.open.file, None);
     let narrow = opened(&file(8, &[0x12]));

@@ -4,7 +4,7 @@
 use crate::document::{
     Content, Document, Group, Highlights, Layer, Live, PixelLayer, Progress, StrokeList, flatten,
 };
-use crate::document::{flatten_deep, flatten_to_paint};
+use crate::document::{flatten_to_floats, flatten_to_paint};
 use crate::math::{Size, Vec2, hash, srgb::Color, vec2};
 use crate::paint::stroke::{ActiveStrokes, Backdrop};
 use crate::paint::{
@@ -50,8 +50,8 @@ fn document(layers: Vec<Layer>) -> Document {
     Document { layers: layers.into_iter().map(Arc::new).collect(), ..Document::empty(SIZE) }
 }
 
-fn deep_tiles(tiles: &TileGrid) -> usize {
-    tiles.iter().filter(|(_, tile)| tile.is_deep()).count()
+fn tiles16(tiles: &TileGrid) -> usize {
+    tiles.iter().filter(|(_, tile)| tile.is_16_bit()).count()
 }
 
 /// The same without what bytes cannot hold.
@@ -72,8 +72,7 @@ fn four_hundred_dabs_of_less_than_half_a_percent_reach_what_they_should() {
     let brush = Brush { size: 30.0, hardness: 1.0, flow: 0.004, ..Brush::default() };
     let dab = || stroke(&brush, Color::WHITE, &[vec2(60.5, 60.5)]);
     let tiles = painted(TileGrid::default(), (0..400).map(|_| dab()));
-    let (found, wanted) =
-        (f32::from(tiles.deep_pixel(60, 60)[3]) / 65535.0, 1.0 - 0.996f32.powi(400));
+    let (found, wanted) = (f32::from(tiles.pixel16(60, 60)[3]) / 65535.0, 1.0 - 0.996f32.powi(400));
     assert!((found - wanted).abs() < 0.5 / 255.0, "{found} for {wanted}");
     assert_eq!(tiles.pixel(60, 60)[3], (wanted * 255.0).round() as u8, "the screen sees it, too");
 }
@@ -82,11 +81,11 @@ fn four_hundred_dabs_of_less_than_half_a_percent_reach_what_they_should() {
 fn an_eraser_of_less_than_half_a_percent_erases() {
     let full = Brush { size: 60.0, hardness: 1.0, ..Brush::default() };
     let opaque = painted(TileGrid::default(), [stroke(&full, Color::WHITE, &[vec2(60.5, 60.5)])]);
-    assert_eq!((opaque.pixel(60, 60), deep_tiles(&opaque)), ([255; 4], 0));
+    assert_eq!((opaque.pixel(60, 60), tiles16(&opaque)), ([255; 4], 0));
     let brush = Brush { size: 30.0, hardness: 1.0, flow: 0.004, erases: true, ..Brush::default() };
     let rubbed =
         painted(opaque, (0..400).map(|_| stroke(&brush, Color::WHITE, &[vec2(60.5, 60.5)])));
-    let (found, wanted) = (f32::from(rubbed.deep_pixel(60, 60)[3]) / 65535.0, 0.996f32.powi(400));
+    let (found, wanted) = (f32::from(rubbed.pixel16(60, 60)[3]) / 65535.0, 0.996f32.powi(400));
     assert!((found - wanted).abs() < 0.5 / 255.0, "{found} for {wanted}");
     assert_eq!(rubbed.pixel(40, 60), [255; 4]);
 }
@@ -95,7 +94,7 @@ fn an_eraser_of_less_than_half_a_percent_erases() {
 fn paint_too_faint_for_a_byte_is_kept_until_more_of_it_is_seen() {
     let brush = Brush { size: 30.0, hardness: 1.0, flow: 0.001, ..Brush::default() };
     let once = painted(TileGrid::default(), [stroke(&brush, Color::WHITE, &[vec2(30.5, 30.5)])]);
-    assert_eq!((once.pixel(30, 30), once.deep_pixel(30, 30)), ([0; 4], [66; 4]));
+    assert_eq!((once.pixel(30, 30), once.pixel16(30, 30)), ([0; 4], [66; 4]));
     let often = painted(once, (0..99).map(|_| stroke(&brush, Color::WHITE, &[vec2(30.5, 30.5)])));
     assert_eq!(often.pixel(30, 30)[3], (255.0 * (1.0 - 0.999f32.powi(100))).round() as u8);
 }
@@ -118,7 +117,7 @@ fn faint_paint_burns_colors_as_floats_do() {
         |layer: Layer| document(vec![ground(), Layer { blend: BlendMode::ColorBurn, ..layer }]);
     let list = StrokeList { strokes: strokes.into_iter().map(Arc::new).collect() };
     let live = burning(Layer::new("strokes", Content::Strokes(Live::new(list))));
-    let floats = flatten_deep(&live, Highlights::Clipped, &Progress::default()).unwrap();
+    let floats = flatten_to_floats(&live, Highlights::Clipped, &Progress::default()).unwrap();
     let farthest = |tiles: TileGrid| {
         let shown = flatten(&burning(paint(tiles)), &Progress::default()).unwrap();
         let apart = |(i, p): (usize, &[f32; 4])| {
@@ -139,9 +138,9 @@ fn an_airbrush_over_sixty_strokes_has_no_bands() {
         .map(|i| stroke(&brush, Color::BLACK, &[vec2(20.0 + i as f32, -40.0), vec2(20.0, 200.0)]));
     let tiles = painted(TileGrid::default(), lines);
     let document = document(vec![Layer::new("paper", Content::Fill(Color::WHITE)), paint(tiles)]);
-    let deep = flatten_deep(&document, Highlights::Clipped, &Progress::default()).unwrap();
+    let floats = flatten_to_floats(&document, Highlights::Clipped, &Progress::default()).unwrap();
     let shown = flatten(&document, &Progress::default()).unwrap();
-    let all = levels(deep.iter().map(|p| (p[0] * 65535.0).round() as u32));
+    let all = levels(floats.iter().map(|p| (p[0] * 65535.0).round() as u32));
     let few = levels(
         shown.iter().flat_map(|(_, tile)| tile.bytes().chunks_exact(4)).map(|p| p[0].into()),
     );
@@ -166,18 +165,18 @@ fn inked_lines_stay_in_bytes_whatever_they_cross() {
         });
         tiles = painted(tiles, lines);
     }
-    assert_eq!(deep_tiles(&tiles), 0, "of {}", tiles.iter().count());
+    assert_eq!(tiles16(&tiles), 0, "of {}", tiles.iter().count());
     assert_eq!(tiles.bytes() - 9 * 8, 9 * 16384);
     let soft = Brush { size: 60.0, hardness: 0.0, flow: 0.02, ..Brush::default() };
     let aired = painted(tiles.clone(), [stroke(&soft, Color::BLACK, &[vec2(30.0, 30.0)])]);
-    assert_eq!(deep_tiles(&aired), 1, "the airbrush met one tile");
+    assert_eq!(tiles16(&aired), 1, "the airbrush met one tile");
     assert_eq!(aired.bytes(), tiles.bytes() + 2 * 16384);
     let inked =
         painted(aired.clone(), [stroke(&Brush::default(), Color::WHITE, &[vec2(30.0, 10.0)])]);
-    assert_eq!(deep_tiles(&inked), 1, "it stays so while it is painted on");
+    assert_eq!(tiles16(&inked), 1, "it stays so while it is painted on");
     let gone = Brush { size: 200.0, hardness: 1.0, ..Brush::default() };
     let covered = painted(aired, [stroke(&gone, Color::WHITE, &[vec2(30.0, 30.0)])]);
-    assert_eq!(deep_tiles(&covered), 0, "what bytes hold is of bytes again");
+    assert_eq!(tiles16(&covered), 0, "what bytes hold is of bytes again");
 }
 
 #[test]
@@ -202,13 +201,13 @@ fn retouched_paint_is_kept_as_it_was_and_as_it_becomes() {
             .for_each(|(at, tile)| next.set(at, tile));
         next
     };
-    assert_eq!(deep_tiles(&tiles), 0);
+    assert_eq!(tiles16(&tiles), 0);
     let blurred = retouched(&tiles, BrushMode::Blur { width: 0.4 }, Vec2::ZERO);
-    assert!(deep_tiles(&blurred) > 0, "a blurred edge is soft");
+    assert!(tiles16(&blurred) > 0, "a blurred edge is smooth");
     let faint = Brush { size: 50.0, hardness: 1.0, flow: 0.001, ..Brush::default() };
     let faint = painted(TileGrid::default(), [stroke(&faint, Color::WHITE, &[vec2(40.0, 60.0)])]);
     let clone = BrushMode::Clone { aligned: true, picture: false };
-    assert_eq!(retouched(&faint, clone, vec2(-50.0, 0.0)).deep_pixel(90, 60), [66; 4]);
+    assert_eq!(retouched(&faint, clone, vec2(-50.0, 0.0)).pixel16(90, 60), [66; 4]);
 }
 
 #[test]
@@ -221,7 +220,7 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     let fine = |document: &Document| {
         let Content::Pixels(pixels) = &document.layers[0].content else { panic!("paint") };
         levels(pixels.tiles.iter().flat_map(|(_, tile)| {
-            tile.deep_rows().iter().flat_map(|row| row[3]).map(u32::from).collect::<Vec<_>>()
+            tile.to_rows16().iter().flat_map(|row| row[3]).map(u32::from).collect::<Vec<_>>()
         }))
     };
     let one = document(vec![paint(soft.clone())]);
@@ -253,7 +252,7 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     let liquified = |layer: Layer| Layer { liquify: Some(Arc::new(lattice.clone())), ..layer };
     let group = Group { layers: vec![Arc::new(paint(soft.clone()))], pass_through: false };
     for layer in [paint(soft.clone()), Layer::new("group", Content::Group(group))] {
-        let shown = flatten_deep(
+        let shown = flatten_to_floats(
             &document(vec![liquified(layer)]),
             Highlights::Clipped,
             &Progress::default(),
@@ -263,7 +262,7 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     }
     let noise: Vec<[u16; 4]> =
         (0..64 * 64).map(|i| [(hash::unit(i, 0, 0) * 65535.0) as u16; 4]).collect();
-    let noise = TileGrid::from_straight_deep(&noise, 64, 64, 0, 0);
+    let noise = TileGrid::from_straight16(&noise, 64, 64, 0, 0);
     let ink = painted(
         TileGrid::default(),
         [stroke(&Brush::default(), Color::WHITE, &[vec2(20.0, 20.0)])],
@@ -271,9 +270,9 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     let both =
         flatten_to_paint(&document(vec![paint(noise.clone()), paint(ink)]), &Progress::default())
             .unwrap();
-    assert_eq!(both.deep_pixel(63, 63), noise.deep_pixel(63, 63), "though nothing of it is soft");
+    assert_eq!(both.pixel16(63, 63), noise.pixel16(63, 63), "though nothing of it is smooth");
     let moved = one.layers[0].content.moved(vec2(17.0, -5.0));
     let Content::Pixels(moved) = &moved else { panic!("paint") };
-    assert_eq!(moved.tiles.deep_pixel(77, 55), soft.deep_pixel(60, 60));
-    assert!(soft.tile(TileAt::new(1, 1)).is_some_and(|tile| tile.is_deep()));
+    assert_eq!(moved.tiles.pixel16(77, 55), soft.pixel16(60, 60));
+    assert!(soft.tile(TileAt::new(1, 1)).is_some_and(|tile| tile.is_16_bit()));
 }

@@ -117,7 +117,7 @@ fn masked(layer: Layer) -> Layer {
 }
 
 fn on_body(layer: Layer) -> Layer {
-    Layer { on: Some(HomeFrame::on("body")), ..layer }
+    Layer { on: Some(Attachment::on("body")), ..layer }
 }
 
 fn path() -> [Vec2; 3] {
@@ -285,7 +285,7 @@ fn paint_that_a_part_carried_beyond_the_canvas_comes_back_with_it() {
 }
 
 #[test]
-fn a_stroke_with_a_home_of_its_own_goes_with_it_and_its_neighbors_stay() {
+fn a_stroke_with_its_own_attachment_moves_with_it_and_its_neighbors_stay() {
     let other = ball("eye", vec2(180.0, 60.0), 20.0);
     let flat = strokes("strokes", &[vec2(160.0, 140.0), vec2(220.0, 150.0)], Operator::None);
     let both = document(vec![flat]).with_part(other);
@@ -299,16 +299,16 @@ fn a_stroke_with_a_home_of_its_own_goes_with_it_and_its_neighbors_stay() {
         strokes.push(Arc::new(eye));
         Some(())
     });
-    let home = with_eye.unwrap().with_strokes_on(id, &[1], Some("eye")).unwrap();
+    let attachment = with_eye.unwrap().with_strokes_on(id, &[1], Some("eye")).unwrap();
     let by = Affine2::from_translation(vec2(-50.0, 30.0));
-    let moved = standing(&home, "eye", by);
-    let (old, new) = (picture(&home), picture(&moved));
+    let moved = standing(&attachment, "eye", by);
+    let (old, new) = (picture(&attachment), picture(&moved));
     for (x, y) in (30..90).flat_map(|y| (150..210).map(move |x| (x, y))) {
         assert_eq!(pixel(&old, x, y), pixel(&new, x - 50, y + 30), "{x}, {y}");
     }
     assert_eq!(pixel(&old, 190, 145), pixel(&new, 190, 145));
     assert!(
-        Arc::ptr_eq(&moved.strokes(id)[0], &home.strokes(id)[0]),
+        Arc::ptr_eq(&moved.strokes(id)[0], &attachment.strokes(id)[0]),
         "only the stroke on the eye is another"
     );
     // Tools see every stroke where it shows; it is carried from there.
@@ -316,24 +316,24 @@ fn a_stroke_with_a_home_of_its_own_goes_with_it_and_its_neighbors_stay() {
     assert!(picture(&shown) == new);
     assert_eq!(shown.strokes(id)[1].samples()[0].at, vec2(120.0, 90.0));
     assert!(picture(&standing(&shown, "eye", Affine2::IDENTITY)) == old);
-    // On another home of the layer it shows where it showed.
+    // On another attachment of the layer it shows where it showed.
     let on_both = shown.with_layer_on(id, Some("body")).unwrap();
     assert!(picture(&on_both) == new);
     let off = moved.with_strokes_on(id, &[1], None).unwrap();
-    assert!(picture(&off) == new && off.strokes(id)[1].home().is_none());
+    assert!(picture(&off) == new && off.strokes(id)[1].attachment().is_none());
     let gone = moved.without_part("eye").unwrap();
-    assert!(gone.strokes(id)[1].home().is_none() && gone.fits(None) == Ok(()));
+    assert!(gone.strokes(id)[1].attachment().is_none() && gone.fits(None) == Ok(()));
     assert_eq!(gone.strokes(id)[1].samples()[0].at, vec2(120.0, 90.0));
 }
 
 #[test]
-fn of_a_layer_in_a_group_the_innermost_home_counts() {
+fn of_a_layer_in_a_group_the_innermost_attachment_counts() {
     let turn = Affine2::from_angle(0.3);
     let shift = |x: f64, y: f64| {
         let shape = TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, x, y]);
         Some(LayerTransform { shape, filter: Resampling::default() })
     };
-    let inner = Layer { on: Some(HomeFrame::on("eye")), transform: shift(3.0, 4.0), ..paint() };
+    let inner = Layer { on: Some(Attachment::on("eye")), transform: shift(3.0, 4.0), ..paint() };
     let group = Group { layers: vec![Arc::new(inner), Arc::new(gradient())], pass_through: false };
     let group =
         Layer { transform: shift(10.0, 0.0), ..on_body(Layer::new("g", Content::Group(group))) };
@@ -346,7 +346,7 @@ fn of_a_layer_in_a_group_the_innermost_home_counts() {
     assert_eq!(moved.map_of(ids[0]).unwrap().point(vec2(100.0, 50.0)), vec2(118.0, 60.0));
     let turned = turn.transform_point2(vec2(110.0, 50.0));
     assert!(moved.map_of(ids[1]).unwrap().point(vec2(100.0, 50.0)).distance(turned) < 1e-3);
-    assert_eq!(moved.home_of(ids[1]).unwrap().part(), Some("body"));
+    assert_eq!(moved.attachment_of(ids[1]).unwrap().part(), Some("body"));
     // Taken to the canvas each shows what it showed, and is still carried.
     for id in ids {
         let applied = moved.with_transform_applied(id).unwrap();
@@ -387,7 +387,7 @@ fn a_layer_that_is_put_on_a_part_shows_where_it_showed_and_goes_with_it_from_the
     let id = before.layers[0].id;
     let on = before.with_layer_on(id, Some("body")).unwrap();
     assert!(picture(&on) == picture(&before));
-    assert_eq!(on.home_of(id).unwrap().part(), Some("body"));
+    assert_eq!(on.attachment_of(id).unwrap().part(), Some("body"));
     let back = picture(&shifted(&on, (0, 0)));
     for (x, y) in (80..110).flat_map(|y| (100..130).map(move |x| (x, y))) {
         assert_eq!(pixel(&back, x - BY.0, y - BY.1)[..3], pixel(&picture_of(&before), x, y)[..3]);

@@ -5,7 +5,7 @@ use crate::document::Progress;
 use crate::export::{ExportOptions, OutputFile};
 use crate::exr::encode_channels;
 use crate::math::{Size, hash, srgb};
-use crate::project::sample::{deep_tiles, softly_painted};
+use crate::project::sample::{smoothly_painted, tiles16};
 use crate::raster::TileGrid;
 use crate::{OpenedDocument, Overwrite, Terms, open, save};
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb, Rgba};
@@ -84,7 +84,7 @@ fn a_ramp_of_4096_steps_is_the_same_in_every_format_and_in_a_project() {
         save(&opened.document, &project, Overwrite::Forced, &Progress::default()).unwrap().unwrap();
         let again = open(&project, &Budget::default()).unwrap();
         let rect = opened.document.size.rect();
-        let bits = |document| pixels(document, 0).to_straight_deep(rect);
+        let bits = |document| pixels(document, 0).to_straight16(rect);
         assert!(bits(&again.document) == bits(&opened.document), "{name} in a project");
     }
 }
@@ -106,7 +106,7 @@ fn a_picture_of_8_bits_takes_no_more_than_its_bytes() {
         ImageBuffer::from_fn(200, 130, |x, y| Rgb([257 * (x as u16), 257 * (y as u16), 0]));
     let file = folder.path().join("c.png");
     std::fs::write(&file, encoded(&DynamicImage::ImageRgb16(opaque), ImageFormat::Png)).unwrap();
-    assert_eq!(deep_tiles(&open(&file, &Budget::default()).unwrap().document), [0]);
+    assert_eq!(tiles16(&open(&file, &Budget::default()).unwrap().document), [0]);
 }
 
 /// Files of 512 × 512 pixels of noise, whose 16 bits take 3.1 MB and whose bytes take 1.0 MB.
@@ -152,7 +152,7 @@ fn what_does_not_fit_in_16_bits_is_read_with_8_and_a_note_says_so() {
             assert!(!opened.is_whole);
             for i in 0..whole.layers.len() {
                 let (found, wanted) = (pixels(&opened.document, i), pixels(&whole, i));
-                assert!(!found.is_deep_in(found.bounds()), "{name}");
+                assert!(!found.is_16_bit_in(found.bounds()), "{name}");
                 assert!(
                     wanted.iter().all(|(at, tile)| found.tile(at).unwrap().bytes() == tile.bytes()),
                     "{name}"
@@ -169,7 +169,7 @@ fn what_does_not_fit_in_16_bits_is_read_with_8_and_a_note_says_so() {
 fn a_project_whose_16_bits_do_not_fit_opens_with_8_and_is_not_whole() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("soft.ora");
-    let document = softly_painted();
+    let document = smoothly_painted();
     save(&document, &file, Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
     let mut held = MemoryCount::default();
     held.add(&document, true);
@@ -181,7 +181,7 @@ fn a_project_whose_16_bits_do_not_fit_opens_with_8_and_is_not_whole() {
             (&[NOTE.to_owned()][..], false),
             "{free} bytes"
         );
-        assert_eq!(deep_tiles(&opened.document), [0; 4], "{free} bytes");
+        assert_eq!(tiles16(&opened.document), [0; 4], "{free} bytes");
         for (layer, was) in opened.document.layers.iter().zip(&document.layers) {
             if let (Content::Pixels(now), Content::Pixels(was)) = (&layer.content, &was.content) {
                 let rect = was.tiles.bounds().union(now.tiles.bounds());
@@ -193,5 +193,5 @@ fn a_project_whose_16_bits_do_not_fit_opens_with_8_and_is_not_whole() {
         }
     }
     let kept = open(&file, &Budget::default()).unwrap();
-    assert_eq!((deep_tiles(&kept.document), kept.is_whole), (deep_tiles(&document), true));
+    assert_eq!((tiles16(&kept.document), kept.is_whole), (tiles16(&document), true));
 }

@@ -24,8 +24,8 @@ fn outlines_follow_their_layers_names_and_a_layer_on_its_own_part_inflates_once(
 }
 
 #[test]
-fn a_home_that_is_no_part_is_refused_and_lifted_in_another_document() {
-    let stray = document(vec![Layer { on: Some(HomeFrame::on("nose")), ..paint() }]);
+fn an_attachment_to_no_part_is_refused_and_lifted_in_another_document() {
+    let stray = document(vec![Layer { on: Some(Attachment::on("nose")), ..paint() }]);
     assert_eq!(
         stray.fits(None).unwrap_err(),
         "“paint”: is attached to “nose”, but there is no such part."

@@ -9,7 +9,7 @@ use super::prepare::{PreparedDocument, PreparedLayer};
 use super::{Document, Layer, LayerId, Progress, Role};
 use crate::paint::Scene;
 use crate::raster::planar::BRIGHTEST;
-use crate::raster::{DeepTexture, PlanarTile, TileAt};
+use crate::raster::{FloatTexture, PlanarTile, TileAt};
 use crate::shading::radiance::Exactness;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 impl Document {
     /// Bytes that flattening it in floats takes besides the picture: the textures that images are
     /// read from.
-    pub fn deep_bytes(&self) -> u64 {
+    pub fn float_bytes(&self) -> u64 {
         let of_layer = |layer: &Arc<Layer>| layer.content.marks().map_or(0, Marks::texture_bytes);
         self.walk()
             .into_iter()
@@ -50,10 +50,10 @@ pub enum Highlights {
 }
 
 /// What live layers have ready while tiles are composed.
-pub(super) struct DeepTiles {
+pub(super) struct FloatTiles {
     highlights: Highlights,
     /// Kept, so that each is made once.
-    _textures: Vec<Arc<DeepTexture>>,
+    _textures: Vec<Arc<FloatTexture>>,
     /// Tiles that were rendered together.
     together: HashMap<TileKey, Option<PlanarTile>>,
 }
@@ -73,7 +73,7 @@ impl TileKey {
     }
 }
 
-impl DeepTiles {
+impl FloatTiles {
     pub fn new(prepared: &PreparedDocument, highlights: Highlights) -> Self {
         let mut textures = Vec::new();
         for_each(&prepared.stack, &mut |node| {
@@ -125,7 +125,7 @@ impl DeepTiles {
                 } else {
                     None
                 };
-                Some(far.packed_deep(on_far_side.as_ref(), bare.as_ref()))
+                Some(far.packed16(on_far_side.as_ref(), bare.as_ref()))
             }
         };
         let Some(mut found) = found else { return TileContent::Nothing };

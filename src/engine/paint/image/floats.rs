@@ -5,22 +5,24 @@
 use super::{ImageLookup, PictureSource, PlacedImage};
 use crate::paint::patches::Patches;
 use crate::paint::scene::Scene;
-use crate::raster::sampler::{Antialias, deep_bilinear_row};
+use crate::raster::sampler::{Antialias, float_bilinear_row};
 use crate::raster::tile::transparent_f32;
-use crate::raster::{DeepTexture, PlanarTile, TILE, Tile, TileAt};
+use crate::raster::{FloatTexture, PlanarTile, TILE, Tile, TileAt};
 use crate::surface::deformation::DeformedRect;
 use std::sync::{Arc, PoisonError};
 
 impl PictureSource {
     /// The adjusted texture in floats; made again when it is no longer in use.
-    pub fn deep_texture(&self) -> Arc<DeepTexture> {
-        let held = || self.derived.deep.lock().unwrap_or_else(PoisonError::into_inner);
+    pub fn float_texture(&self) -> Arc<FloatTexture> {
+        let held = || self.derived.floats.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = held().upgrade() {
             return known;
         }
         // Without the lock: two threads may both make it; the results are equal.
-        let made =
-            Arc::new(DeepTexture::deep(self.picture.size, self.adjust.apply_deep(&self.picture)));
+        let made = Arc::new(FloatTexture::floats(
+            self.picture.size,
+            self.adjust.apply_in_floats(&self.picture),
+        ));
         *held() = Arc::downgrade(&made);
         made
     }
@@ -46,7 +48,7 @@ impl PlacedImage {
             // It has bytes only, and may be drawn larger.
             return self.render_tile(scene, at).map(|tile| in_floats(&tile));
         }
-        let (texture, width) = (self.source.deep_texture(), area.width());
+        let (texture, width) = (self.source.float_texture(), area.width());
         let mut positions = DeformedRect::default();
         let ImageLookup { margin, texels_from_canvas } =
             self.placed(scene, area, texture.size(), &mut positions);
@@ -57,7 +59,7 @@ impl PlacedImage {
             let out = &mut pixels[row * TILE..row * TILE + width];
             if margin == 0 {
                 let from = row * width..(row + 1) * width;
-                deep_bilinear_row(
+                float_bilinear_row(
                     &texture,
                     &positions.x[from.clone()],
                     &positions.y[from],
@@ -66,7 +68,7 @@ impl PlacedImage {
                 );
             } else {
                 let row = patches.row(scene, area, y, &positions, texels_from_canvas);
-                antialias.deep_row(&texture, row, self.outside, out);
+                antialias.float_row(&texture, row, self.outside, out);
             }
         }
         Some(PlanarTile::from_bright(&pixels))
@@ -96,14 +98,14 @@ mod tests {
     fn greatest_difference(image: &PlacedImage, scene: &Scene) -> f32 {
         let mut farthest = 0.0f32;
         for at in TileAt::covering(scene.size.rect()) {
-            let (bytes, deep) =
+            let (bytes, floats) =
                 (image.render_tile(scene, at).unwrap(), image.render_pixels(scene, at).unwrap());
             let inside = at.rect().intersect(scene.size.rect());
             for (x, y) in
                 (0..inside.height()).flat_map(|y| (0..inside.width()).map(move |x| (x, y)))
             {
                 let (byte, float) =
-                    (&bytes.bytes()[(y * TILE + x) * 4..][..4], deep.rows()[y].pixel(x));
+                    (&bytes.bytes()[(y * TILE + x) * 4..][..4], floats.rows()[y].pixel(x));
                 let apart = |(byte, float): (&u8, f32)| (f32::from(*byte) - float * 255.0).abs();
                 farthest = byte.iter().zip(float).map(apart).fold(farthest, f32::max);
             }
@@ -151,11 +153,11 @@ mod tests {
     fn sixteen_bits_and_light_beyond_white_come_through() {
         let size = Size::new(64, 64);
         let scene = Scene { size, surface: None };
-        let deep = |i: usize| (i * 16) as u16;
-        let texels = (0..64 * 64).map(|i| [deep(i), 0, 0, 65535]).collect();
+        let level = |i: usize| (i * 16) as u16;
+        let texels = (0..64 * 64).map(|i| [level(i), 0, 0, 65535]).collect();
         let picture = Picture::srgb16(size, texels).unwrap();
         let tile = placed(picture, size).render_pixels(&scene, TileAt::new(0, 0)).unwrap();
-        assert_eq!(tile.rows()[40].pixel(11)[0], f32::from(deep(40 * 64 + 11)) / 65535.0);
+        assert_eq!(tile.rows()[40].pixel(11)[0], f32::from(level(40 * 64 + 11)) / 65535.0);
         let sun = Picture::linear(size, vec![[9.0, 1.0, 0.0, 1.0]; 64 * 64]).unwrap();
         let tile = placed(sun, size).render_pixels(&scene, TileAt::new(0, 0)).unwrap();
         let [r, g, ..] = tile.rows()[0].pixel(0);
@@ -170,7 +172,7 @@ mod tests {
         let source =
             placed(Picture::srgb8(Size::new(2, 2), vec![[9; 4]; 4]).unwrap(), Size::new(2, 2))
                 .source;
-        let (a, b) = (source.deep_texture(), source.clone().deep_texture());
+        let (a, b) = (source.float_texture(), source.clone().float_texture());
         assert!(Arc::ptr_eq(&a, &b));
         let weak = Arc::downgrade(&a);
         drop((a, b));

@@ -1,15 +1,15 @@
-//! Which layers are chosen: one is the primary one, which the brush paints on; what is done to
-//! layers is done to all. Floor 6. The choice is not part of the document: choosing is no step.
+//! Which layers are selected: one is the primary one, which the brush paints on; what is done to
+//! layers is done to all. Floor 6. The selection is not part of the document: selecting is no step.
 
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
 use crate::tools::gizmo::{GizmoContent, GizmoMemory, TransformGizmo, TransformTarget};
 
-/// The chosen layers. They count as long as the primary one is among them: whatever selects another
-/// layer alone drops the others.
+/// The selected layers. They count as long as the primary one is among them: whatever selects
+/// another layer alone drops the others.
 #[derive(Clone, Debug, Default)]
-pub struct ChosenLayers {
+pub struct SelectedLayers {
     ids: Vec<LayerId>,
     /// The start of a range that Shift extends.
     anchor: Option<LayerId>,
@@ -17,51 +17,51 @@ pub struct ChosenLayers {
     gizmo: GizmoMemory,
 }
 
-impl ChosenLayers {
+impl SelectedLayers {
     /// These, the primary one last.
     pub(super) fn of(ids: Vec<LayerId>) -> Self {
         Self { anchor: ids.last().copied(), ids, gizmo: GizmoMemory::default() }
     }
 
-    /// The choice alone.
+    /// The selection alone.
     pub(super) fn without_gizmo(&self) -> Self {
         Self { gizmo: GizmoMemory::default(), ids: self.ids.clone(), ..*self }
     }
 
-    /// Chooses as another does; what the transform tool keeps stays.
-    pub(super) fn choose_as(&mut self, other: Self) {
+    /// Selects as another does; what the transform tool keeps stays.
+    pub(super) fn select_as(&mut self, other: Self) {
         (self.ids, self.anchor) = (other.ids, other.anchor);
     }
 }
 
 impl OpenDocument {
-    /// The chosen layers in the order of the tree, bottom first, the primary one among them.
-    pub fn chosen_layers(&self) -> Vec<LayerId> {
+    /// The selected layers in the order of the tree, bottom first, the primary one among them.
+    pub fn selected_layers(&self) -> Vec<LayerId> {
         let document = self.shown_document();
-        let Some(primary) = self.selected.filter(|id| document.layer(*id).is_some()) else {
+        let Some(primary) = self.primary.filter(|id| document.layer(*id).is_some()) else {
             return Vec::new();
         };
-        if !self.chosen_layers.ids.contains(&primary) {
+        if !self.selected_layers.ids.contains(&primary) {
             return vec![primary];
         }
         let all = document.walk();
         all.iter()
             .map(|(_, layer)| layer.id)
-            .filter(|id| self.chosen_layers.ids.contains(id))
+            .filter(|id| self.selected_layers.ids.contains(id))
             .collect()
     }
 
-    /// Those of them that are in no other one: what is in a chosen group moves with it.
-    pub fn outermost_chosen(&self) -> Vec<LayerId> {
-        self.shown_document().outermost(&self.chosen_layers())
+    /// Those of them that are in no other one: what is in a selected group moves with it.
+    pub fn outermost_selected(&self) -> Vec<LayerId> {
+        self.shown_document().outermost(&self.selected_layers())
     }
 
-    /// Whether a layer is among the chosen ones.
-    pub fn is_chosen(&self, layer: LayerId) -> bool {
+    /// Whether a layer is among the selected ones.
+    pub fn is_selected(&self, layer: LayerId) -> bool {
         let also = |primary| {
-            self.chosen_layers.ids.contains(&primary) && self.chosen_layers.ids.contains(&layer)
+            self.selected_layers.ids.contains(&primary) && self.selected_layers.ids.contains(&layer)
         };
-        self.selected == Some(layer) || self.selected.is_some_and(also)
+        self.primary == Some(layer) || self.primary.is_some_and(also)
     }
 
     /// The gizmo of the transform tool around them, or around the shape, as they are shown.
@@ -75,21 +75,21 @@ impl OpenDocument {
     }
 
     fn gizmo_in(&self, document: &Document, target: TransformTarget) -> Option<TransformGizmo> {
-        let chosen = self.outermost_chosen();
-        self.chosen_layers.gizmo.around(document, GizmoContent::new(target, document, &chosen))
+        let selected = self.outermost_selected();
+        self.selected_layers.gizmo.around(document, GizmoContent::new(target, document, &selected))
     }
 
-    /// The gizmo around the chosen layers turns with them from now on.
+    /// The gizmo around the selected layers turns with them from now on.
     pub(in crate::session) fn hold_gizmo(&mut self, target: TransformTarget) {
-        let (document, layers) = (self.document().clone(), self.outermost_chosen());
-        self.chosen_layers.gizmo.hold(&document, GizmoContent::new(target, &document, &layers));
+        let (document, layers) = (self.document().clone(), self.outermost_selected());
+        self.selected_layers.gizmo.hold(&document, GizmoContent::new(target, &document, &layers));
     }
 
-    /// The gizmo around the chosen layers is turned about this point from now on, by shares of its
-    /// sides.
+    /// The gizmo around the selected layers is turned about this point from now on, by shares of
+    /// its sides.
     pub(in crate::session) fn set_pivot(&mut self, target: TransformTarget, share: Vec2) {
-        let (document, layers) = (self.document().clone(), self.outermost_chosen());
-        self.chosen_layers.gizmo.set_pivot(
+        let (document, layers) = (self.document().clone(), self.outermost_selected());
+        self.selected_layers.gizmo.set_pivot(
             &document,
             GizmoContent::new(target, &document, &layers),
             share,
@@ -97,43 +97,43 @@ impl OpenDocument {
     }
 
     pub(in crate::session) fn gizmo_memory(&self) -> &GizmoMemory {
-        &self.chosen_layers.gizmo
+        &self.selected_layers.gizmo
     }
 
-    /// Whether more than one layer is chosen.
+    /// Whether more than one layer is selected.
     pub fn has_several(&self) -> bool {
-        self.chosen_layers().len() > 1
+        self.selected_layers().len() > 1
     }
 
     /// The start of a range that Shift extends.
     pub fn range_start(&self) -> Option<LayerId> {
-        self.chosen_layers.anchor.filter(|id| self.is_chosen(*id)).or(self.selected)
+        self.selected_layers.anchor.filter(|id| self.is_selected(*id)).or(self.primary)
     }
 
-    /// Chooses layers; the primary one is the last of them. If none are given, nothing changes.
-    pub fn choose_layers(&mut self, ids: Vec<LayerId>) {
+    /// Selects layers; the primary one is the last of them. If none are given, nothing changes.
+    pub fn select_layers(&mut self, ids: Vec<LayerId>) {
         if let Some(primary) = ids.last().copied() {
-            self.selected = Some(primary);
-            self.chosen_layers.choose_as(ChosenLayers::of(ids));
+            self.primary = Some(primary);
+            self.selected_layers.select_as(SelectedLayers::of(ids));
         }
     }
 
     /// The same, with the start of the range to extend.
-    pub fn choose_range(&mut self, ids: Vec<LayerId>, anchor: Option<LayerId>) {
-        self.choose_layers(ids);
-        self.chosen_layers.anchor = anchor.or(self.chosen_layers.anchor);
+    pub fn select_range(&mut self, ids: Vec<LayerId>, anchor: Option<LayerId>) {
+        self.select_layers(ids);
+        self.selected_layers.anchor = anchor.or(self.selected_layers.anchor);
     }
 
-    /// With a layer added to those chosen, or removed from them, the primary one last. The last one
-    /// stays.
+    /// With a layer added to those selected, or removed from them, the primary one last. The last
+    /// one stays.
     pub fn toggle_selected(&self, layer: LayerId) -> Vec<LayerId> {
-        let mut ids = self.chosen_layers();
+        let mut ids = self.selected_layers();
         match ids.iter().position(|id| *id == layer) {
             Some(_) if ids.len() == 1 => {}
             Some(at) => {
                 ids.remove(at);
                 // The primary one stays the same, if it is left.
-                if let Some(primary) = self.selected.filter(|primary| *primary != layer) {
+                if let Some(primary) = self.primary.filter(|primary| *primary != layer) {
                     ids.retain(|id| *id != primary);
                     ids.push(primary);
                 }
@@ -182,25 +182,25 @@ mod tests {
     #[test]
     fn a_click_with_ctrl_adds_a_layer_and_a_second_takes_it_away() {
         let (mut open, ids) = open();
-        open.choose_layers(vec![ids[1]]);
-        open.choose_layers(open.toggle_selected(ids[3]));
-        assert_eq!((open.chosen_layers(), open.selected), (vec![ids[1], ids[3]], Some(ids[3])));
-        open.choose_layers(open.toggle_selected(ids[1]));
-        assert_eq!((open.chosen_layers(), open.selected), (vec![ids[3]], Some(ids[3])));
-        open.choose_layers(open.toggle_selected(ids[3]));
-        assert_eq!(open.chosen_layers(), [ids[3]], "one is always chosen");
+        open.select_layers(vec![ids[1]]);
+        open.select_layers(open.toggle_selected(ids[3]));
+        assert_eq!((open.selected_layers(), open.primary), (vec![ids[1], ids[3]], Some(ids[3])));
+        open.select_layers(open.toggle_selected(ids[1]));
+        assert_eq!((open.selected_layers(), open.primary), (vec![ids[3]], Some(ids[3])));
+        open.select_layers(open.toggle_selected(ids[3]));
+        assert_eq!(open.selected_layers(), [ids[3]], "one is always selected");
     }
 
     #[test]
     fn a_range_keeps_its_beginning_while_its_end_moves() {
         let (mut open, ids) = open();
-        open.choose_layers(vec![ids[2]]);
-        for (end, chosen) in [(4, 2..5), (1, 1..3), (2, 2..3)] {
+        open.select_layers(vec![ids[2]]);
+        for (end, selected) in [(4, 2..5), (1, 1..3), (2, 2..3)] {
             let start = open.range_start().unwrap();
-            open.choose_range(range(&ids, start, ids[end]), Some(start));
+            open.select_range(range(&ids, start, ids[end]), Some(start));
             assert_eq!(
-                (open.chosen_layers(), open.selected),
-                (ids[chosen].to_vec(), Some(ids[end]))
+                (open.selected_layers(), open.primary),
+                (ids[selected].to_vec(), Some(ids[end]))
             );
         }
     }
@@ -208,21 +208,21 @@ mod tests {
     #[test]
     fn selecting_another_layer_lets_go_of_the_others() {
         let (mut open, ids) = open();
-        open.choose_layers(ids.clone());
-        assert!(open.has_several() && open.is_chosen(ids[0]));
-        open.selected = Some(LayerId::fresh());
+        open.select_layers(ids.clone());
+        assert!(open.has_several() && open.is_selected(ids[0]));
+        open.primary = Some(LayerId::fresh());
         open.repair();
-        open.choose_layers(vec![ids[1]]);
-        assert!(!open.has_several() && !open.is_chosen(ids[0]));
+        open.select_layers(vec![ids[1]]);
+        assert!(!open.has_several() && !open.is_selected(ids[0]));
     }
 
     #[test]
-    fn a_layer_that_is_gone_is_chosen_no_more() {
+    fn a_layer_that_is_gone_is_no_longer_selected() {
         let (mut open, ids) = open();
-        open.choose_layers(vec![ids[0], ids[1], ids[2]]);
+        open.select_layers(vec![ids[0], ids[1], ids[2]]);
         let next = open.document().without_layer(ids[1]).unwrap();
         open.commit("Delete layer", next);
-        assert_eq!(open.chosen_layers(), [ids[0], ids[2]]);
+        assert_eq!(open.selected_layers(), [ids[0], ids[2]]);
         assert_eq!(neighbor(open.document(), ids[2], -1), ids[0]);
         assert_eq!(neighbor(open.document(), ids[4], 1), ids[4]);
     }
