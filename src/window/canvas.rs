@@ -135,7 +135,7 @@ impl Canvas {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
         self.area_pt = vec2(rect.width(), rect.height());
         ui.painter().rect_filled(rect, 0.0, theme::surround(ui.visuals()));
-        let Some(open) = session.active() else { return invite(ui, rect) };
+        let Some(open) = session.active() else { return };
         let area_before_pt = self.areas_pt.insert(open.key, self.area_pt).unwrap_or(self.area_pt);
         let Some(view) = open.view else {
             // The first view shows the whole canvas.
@@ -318,15 +318,6 @@ fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
         high.x.ceil() as i32,
         high.y.ceil() as i32,
     )
-}
-
-/// The text of an empty window.
-fn invite(ui: &Ui, area: egui::Rect) {
-    show_sentence(
-        ui,
-        area,
-        "Drop a picture, a normal map or a project here, or open one from the File menu",
-    );
 }
 
 /// Where points of the canvas are on the screen.

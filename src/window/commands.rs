@@ -30,14 +30,6 @@ pub const MENUS: [(&str, &[MenuCommand]); 8] = [
     ("Help", help::COMMANDS),
 ];
 /// A menu within Layer.
-pub const SHADING: &[MenuCommand] = shading::COMMANDS;
-/// A menu within Layer.
-pub const ADJUSTMENT_LAYERS: &[MenuCommand] = adjustments::LAYERS;
-/// A menu within Image.
-pub const ADJUSTMENTS: &[MenuCommand] = adjustments::PAINT;
-/// A menu within View.
-pub const GUIDES: &[MenuCommand] = guides::COMMANDS;
-/// A menu within Layer.
 pub const PARTS: &[MenuCommand] = parts::COMMANDS;
 /// A menu within Edit.
 pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
@@ -46,15 +38,8 @@ pub use transform::REMOVE_LIQUIFY;
 /// Every command, menu by menu.
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
     const EVERY: [(&str, &[MenuCommand]); 8] = MENUS;
-    let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
-    menus
-        .chain(SHADING)
-        .chain(PARTS)
-        .chain(TRANSFORMS)
-        .chain(GUIDES)
-        .chain(ADJUSTMENT_LAYERS)
-        .chain(ADJUSTMENTS)
-        .filter(|command| !command.is_line())
+    let rows = EVERY.into_iter().flat_map(|(_, rows)| rows);
+    rows.flat_map(MenuCommand::commands).filter(|command| !command.is_line())
 }
 
 /// A command by its name.

@@ -1,6 +1,9 @@
 //! The layout of the panels: on which side, which in front, which in separate windows. Floor 7. Not
 //! here: keeping it from run to run (`settings`).
 
+use super::icons::Icon;
+use crate::tools::ToolKind;
+
 rilievo_engine::named! {
     /// A panel that can be next to the canvas or in a window of its own.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,10 +21,39 @@ rilievo_engine::named! {
 }
 
 impl PanelKind {
+    /// Its sign where its name has no room.
+    pub fn icon(self) -> Icon {
+        match self {
+            PanelKind::Color => Icon::Tool(ToolKind::Eyedropper),
+            PanelKind::Brushes => Icon::Tool(ToolKind::Brush),
+            PanelKind::Properties => Icon::Sliders,
+            PanelKind::Surface => Icon::Normals,
+            PanelKind::History => Icon::Clock,
+            PanelKind::Navigator => Icon::Frame,
+            PanelKind::Layers => Icon::Stack,
+            PanelKind::Shape => Icon::Tool(ToolKind::Shape),
+        }
+    }
+
+    /// Whether it shares its area with others, as a tab: all but the color, which is always in
+    /// sight.
+    pub fn is_tab(self) -> bool {
+        self != PanelKind::Color
+    }
+
     /// Whether it is below, where the layers are.
     pub fn is_below(self) -> bool {
         matches!(self, PanelKind::Layers | PanelKind::Shape)
     }
+}
+
+/// How the color is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ColorView {
+    /// A wheel of hues, not a bar.
+    pub is_wheel: bool,
+    /// With numbers and a palette.
+    pub has_numbers: bool,
 }
 
 /// The places of the panels.
@@ -44,7 +76,7 @@ impl PanelLayout {
         self.is_hidden = false;
         if panel.is_below() {
             self.below = panel;
-        } else {
+        } else if panel.is_tab() {
             self.front = panel;
         }
     }
@@ -74,7 +106,7 @@ impl Default for PanelLayout {
         Self {
             side: PanelSide::Right,
             is_hidden: false,
-            front: PanelKind::Color,
+            front: PanelKind::Brushes,
             below: PanelKind::Layers,
             floating: Vec::new(),
             width_pt: 268.0,

@@ -27,6 +27,7 @@ mod ramp;
 mod select;
 mod setter;
 pub mod shape;
+pub mod start;
 mod shaping;
 pub mod status;
 pub mod strokes;

@@ -39,7 +39,8 @@ pub enum WindowRequest {
     ShapeDialog,
     /// Opened on a thread of its own.
     Open(PathBuf),
-    OpenSample,
+    /// By its place among the samples.
+    OpenSample(usize),
     /// Asks for a file.
     Choose(FilePurpose),
     Save,
@@ -88,6 +89,8 @@ pub enum WindowRequest {
     /// Shows the settings of the brush in hand in the panel of brushes.
     EditBrush,
     NextLook,
+    /// Shows or hides in the status bar what is measured.
+    ToggleDetails,
     ResizeInterface {
         is_larger: bool,
     },

@@ -1,4 +1,4 @@
-//! The sample that a first start opens: a shape without a file, ready to be painted on. Floor 7.
+//! The samples: a shape without a file, ready to be painted on, in several materials. Floor 7.
 //! Made of formulas, so that nothing is downloaded and nothing is missing.
 
 use crate::document::{Content, Document, Layer, Live};
@@ -7,57 +7,105 @@ use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::raster::Plane;
 use crate::session::OpenDocument;
 use crate::session::storage::OpenedFile;
+use crate::shading::{Model, Shading};
 use crate::surface::{Maps, Operator, Surface};
 use crate::{Error, Result};
 use std::sync::Arc;
 
 const SIDE: usize = 640;
 
-/// The sample as a document of its own.
-pub fn open() -> Result<OpenedFile> {
-    let surface = surface().map_err(|error| Error::unsupported("sample", error))?;
-    let background = Gradient {
-        from: vec2(0.0, 0.0),
-        to: vec2(0.0, SIDE as f32),
-        stops: vec![
-            GradientStop { t: 0.0, color: gray(0x3a) },
-            GradientStop { t: 1.0, color: gray(0x24) },
-        ],
-        operator: Operator::None,
-        filter: ImageFilter::Antialias,
-        frame: Default::default(),
-        pieces: Vec::new(),
-    };
-    let clay = Gradient {
-        from: vec2(0.30, 0.22) * SIDE as f32,
-        to: vec2(0.62, 0.74) * SIDE as f32,
-        stops: vec![
-            GradientStop { t: 0.0, color: Color { r: 0xc8, g: 0xa0, b: 0x78, a: 255 } },
-            GradientStop { t: 0.55, color: Color { r: 0x86, g: 0x56, b: 0x40, a: 255 } },
-            GradientStop { t: 1.0, color: Color { r: 0x36, g: 0x20, b: 0x22, a: 255 } },
-        ],
-        operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
-        filter: ImageFilter::Antialias,
-        frame: Default::default(),
-        pieces: Vec::new(),
-    };
-    let behind = Layer {
-        clip_to_surface: false,
-        ..Layer::new("Background", Content::Gradient(Live::new(background)))
-    };
-    let layers =
-        vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
-    let size = Size::new(SIDE as u32, SIDE as u32);
-    let document = Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
-    Ok(OpenedFile {
-        open: OpenDocument::new("Sample", document, None),
-        notes: Vec::new(),
-        drawing: None,
-    })
+/// A sample of the start screen.
+pub struct Sample {
+    pub name: &'static str,
+    pub about: &'static str,
+    /// What lies on the shape, the lowest first.
+    layers: fn(Size) -> Vec<Layer>,
 }
 
-fn gray(v: u8) -> Color {
-    Color { r: v, g: v, b: v, a: 255 }
+/// All samples; the first is the one of the Help menu.
+pub const SAMPLES: [Sample; 3] = [
+    Sample {
+        name: "Ball and ring",
+        about: "A shape with a gradient that follows it: drop a photo, paint highlights",
+        layers: |_| vec![bent("Base", &CLAY, 0.6)],
+    },
+    Sample {
+        name: "Chrome",
+        about: "A horizon that is bent as metal reflects it",
+        layers: |_| vec![bent("Chrome", &CHROME, 1.0)],
+    },
+    Sample {
+        name: "In a painter's light",
+        about: "Flat color under a lamp with shadows: move the light on the canvas (A)",
+        layers: lit,
+    },
+];
+
+/// Places in `[0, 1]` along a gradient, and their colors.
+type Stops = [(f32, [u8; 3])];
+const CLAY: [(f32, [u8; 3]); 3] =
+    [(0.0, [0xc8, 0xa0, 0x78]), (0.55, [0x86, 0x56, 0x40]), (1.0, [0x36, 0x20, 0x22])];
+const CHROME: [(f32, [u8; 3]); 6] = [
+    (0.0, [0x5b, 0x8f, 0xc9]),
+    (0.42, [0xe6, 0xf0, 0xfa]),
+    (0.5, [0xff, 0xff, 0xff]),
+    (0.53, [0x2a, 0x24, 0x22]),
+    (0.7, [0x7a, 0x60, 0x48]),
+    (1.0, [0xe8, 0xd8, 0xb8]),
+];
+/// The color under the painter's light.
+const SKIN: Color = Color { r: 0xd8, g: 0x8c, b: 0x62, a: 255 };
+
+impl Sample {
+    /// The sample as a document of its own.
+    pub fn open(&self) -> Result<OpenedFile> {
+        let surface = surface().map_err(|error| Error::unsupported("sample", error))?;
+        let size = Size::new(SIDE as u32, SIDE as u32);
+        let down = (vec2(0.0, 0.0), vec2(0.0, SIDE as f32));
+        let dark = [(0.0, [0x3a; 3]), (1.0, [0x24; 3])];
+        let behind = Layer {
+            clip_to_surface: false,
+            ..gradient("Background", down, &dark, Operator::None)
+        };
+        let layers = std::iter::once(behind).chain((self.layers)(size)).map(Arc::new).collect();
+        let document =
+            Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
+        Ok(OpenedFile {
+            open: OpenDocument::new("Sample", document, None),
+            notes: Vec::new(),
+            drawing: None,
+        })
+    }
+}
+
+/// A gradient that follows the directions of the shape.
+fn bent(name: &str, stops: &Stops, alpha: f32) -> Layer {
+    let ends = (vec2(0.30, 0.22) * SIDE as f32, vec2(0.62, 0.74) * SIDE as f32);
+    gradient(name, ends, stops, Operator::Normal { alpha, beta: 1.0, detail: 0.0 })
+}
+
+fn gradient(name: &str, (from, to): (Vec2, Vec2), stops: &Stops, operator: Operator) -> Layer {
+    let stop = |&(t, [r, g, b]): &(f32, [u8; 3])| GradientStop { t, color: Color { r, g, b, a: 255 } };
+    let gradient = Gradient {
+        from,
+        to,
+        stops: stops.iter().map(stop).collect(),
+        operator,
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+        pieces: Vec::new(),
+    };
+    Layer::new(name, Content::Gradient(Live::new(gradient)))
+}
+
+/// A color, and a painter's light on it.
+fn lit(size: Size) -> Vec<Layer> {
+    let mut light = Shading::fitting(Model::Painter, size);
+    light.painter.beneath = true;
+    vec![
+        Layer::new("Color", Content::Fill(SKIN)),
+        Layer::new(Model::Painter.label(), Content::Shading(Live::new(light))),
+    ]
 }
 
 /// The places of the ball and the ring around it, in canvas lengths.
@@ -185,7 +233,7 @@ mod tests {
 
     #[test]
     fn the_sample_opens_with_a_surface_that_faces_the_viewer_in_its_middle() {
-        let opened = open().unwrap();
+        let opened = SAMPLES[0].open().unwrap();
         let surface = opened.open.document().surface.clone().unwrap();
         let middle = (BALL.0 * SIDE as f32).as_uvec2();
         let n = surface.normal(middle.x as usize, middle.y as usize);

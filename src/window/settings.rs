@@ -4,8 +4,7 @@
 
 use super::jobs;
 use super::keymap::Keymap;
-use super::panel_layout::PanelKind;
-use super::panel_layout::{PanelLayout, SIDES};
+use super::panel_layout::{ColorView, PanelKind, PanelLayout, SIDES};
 use super::theme::Look;
 use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
 use crate::document::Progress;
@@ -41,6 +40,9 @@ pub struct Settings {
     pub aids: ViewAids,
     /// The share of the machine's memory that documents may keep for speed.
     pub kept_share: f32,
+    pub color: ColorView,
+    /// Whether the status bar shows what is measured: the surface under the pointer, memory, times.
+    pub has_details: bool,
 }
 
 impl Default for Settings {
@@ -54,6 +56,8 @@ impl Default for Settings {
             is_hint_done: false,
             aids: ViewAids::default(),
             kept_share: USUAL_KEPT_SHARE,
+            color: ColorView::default(),
+            has_details: false,
         }
     }
 }
@@ -83,6 +87,8 @@ impl Settings {
             "keys": self.keymap.to_json(),
             "aids": self.aids.written(),
             "kept share": self.kept_share,
+            "color": { "wheel": self.color.is_wheel, "numbers": self.color.has_numbers },
+            "details": self.has_details,
         })
     }
 
@@ -136,7 +142,22 @@ impl Settings {
             .and_then(Value::as_f64)
             .map_or(USUAL_KEPT_SHARE, |share| share as f32);
         let kept_share = share.max(*KEPT_SHARE.start()).min(*KEPT_SHARE.end());
-        Self { recent, look, scale, layout, keymap, is_hint_done, aids, kept_share }
+        let shown = object("color");
+        let color =
+            ColorView { is_wheel: flag(shown, "wheel"), has_numbers: flag(shown, "numbers") };
+        let has_details = flag(value, "details");
+        Self {
+            recent,
+            look,
+            scale,
+            layout,
+            keymap,
+            is_hint_done,
+            aids,
+            kept_share,
+            color,
+            has_details,
+        }
     }
 
     /// Reads a settings file; a missing one counts as empty. Fails if it is not JSON or cannot be
@@ -252,8 +273,16 @@ mod tests {
             width_pt: 300.0,
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
-        let mut settings =
-            Settings { look: Look::Gray, layout, is_hint_done: true, aids, ..Settings::default() };
+        let color = ColorView { is_wheel: true, has_numbers: true };
+        let mut settings = Settings {
+            look: Look::Gray,
+            layout,
+            is_hint_done: true,
+            aids,
+            color,
+            has_details: true,
+            ..Settings::default()
+        };
         (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
         settings.write(&file).unwrap();
         let read = Settings::read(&file).unwrap();

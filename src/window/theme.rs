@@ -6,6 +6,9 @@ use eframe::egui::{self, Color32, CornerRadius, Stroke, Style, TextStyle, Theme,
 
 /// What is selected or held.
 pub const ACCENT: Color32 = Color32::from_rgb(0x4d, 0x9d, 0xe0);
+/// The same as a thin line on a middle gray, and on a light one.
+const ACCENT_ON_GRAY: Color32 = Color32::from_rgb(0x78, 0xbc, 0xf4);
+const ACCENT_ON_LIGHT: Color32 = Color32::from_rgb(0x1a, 0x68, 0xb0);
 /// The squares behind what is transparent.
 pub const CHECKER: [Color32; 2] = [Color32::from_gray(0x9a), Color32::from_gray(0x7e)];
 
@@ -69,6 +72,30 @@ impl Look {
     }
 }
 
+/// The accent as a thin line on the ground of panels.
+pub fn accent(visuals: &Visuals) -> Color32 {
+    match Look::of(visuals) {
+        Look::Dark => ACCENT,
+        Look::Gray => ACCENT_ON_GRAY,
+        Look::Light => ACCENT_ON_LIGHT,
+    }
+}
+
+/// The ground of a number's bar.
+pub fn bar_ground(visuals: &Visuals) -> Color32 {
+    visuals.widgets.inactive.weak_bg_fill
+}
+
+/// How far a number goes, on its bar: the accent only while it is held.
+pub fn bar_fill(visuals: &Visuals, is_held: bool) -> Color32 {
+    if is_held { visuals.selection.bg_fill } else { Color32::from_gray(Look::of(visuals).grays().filled) }
+}
+
+/// Where the value of a number is, on its bar.
+pub fn mark_on_bar(visuals: &Visuals) -> Color32 {
+    visuals.strong_text_color()
+}
+
 /// What surrounds the canvas.
 pub fn surround(visuals: &Visuals) -> Color32 {
     Color32::from_gray(Look::of(visuals).grays().surround)
@@ -83,6 +110,8 @@ struct Grays {
     idle: u8,
     hovered: u8,
     pressed: u8,
+    /// The part of a number's bar that is full.
+    filled: u8,
     line: u8,
     /// The outline of an empty box or ring to tick.
     outline: u8,
@@ -101,6 +130,7 @@ const DARK: Grays = Grays {
     idle: 0x3a,
     hovered: 0x47,
     pressed: 0x52,
+    filled: 0x54,
     line: 0x1f,
     outline: 0x82,
     weak: 0xa4,
@@ -116,6 +146,7 @@ const GRAY: Grays = Grays {
     idle: 0x58,
     hovered: 0x60,
     pressed: 0x66,
+    filled: 0x68,
     line: 0x38,
     outline: 0xa4,
     weak: 0xc4,
@@ -131,6 +162,7 @@ const LIGHT: Grays = Grays {
     idle: 0xce,
     hovered: 0xc0,
     pressed: 0xb2,
+    filled: 0xb0,
     line: 0xb4,
     outline: 0x76,
     weak: 0x58,
@@ -268,6 +300,10 @@ mod tests {
         found.push(("hint in a field", weak, visuals.extreme_bg_color));
         found.push(("a selected row's name", strong, visuals.selection.bg_fill));
         found.push(("a selected row", visuals.selection.stroke.color, visuals.selection.bg_fill));
+        for is_held in [false, true] {
+            found.push(("a number on its bar", strong, bar_fill(visuals, is_held)));
+        }
+        found.push(("a name on a bar", text, bar_fill(visuals, false)));
         let widgets = &visuals.widgets;
         let states = [&widgets.inactive, &widgets.hovered, &widgets.active, &widgets.open];
         found.extend(states.map(|state| ("button", state.text_color(), state.weak_bg_fill)));
@@ -292,10 +328,40 @@ mod tests {
     fn the_outline_of_an_empty_box_is_seen() {
         for (look, name) in Look::ALL {
             let grays = look.grays();
-            for ground in [grays.panel, grays.window] {
+            // Panels, windows and popups, and the rows of lists.
+            for ground in [grays.panel, grays.window, grays.panel.saturating_add(4)] {
                 let found = contrast(Color32::from_gray(grays.outline), Color32::from_gray(ground));
                 assert!(found >= 3.0, "{name}: {found:.2}");
             }
+        }
+    }
+
+    #[test]
+    fn the_line_of_the_tab_in_front_and_the_mark_of_a_bar_are_seen() {
+        for (look, name) in Look::ALL {
+            let ctx = egui::Context::default();
+            look.show(&ctx);
+            let visuals = ctx.global_style().visuals.clone();
+            let found = contrast(accent(&visuals), visuals.panel_fill);
+            assert!(found >= 3.0, "{name}: {found:.2}");
+            let mark = contrast(mark_on_bar(&visuals), bar_fill(&visuals, false));
+            assert!(mark >= 3.0, "{name}, on a bar: {mark:.2}");
+        }
+    }
+
+    #[test]
+    fn a_boxs_outline_is_what_empty_boxes_show() {
+        for (look, name) in Look::ALL {
+            let ctx = egui::Context::default();
+            look.show(&ctx);
+            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+                outline(ui);
+                let shown = ui.visuals().widgets.inactive.bg_stroke.color;
+                assert_eq!(shown, Color32::from_gray(look.grays().outline), "{name}");
+                strengthen_hints(ui);
+                let on_row = contrast(ui.visuals().weak_text_color(), ui.visuals().selection.bg_fill);
+                assert!(on_row >= 4.5, "{name}: the kind of the selected row {on_row:.2}");
+            });
         }
     }
 

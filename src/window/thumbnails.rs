@@ -15,8 +15,8 @@ use std::collections::HashMap;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Weak};
 
-/// The longer side of a thumbnail, px.
-const SIDE: u32 = 64;
+/// The longer side of a thumbnail, px: two for each point of the list.
+const SIDE: u32 = 80;
 
 /// A request for a thumbnail.
 struct ThumbnailOrder {
@@ -144,16 +144,35 @@ impl Thumbnails {
     }
 }
 
-/// The thread's state: the last reduced surface.
+/// The thread's state: the surfaces that were reduced last, the newest first.
 #[derive(Default)]
 struct ThumbnailMaker {
-    surface: Option<(Weak<Surface>, Option<Arc<Surface>>)>,
+    surfaces: Vec<(Weak<Surface>, Arc<Surface>)>,
 }
 
+/// As many reduced surfaces are kept: one for each scale at which layers are painted.
+const SURFACES: usize = 4;
+/// How much larger a layer is painted that covers little of the canvas: by a power of two.
+const LARGEST_ZOOM: f32 = 4.0;
+
 impl ThumbnailMaker {
+    /// Cropped to what the layer covers.
     fn make(&mut self, order: &ThumbnailOrder) -> Option<Thumbnail> {
-        let size = order.document.size;
-        let factor = (SIDE as f32 / size.longer_side()).min(1.0);
+        let id = order.layer.id;
+        let mut factor = (SIDE as f32 / order.document.size.longer_side()).min(1.0);
+        let mut image = self.paint(order, factor)?;
+        let mut covered = covered(&image);
+        let zoom = SIDE as f32 / covered.longer_side().max(1.0);
+        if zoom >= 2.0 && factor < 1.0 {
+            factor = (factor * zoom.min(LARGEST_ZOOM).log2().floor().exp2()).min(1.0);
+            image = self.paint(order, factor)?;
+            covered = self::covered(&image);
+        }
+        Some(Thumbnail { id, image: image.region_by_pixels(covered.low, covered.size) })
+    }
+
+    /// The whole canvas with the layer alone, so much smaller.
+    fn paint(&mut self, order: &ThumbnailOrder, factor: f32) -> Option<ColorImage> {
         // The surface is reduced once, not for every layer.
         let flat = Document { surface: None, ..order.document.clone() };
         let mut small = flat.scaled(factor).ok()?;
@@ -168,11 +187,8 @@ impl ThumbnailMaker {
             .0
             .iter()
             .map(|&[r, g, b, a]| Color32::from_rgba_unmultiplied(r, g, b, a));
-        let image = ColorImage::new(
-            [bare.size.width as usize, bare.size.height as usize],
-            pixels.collect(),
-        );
-        Some(Thumbnail { id, image })
+        let size = [bare.size.width as usize, bare.size.height as usize];
+        Some(ColorImage::new(size, pixels.collect()))
     }
 
     fn small_surface(
@@ -181,13 +197,57 @@ impl ThumbnailMaker {
         to: &Document,
     ) -> Option<Arc<Surface>> {
         let surface = surface?;
-        if let Some((known, small)) = &self.surface
-            && known.as_ptr() == Arc::as_ptr(surface)
-        {
-            return small.clone();
+        let is_same = |(known, small): &&(Weak<Surface>, Arc<Surface>)| {
+            known.as_ptr() == Arc::as_ptr(surface) && small.size() == to.size
+        };
+        if let Some((_, small)) = self.surfaces.iter().find(is_same) {
+            return Some(small.clone());
         }
-        let small = surface.stretched(to.size).ok().map(Arc::new);
-        self.surface = Some((Arc::downgrade(surface), small.clone()));
-        small
+        let small = surface.stretched(to.size).ok().map(Arc::new)?;
+        self.surfaces.insert(0, (Arc::downgrade(surface), small.clone()));
+        self.surfaces.truncate(SURFACES);
+        Some(small)
+    }
+}
+
+/// A rectangle of a small picture: its corner and its sides, px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CoveredArea {
+    low: [usize; 2],
+    size: [usize; 2],
+}
+
+impl CoveredArea {
+    fn longer_side(self) -> f32 {
+        self.size[0].max(self.size[1]) as f32
+    }
+}
+
+/// What is not transparent, with a margin of a pixel; all of it if nothing is covered.
+fn covered(image: &ColorImage) -> CoveredArea {
+    let [width, height] = image.size;
+    let whole = CoveredArea { low: [0, 0], size: image.size };
+    let at = |i: usize| [i % width.max(1), i / width.max(1)];
+    let seen = image.pixels.iter().enumerate().filter(|(_, pixel)| pixel.a() > 8);
+    let ends = seen.map(|(i, _)| (at(i), at(i))).reduce(|(low, high), (a, b)| {
+        ([low[0].min(a[0]), low[1].min(a[1])], [high[0].max(b[0]), high[1].max(b[1])])
+    });
+    let Some((low, high)) = ends else { return whole };
+    let low = low.map(|v| v.saturating_sub(1));
+    let high = [(high[0] + 2).min(width), (high[1] + 2).min(height)];
+    CoveredArea { low, size: [high[0] - low[0], high[1] - low[1]] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thumbnail_is_cropped_to_what_is_covered() {
+        let mut image = ColorImage::filled([20, 10], Color32::TRANSPARENT);
+        assert_eq!(covered(&image).size, [20, 10], "an empty one shows the canvas");
+        image[(4, 3)] = Color32::RED;
+        image[(7, 9)] = Color32::RED;
+        assert_eq!(covered(&image), CoveredArea { low: [3, 2], size: [6, 8] });
     }
 }

@@ -1,11 +1,13 @@
 //! The window's own widgets: each has a name that a screen reader and a test can find, and
-//! distinguishes dragging from its end. Floor 7.
+//! distinguishes dragging from its end. `value_bar` draws numbers. Floor 7.
 
-use super::theme::{color32, outline};
+mod value_bar;
+
+use super::icons::Icon;
+use super::theme::{self, color32, outline};
 use crate::math::srgb::Color;
 use eframe::egui::{
-    self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider,
-    SliderClamping, TextEdit, Ui,
+    self, DragValue, ProgressBar, Response, RichText, ScrollArea, TextEdit, Ui,
     text::{CCursor, CCursorRange},
     vec2,
 };
@@ -60,11 +62,13 @@ pub struct NumberField<'a> {
     pub suffix: &'a str,
     pub decimals: usize,
     pub logarithmic: bool,
+    /// What the shown number is to the value: 100 for a percentage of 1.
+    pub factor: f32,
 }
 
 impl<'a> NumberField<'a> {
     pub fn new(label: &'a str, range: RangeInclusive<f32>, hint: &'a str) -> Self {
-        Self { label, hint, range, suffix: "", decimals: 2, logarithmic: false }
+        Self { label, hint, range, suffix: "", decimals: 2, logarithmic: false, factor: 1.0 }
     }
 
     pub fn px(self) -> Self {
@@ -92,50 +96,31 @@ impl<'a> NumberField<'a> {
         Self { logarithmic: true, ..self }
     }
 
-    fn slider<'v>(&self, value: &'v mut f32) -> Slider<'v>
-    where
-        'a: 'v,
-    {
-        Slider::new(value, self.range.clone())
-            .suffix(self.suffix)
-            .fixed_decimals(self.decimals)
-            .logarithmic(self.logarithmic)
-            // A value is not rounded to the digits shown: that would be an edit of its own.
-            .clamping(SliderClamping::Edits)
-            .trailing_fill(true)
+    /// Shown as a percentage of 1.
+    pub fn share(self) -> Self {
+        Self { suffix: " %", decimals: 0, factor: 100.0, ..self }
     }
 
-    /// A slider in a row of its own, the name to its left.
+    /// A value as it is shown.
+    pub fn written(&self, value: f32) -> String {
+        // A zero has no sign.
+        let shown = value * self.factor + 0.0;
+        format!("{shown:.*}{}", self.decimals, self.suffix)
+    }
+
+    /// A bar in a row of its own.
     pub fn row(self, ui: &mut Ui, value: f32) -> Option<ValueChange<f32>> {
-        let mut to = value;
-        let response = ui.horizontal(|ui| {
-            let label = name(ui, self.label);
-            let width = (ui.available_width() - 64.0).max(40.0);
-            ui.spacing_mut().slider_width = width;
-            ui.add(self.slider(&mut to)).labelled_by(label.id)
-        });
-        change(&response.inner.on_hover_text(self.hint), to)
+        let width_pt = ui.available_width().max(60.0);
+        value_bar::show(ui, &self, value, width_pt)
     }
 
-    /// A slider in a bar among others, its name before it.
+    /// A bar among others, with its name and so much room for the drag.
     pub fn inline(self, ui: &mut Ui, value: f32, width_pt: f32) -> Option<ValueChange<f32>> {
-        /// The width of the number after the slider: four digits and a unit.
+        /// The width of the number: four digits and a unit, and the insets of both texts.
         const NUMBER_PT: f32 = 56.0;
-        let mut to = value;
         let font = egui::TextStyle::Body.resolve(ui.style());
-        let name_pt =
-            ui.painter().layout_no_wrap(self.label.into(), font, egui::Color32::WHITE).size().x;
-        let room = vec2(
-            name_pt + width_pt + NUMBER_PT + 2.0 * ui.spacing().item_spacing.x,
-            ui.spacing().interact_size.y,
-        );
-        // In a wrapping bar, label and slider stay together.
-        let inner = ui.allocate_ui_with_layout(room, Layout::left_to_right(Align::Center), |ui| {
-            let label = ui.label(self.label);
-            ui.spacing_mut().slider_width = width_pt;
-            ui.add(self.slider(&mut to)).labelled_by(label.id)
-        });
-        change(&inner.inner.on_hover_text(self.hint), to)
+        let name = ui.painter().layout_no_wrap(self.label.into(), font, egui::Color32::WHITE);
+        value_bar::show(ui, &self, value, name.size().x + NUMBER_PT + 0.3 * width_pt)
     }
 
     /// A number alone, to be dragged or typed.
@@ -249,8 +234,59 @@ pub fn list(ui: &Ui, most_pt: f32) -> ScrollArea {
 
 /// The title of a part of a panel.
 pub fn title(ui: &mut Ui, text: &str) {
-    ui.add_space(2.0);
+    ui.add_space(8.0);
     ui.label(RichText::new(text).strong());
+}
+
+/// The height of a tab, points.
+const TAB_PT: f32 = 24.0;
+/// Around the content of a tab, and between its icon and its name, points.
+const TAB_INSET_PT: f32 = 8.0;
+const TAB_GAP_PT: f32 = 5.0;
+
+/// The width of a tab that shows its name, points.
+pub fn tab_width_pt(ui: &Ui, has_icon: bool, label: &str) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let name = ui.painter().layout_no_wrap(label.into(), font, egui::Color32::WHITE);
+    let icon_pt = if has_icon { Icon::Dots.grid() + TAB_GAP_PT } else { 0.0 };
+    2.0 * TAB_INSET_PT + icon_pt + name.size().x
+}
+
+/// One of several names of which one is in front, with a line beneath it. Without room for the name
+/// only the icon is shown.
+pub fn tab(ui: &mut Ui, icon: Option<Icon>, label: &str, shows_name: bool, on: bool) -> Response {
+    let icon_pt = Icon::Dots.grid();
+    let width = match shows_name {
+        true => tab_width_pt(ui, icon.is_some(), label),
+        false => icon_pt + 2.0 * TAB_INSET_PT - 2.0,
+    };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, TAB_PT), egui::Sense::click());
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::Button, true, on, label)
+    });
+    let visuals = ui.visuals();
+    let color = match on || response.hovered() || response.has_focus() {
+        true => visuals.strong_text_color(),
+        false => visuals.weak_text_color(),
+    };
+    let painter = ui.painter();
+    let mut left = rect.left() + TAB_INSET_PT - if shows_name { 0.0 } else { 1.0 };
+    if let Some(icon) = icon {
+        let middle = egui::pos2(left + 0.5 * icon_pt, rect.center().y);
+        let at = egui::Rect::from_center_size(middle, egui::Vec2::splat(icon_pt - 1.0));
+        icon.draw(painter, at, color);
+        left += icon_pt + TAB_GAP_PT;
+    }
+    if shows_name {
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let at = egui::pos2(left, rect.center().y);
+        painter.text(at, egui::Align2::LEFT_CENTER, label, font, color);
+    }
+    if on || response.has_focus() {
+        let line = egui::Stroke::new(2.0, theme::accent(ui.visuals()));
+        painter.hline(rect.shrink2(vec2(4.0, 0.0)).x_range(), rect.bottom() - 1.0, line);
+    }
+    response
 }
 
 /// How far a job has come.
@@ -266,6 +302,22 @@ pub fn bar(ui: &mut Ui, share: Option<f32>, width_pt: f32) {
 /// A field of color that can be clicked.
 pub fn swatch(ui: &mut Ui, label: &str, color: Color, size: egui::Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    draw_swatch(ui, label, color, rect, response)
+}
+
+/// The same at a place.
+pub fn swatch_at(ui: &Ui, label: &str, color: Color, rect: egui::Rect) -> Response {
+    let response = ui.interact(rect, ui.scope_id().with(label), egui::Sense::click());
+    draw_swatch(ui, label, color, rect, response)
+}
+
+fn draw_swatch(
+    ui: &Ui,
+    label: &str,
+    color: Color,
+    rect: egui::Rect,
+    response: Response,
+) -> Response {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label));
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, color32(Color { a: 255, ..color }));

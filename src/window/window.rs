@@ -17,12 +17,14 @@ use super::clipboard::{self, Clipboard, ClipboardSource};
 use super::dialogs::import::MapsRead;
 use super::dialogs::{Dialog, DialogAnswer, export, maps, unwrapped};
 use super::jobs::{JobKind, JobResult, JobWindow, Jobs};
+use super::messages::Messages;
 use super::panel_layout::PanelKind;
 use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
-use super::sample;
+use super::sample::SAMPLES;
 use super::settings::{Settings, SettingsFile};
+use super::start_pictures::StartPictures;
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
 use crate::Error;
@@ -46,11 +48,12 @@ pub struct MainWindow {
     canvas: Canvas,
     thumbnails: Thumbnails,
     swatches: Swatches,
+    start: StartPictures,
     pub(super) jobs: Jobs<MainWindow>,
     /// The last one is shown.
     pub(super) dialogs: Vec<Dialog>,
     /// Messages that stay until they are closed.
-    pub(super) messages: Vec<String>,
+    pub(super) messages: Messages,
     settings: Settings,
     keeper: SettingsFile,
     /// Whether it uses its own file dialogs instead of the system's.
@@ -104,14 +107,17 @@ impl MainWindow {
     pub fn remembering(ctx: &egui::Context, file: Option<PathBuf>) -> Self {
         let (settings, keeper, trouble) = SettingsFile::new(file);
         settings.look.show(ctx);
+        let mut messages = Messages::default();
+        messages.extend(trouble);
         Self {
             session: Session::default().with_aids(settings.aids),
             canvas: Canvas::new(ctx),
             thumbnails: Thumbnails::new(ctx),
             swatches: Swatches::default(),
+            start: StartPictures::default(),
             jobs: Jobs::new(ctx),
             dialogs: Vec::new(),
-            messages: trouble.into_iter().collect(),
+            messages,
             settings,
             keeper,
             asks_itself: false,
@@ -173,17 +179,15 @@ impl MainWindow {
     /// Opens what the program was started with.
     pub fn begin(&mut self, files: Vec<PathBuf>) {
         self.is_first_start = files.is_empty();
-        if files.is_empty() {
-            self.open_sample();
-        }
         if !files.is_empty() {
             self.open_files(files, None);
         }
     }
 
-    fn open_sample(&mut self) {
+    fn open_sample(&mut self, index: usize) {
+        let Some(sample) = SAMPLES.get(index) else { return };
         self.jobs.start("Opening the sample".into(), JobKind::Working, |_| {
-            JobResult::of(sample::open(), |window: &mut Self, opened| {
+            JobResult::of(sample.open(), |window: &mut Self, opened| {
                 window.add_opened(None, opened)
             })
             .in_front()
@@ -193,6 +197,7 @@ impl MainWindow {
     /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
         let mut requests = UiRequests::default();
+        self.tell_front();
         self.apply_first_scale(ui.ctx());
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
@@ -221,13 +226,22 @@ impl MainWindow {
             &mut self.thumbnails.trouble,
             &mut self.thumbnails.moods.trouble,
             &mut self.swatches.trouble,
+            &mut self.start.trouble,
         ];
         self.messages
             .extend(troubles.into_iter().filter_map(Option::take).map(|error| with_advice(&error)));
     }
 
+    /// Messages belong to the document in front.
+    fn tell_front(&mut self) {
+        let open = &self.session.open_documents;
+        let is_open = |key| open.iter().any(|open| open.key == key);
+        self.messages.front_is(self.session.active().map(|open| open.key), is_open);
+    }
+
     /// Shows what the session has to say, once: a stroke tried again says nothing new.
     fn tell_notes(&mut self) {
+        self.tell_front();
         for note in std::mem::take(&mut self.session.notes) {
             if !self.messages.contains(&note) {
                 self.messages.push(note);

@@ -223,13 +223,18 @@ fn maps_that_are_dropped_together_are_one_objects() {
 }
 
 #[test]
-fn the_first_start_opens_a_sample_with_three_steps_that_can_be_put_away() {
+fn the_first_start_offers_a_sample_with_three_steps_that_can_be_put_away() {
     let mut harness = window_of(1.0, |ctx| {
         let mut window = MainWindow::new(ctx);
         window.begin(Vec::new());
         window
     });
+    for card in ["New picture", "Open a drawing", "Open normal maps", "Chrome"] {
+        assert!(harness.query_by_label(card).is_some(), "{card}");
+    }
+    press(&mut harness, "Ball and ring");
     until(&mut harness, |harness| harness.query_by_label("Three steps").is_some());
+    assert!(harness.query_by_label("New picture").is_none());
     assert_eq!(layers(&harness), ["Background", "Base"]);
     press(&mut harness, "Not now");
     assert!(harness.query_by_label("Three steps").is_none());

@@ -9,18 +9,18 @@ fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
     let mut harness = window();
     press(&mut harness, "Properties");
     for (name, shows) in [
-        ("New Phong layer", "Add light at a point"),
+        ("New soft plastic layer", "Add light at a point"),
         ("New painter's light layer", "Turning edge"),
         ("New painter's light layer", "Mood: Sunset"),
         ("New toon layer", "Tones"),
-        ("New sub-Lambertian layer", "Flatness"),
-        ("New Ashikhmin layer", "Choose environment"),
-        ("New lit-sphere layer", "Choose lit sphere for hollows"),
+        ("New velvet layer", "Flatness"),
+        ("New brushed metal layer", "Choose environment"),
+        ("New painted ball layer", "Choose painted ball for hollows"),
         ("New mirror layer", "Choose environment"),
         ("New mirror layer", "Bounces"),
         ("New glass layer", "Index"),
-        ("New layer lit by an environment", "Reach"),
-        ("New ambient occlusion layer", "Reach"),
+        ("New layer lit by an environment", "Distance"),
+        ("New ambient occlusion layer", "Distance"),
     ] {
         command(&mut harness, name);
         assert!(

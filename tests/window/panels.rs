@@ -17,7 +17,7 @@ fn every_panel_shows_every_kind_of_layer() {
         "Fill layer",
         "Gradient layer",
         "Shading layer",
-        "Radiance scaling",
+        "Bring out form",
         "Group",
     ] {
         click(&mut harness, "+ Add");
@@ -34,9 +34,14 @@ fn every_panel_shows_every_kind_of_layer() {
 fn every_panel_stands_in_a_window_of_its_own_and_goes_back() {
     let mut harness = window();
     for panel in PANELS {
-        harness.get_by_label(panel).click_secondary();
-        steps(&mut harness);
-        press(&mut harness, "In a window of its own");
+        if panel == "Color" {
+            press(&mut harness, "Color");
+            press(&mut harness, "In a window of its own, or back");
+        } else {
+            harness.get_by_label(panel).click_secondary();
+            steps(&mut harness);
+            press(&mut harness, "In a window of its own");
+        }
         let beside = harness.get_by_label("Canvas").rect().right();
         let stands = |harness: &Story, is: fn(f32, f32) -> bool| {
             harness.get_all_by_label(panel).any(|node| is(node.rect().left(), beside))
@@ -90,6 +95,8 @@ fn a_click_in_the_history_goes_there_and_one_in_the_navigator_looks_there() {
 #[test]
 fn colors_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
     let mut harness = window();
+    press(&mut harness, "Color");
+    press(&mut harness, "Numbers and palette");
     press(&mut harness, "Hex color");
     key(&mut harness, Modifiers::COMMAND, Key::A);
     harness.get_by_label("Hex color").type_text("#3366cc");
@@ -105,21 +112,74 @@ fn colors_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
 }
 
 #[test]
+fn a_small_window_has_room_for_the_options_the_tools_and_six_layers() {
+    let mut harness = window();
+    (0..6).for_each(|_| command(&mut harness, "New fill layer"));
+    for bend in ["Flat", "Wrap", "Gloss"] {
+        harness.set_size(vec2(1024.0, 700.0));
+        press(&mut harness, "Brush");
+        press(&mut harness, bend);
+        let ends = harness.get_by_label("More options").rect().right();
+        assert!(ends < 1018.0, "{bend}: {ends}");
+    }
+    let tools = ["Brush", "Zoom"].map(|tool| harness.get_by_label(tool).rect());
+    assert_eq!(tools[0].center().x, tools[1].center().x, "one column");
+    let beneath = harness.get_by_label("+ Add").rect().top();
+    let rows = harness.get_all_by_label_contains("Layer Fill");
+    let seen = rows.filter(|row| row.rect().bottom() <= beneath).count();
+    assert!(seen >= 6, "{seen} layers");
+    for always in ["Current color", "Brush Gouache", "Other color"] {
+        assert!(harness.query_by_label(always).is_some(), "{always}");
+    }
+}
+
+#[test]
 fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
     let mut harness = window();
-    press(&mut harness, "Brush");
+    press(&mut harness, "Transform");
     harness.set_size(vec2(1024.0, 700.0));
     steps(&mut harness);
-    let ends = |harness: &Story| harness.get_by_label("Pressure from speed").rect().right();
+    let ends = |harness: &Story| harness.get_by_label("Mirror and turn").rect().right();
     assert!(ends(&harness) > 1016.0, "{}", ends(&harness));
-    harness.hover_at(pos2(600.0, 68.0));
+    harness.hover_at(pos2(600.0, 42.0));
     steps(&mut harness);
-    let (unit, delta) = (MouseWheelUnit::Point, vec2(0.0, -400.0));
+    let (unit, delta) = (MouseWheelUnit::Point, vec2(0.0, -900.0));
     let (phase, source) = (TouchPhase::Move, MouseWheelSource::Wheel);
     let wheel = Event::MouseWheel { unit, delta, phase, source, modifiers: Modifiers::NONE };
     harness.input_mut().events.push(wheel);
     // The wheel is followed smoothly.
     until(&mut harness, |harness| ends(harness) < 1020.0);
+}
+
+#[test]
+fn the_status_bar_says_what_is_measured_if_that_is_asked_for() {
+    let mut harness = window();
+    let has_memory =
+        |harness: &Story| harness.query_by_label("Memory of this document").is_some();
+    assert!(!has_memory(&harness));
+    command(&mut harness, "Details in the status bar");
+    assert!(has_memory(&harness));
+}
+
+#[test]
+fn a_number_is_set_by_a_drag_along_its_bar_or_typed_after_a_double_click() {
+    let mut harness = window();
+    let size = |harness: &Story| session(harness).tools.brush.size;
+    let bar = harness.get_by_label("Size").rect();
+    harness.drag_at(bar.left_center() + vec2(2.0, 0.0));
+    steps(&mut harness);
+    let small = size(&harness);
+    harness.hover_at(bar.center());
+    steps(&mut harness);
+    harness.drop_at(bar.center());
+    steps(&mut harness);
+    assert!(small < 3.0 && size(&harness) > 10.0, "{small} {}", size(&harness));
+    harness.get_by_label("Size").click_secondary();
+    steps(&mut harness);
+    harness.event(Event::Text("77".into()));
+    steps(&mut harness);
+    key(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(size(&harness), 77.0);
 }
 
 #[test]

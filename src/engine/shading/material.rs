@@ -33,22 +33,37 @@ crate::named! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
     pub enum Model {
         #[default]
-        Phong = "phong",
+        Phong = "phong" => ("Soft plastic", "Matt and glossy under lights (Phong)"),
         /// Phong in flat tones.
-        Toon = "toon",
+        Toon = "toon" => ("Toon", "The same in flat bands of light"),
         /// (n·ℓ)^ζ: flatter than matt, like the moon.
-        SubLambertian = "sub-lambertian",
+        SubLambertian = "sub-lambertian" => ("Velvet", "Flatter than matt, like the moon (sub-Lambertian)"),
         /// Anisotropic Phong of Ashikhmin and Shirley (2000), under lights or an environment.
-        Ashikhmin = "ashikhmin",
+        Ashikhmin = "ashikhmin" => (
+            "Brushed metal",
+            "A highlight that is longer in one direction (Ashikhmin)",
+        ),
         /// Matt under an environment, with ambient occlusion.
-        DiffuseEnvironment = "diffuse-environment",
-        AmbientOcclusion = "ambient-occlusion",
+        DiffuseEnvironment = "diffuse-environment" => (
+            "Lit by an environment",
+            "Matt, lit from all around",
+        ),
+        AmbientOcclusion = "ambient-occlusion" => (
+            "Ambient occlusion",
+            "Darker where little of the sky is visible",
+        ),
         /// A painted sphere, or a convex and a concave one.
-        LitSphere = "lit-sphere",
-        Mirror = "mirror",
-        Refraction = "refraction",
+        LitSphere = "lit-sphere" => (
+            "Painted ball",
+            "A painted ball gives the color of every direction (lit sphere, matcap)",
+        ),
+        Mirror = "mirror" => ("Mirror", "An environment mirrored in the surface"),
+        Refraction = "refraction" => ("Glass", "An environment seen through the surface"),
         /// As a painter would light it: key, fill, bounce, turning edge, rim, shine.
-        Painter = "painter",
+        Painter = "painter" => (
+            "Painter's light",
+            "Key, fill, bounce, rim and cast shadows on the picture beneath",
+        ),
     }
 }
 

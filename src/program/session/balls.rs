@@ -261,7 +261,7 @@ mod tests {
         };
         let layer = || LayerPath::read(&json!("0")).unwrap();
         let bare = LayerAction::PaintBall { layer: layer(), hollows: false };
-        assert!(says(&mut session, bare).contains("lit sphere"), "the ball's own layer is paint");
+        assert!(says(&mut session, bare).contains("painted ball"), "the ball's own layer is paint");
         session.current = 0;
         let (name, hollows) = ("billiard".to_owned(), false);
         let unknown = LayerAction::PaintedBall { layer: layer(), name, hollows };

@@ -11,8 +11,8 @@ rilievo_engine::named! {
         Mask = "mask" => "Mask of the layer",
         Environment = "environment" => "Environment",
         /// The lit sphere; for convex features if there is a concave one.
-        Sphere = "sphere" => "Lit sphere",
-        ConcaveSphere = "concave sphere" => "Lit sphere for hollows",
+        Sphere = "sphere" => "Painted ball",
+        ConcaveSphere = "concave sphere" => "Painted ball for hollows",
         /// The normals of a normal layer.
         Detail = "detail" => "Detail normals",
     }
@@ -27,7 +27,7 @@ impl PicturePart {
             PicturePart::Image => "Replace picture",
             PicturePart::Mask => "Layer mask",
             PicturePart::Environment => "Environment",
-            PicturePart::Sphere | PicturePart::ConcaveSphere => "Lit sphere",
+            PicturePart::Sphere | PicturePart::ConcaveSphere => "Painted ball",
             PicturePart::Detail => "Detail normals",
         }
     }

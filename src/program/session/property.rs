@@ -170,8 +170,8 @@ impl Property {
             Property::Features { .. } => "Features",
             Property::Scaled { .. }
             | Property::ScalingReference { .. }
-            | Property::KeepMean { .. } => "Radiance scaling",
-            Property::ScalingLight { .. } => "Radiance scaling",
+            | Property::KeepMean { .. } => "Bring out form",
+            Property::ScalingLight { .. } => "Bring out form",
             Property::Strength { .. } => "Strength",
             Property::Adjustment { to } => to.label(),
         }

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::row::{
-    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row,
+    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, submenu,
 };
 use crate::requests::WindowRequest;
 use crate::session::Action;
@@ -78,6 +78,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |_, requests| requests.act(Action::Hand(HandAction::Tool { tool: ToolKind::Transform })),
     ),
+    submenu("Transform layer", super::transform::COMMANDS),
     row(
         "Clear layer",
         &[key(Key::Delete)],

@@ -10,7 +10,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[],
         "A ball with everything on it, to try things out",
         always,
-        |_, requests| requests.request(WindowRequest::OpenSample),
+        |_, requests| requests.request(WindowRequest::OpenSample(0)),
     ),
     row("Keyboard shortcuts…", &[], "Every command and its keys", always, |_, requests| {
         requests.request(WindowRequest::Shortcuts)

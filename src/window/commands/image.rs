@@ -1,7 +1,7 @@
 //! The Image menu: the canvas of the document, with everything on it.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl_alt, has_document, row};
+use super::row::{LINE, MenuCommand, always, ctrl_alt, has_document, row, submenu};
 use crate::document::canvas_change::CanvasMirror;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
@@ -37,6 +37,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| requests.request(WindowRequest::ImageSizeDialog),
     ),
+    submenu("Adjust", super::adjustments::PAINT),
     LINE,
     row(
         "Turn canvas left",

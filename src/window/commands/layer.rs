@@ -3,7 +3,7 @@
 
 use super::row::{
     LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, has_surface, key, row,
-    shift,
+    shift, submenu,
 };
 use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
 use crate::file_purpose::FilePurpose;
@@ -124,7 +124,124 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| add(requests, NewLayer::Strokes),
     ),
+    row("New group", &[], "Layers flattened together", has_document, |_, requests| add(requests, NewLayer::Group)),
+    submenu("New live layer", LIVE),
+    submenu("New shading layer", super::shading::COMMANDS),
+    submenu("New adjustment layer", super::adjustments::LAYERS),
+    LINE,
+    row(
+        "Give it a shape…",
+        &[],
+        "Makes a lit shape from the drawing, in one part or a part for each color, to paint on",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ShapeDialog),
+    ),
+    submenu("New part", super::parts::COMMANDS),
+    submenu("From the drawing", DRAWING),
+    LINE,
+    row(
+        "Layer via copy",
+        &[ctrl(Key::J)],
+        "Copies the selected pixels of this layer to a new one; without a selection, all of it",
+        has_layer,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: false })),
+    ),
+    row(
+        "Layer via cut",
+        &[ctrl_shift(Key::J)],
+        "Moves the selected pixels of this layer to a new one",
+        has_layer,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
+    ),
+    row("Duplicate layer", &[], "Copies the selected layers, above them", has_document, |session, requests| {
+        with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
+    }),
+    row(
+        "Delete layer",
+        &[shift(Key::Delete)],
+        "Deletes the selected layers and what is in them",
+        has_document,
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Delete { layer }),
+    ),
+    row(
+        "Group layer",
+        &[ctrl(Key::G)],
+        "Puts the selected layers into a new group",
+        has_document,
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Group { layer }),
+    ),
+    row(
+        "Ungroup",
+        &[ctrl_shift(Key::G)],
+        "Takes the layers out of the selected groups",
+        has_document,
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Ungroup { layer }),
+    ),
+    submenu("Arrange and select", ORDER),
+    LINE,
+    row(
+        "Merge down",
+        &[ctrl(Key::E), ctrl_shift(Key::M)],
+        "Makes one paint layer of this layer and the one below it, or of all selected ones",
+        has_document,
+        |session, requests| with_selected(session, requests, |layer| LayerAction::MergeDown { layer }),
+    ),
+    row(
+        "Turn layer into pixels",
+        &[ctrl_shift(Key::B)],
+        "Turns a live layer into paint: it keeps its look and no longer follows the surface",
+        is_live,
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Bake { layer }),
+    ),
+    row(
+        "Flatten picture",
+        &[ctrl_shift(Key::E)],
+        "Makes one paint layer of everything visible",
+        has_layer,
+        |_, requests| requests.act(Action::Layer(LayerAction::Flatten {})),
+    ),
+    LINE,
+    submenu("Mask", MASK),
+    row(
+        "Clip to layer below",
+        &[ctrl_alt(Key::G)],
+        "Paint only where the layer beneath has paint",
+        has_layer,
+        |session, requests| set(session, requests, Property::ClipBelow { on: !is_clipped(session) }),
+    )
+    .ticked(|session, _| is_clipped(session)),
+    row(
+        "Lock alpha",
+        &[key(Key::Slash)],
+        "Paint only where the layer has paint already",
+        has_layer,
+        |session, requests| toggle_lock(session, requests, LayerLock::Alpha),
+    )
+    .ticked(|session, _| is_locked(session, LayerLock::Alpha)),
+    row("Lock layer", &[], "No tool can change it", has_layer, |session, requests| {
+        toggle_lock(session, requests, LayerLock::All)
+    })
+    .ticked(|session, _| is_locked(session, LayerLock::All)),
+    row("Show or hide layer", &[], "Same as the eye of the selected layer", has_layer, |session, requests| {
+        set(session, requests, Property::Visible { on: !is_shown(session) });
+    })
+    .ticked(|session, _| is_shown(session)),
+    row("Show layer alone", &[], "Hides all other layers, or shows them again", has_layer, |session, requests| {
+        with_primary(session, requests, |layer| LayerAction::Solo { layer })
+    })
+    .ticked(|session, _| is_alone(session)),
+];
+
+/// Layers that stay as they were set, and can be set again.
+const LIVE: &[MenuCommand] = &[
     row("New fill layer", &[], "A layer of one color", has_document, |_, requests| add(requests, NewLayer::Fill)),
+    row(
+        "New gradient layer",
+        &[],
+        "A gradient from the first to the second color, bent like new marks",
+        has_document,
+        |_, requests| add(requests, NewLayer::Gradient),
+    ),
     row(
         "New form lines",
         &[],
@@ -140,15 +257,12 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| add(requests, NewLayer::Hatching),
     ),
     row(
-        "New gradient layer",
+        "Bring out form",
         &[],
-        "A gradient from the first to the second color, bent by the current operator",
+        "A layer that enhances the relief of everything beneath it (radiance scaling)",
         has_document,
-        |_, requests| add(requests, NewLayer::Gradient),
+        |_, requests| add(requests, NewLayer::RadianceScaling),
     ),
-    row("New radiance scaling", &[], "Enhances the relief of everything beneath it", has_document, |_, requests| {
-        add(requests, NewLayer::RadianceScaling)
-    }),
     row(
         "New detail normals",
         &[],
@@ -156,15 +270,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| add(requests, NewLayer::Normals),
     ),
-    row("New group", &[], "Layers flattened together", has_document, |_, requests| add(requests, NewLayer::Group)),
-    LINE,
-    row(
-        "Give it a shape…",
-        &[],
-        "Makes a lit shape from the drawing, in one part or a part for each color, to paint on",
-        has_document,
-        |_, requests| requests.request(WindowRequest::ShapeDialog),
-    ),
+];
+
+const DRAWING: &[MenuCommand] = &[
     row(
         "Split part by place",
         &[],
@@ -217,45 +325,9 @@ pub const COMMANDS: &[MenuCommand] = &[
             requests.actions.extend(cut);
         },
     ),
-    LINE,
-    row(
-        "Layer via copy",
-        &[ctrl(Key::J)],
-        "Copies the selected pixels of this layer to a new one; without a selection, all of it",
-        has_layer,
-        |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: false })),
-    ),
-    row(
-        "Layer via cut",
-        &[ctrl_shift(Key::J)],
-        "Moves the selected pixels of this layer to a new one",
-        has_layer,
-        |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
-    ),
-    row("Duplicate layer", &[], "Copies the selected layers, above them", has_document, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
-    }),
-    row(
-        "Delete layer",
-        &[shift(Key::Delete)],
-        "Deletes the selected layers and what is in them",
-        has_document,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Delete { layer }),
-    ),
-    row(
-        "Group layer",
-        &[ctrl(Key::G)],
-        "Puts the selected layers into a new group",
-        has_document,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Group { layer }),
-    ),
-    row(
-        "Ungroup",
-        &[ctrl_shift(Key::G)],
-        "Takes the layers out of the selected groups",
-        has_document,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Ungroup { layer }),
-    ),
+];
+
+const ORDER: &[MenuCommand] = &[
     row(
         "Move layer up",
         &[ctrl(Key::PageUp)],
@@ -270,6 +342,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |session, requests| with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
     ),
+    LINE,
     row(
         "Layer above",
         &[key(Key::PageUp)],
@@ -298,29 +371,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |session, requests| step(session, requests, -1, true),
     ),
-    LINE,
-    row(
-        "Merge down",
-        &[ctrl(Key::E), ctrl_shift(Key::M)],
-        "Makes one paint layer of this layer and the one below it, or of all selected ones",
-        has_document,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::MergeDown { layer }),
-    ),
-    row(
-        "Turn layer into pixels",
-        &[ctrl_shift(Key::B)],
-        "Turns a live layer into paint: it keeps its look and no longer follows the surface",
-        is_live,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Bake { layer }),
-    ),
-    row(
-        "Flatten picture",
-        &[ctrl_shift(Key::E)],
-        "Makes one paint layer of everything visible",
-        has_layer,
-        |_, requests| requests.act(Action::Layer(LayerAction::Flatten {})),
-    ),
-    LINE,
+];
+
+const MASK: &[MenuCommand] = &[
     row(
         "Paint on mask",
         &[],
@@ -352,33 +405,4 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("Delete mask", &[], "Removes the mask: the whole layer is visible again", has_mask, |session, requests| {
         set(session, requests, Property::Mask { mask: None })
     }),
-    LINE,
-    row("Show or hide layer", &[], "Same as the eye of the selected layer", has_layer, |session, requests| {
-        set(session, requests, Property::Visible { on: !is_shown(session) });
-    })
-    .ticked(|session, _| is_shown(session)),
-    row("Show layer alone", &[], "Hides all other layers, or shows them again", has_layer, |session, requests| {
-        with_primary(session, requests, |layer| LayerAction::Solo { layer })
-    })
-    .ticked(|session, _| is_alone(session)),
-    row(
-        "Clip to layer below",
-        &[ctrl_alt(Key::G)],
-        "Paint only where the layer beneath has paint",
-        has_layer,
-        |session, requests| set(session, requests, Property::ClipBelow { on: !is_clipped(session) }),
-    )
-    .ticked(|session, _| is_clipped(session)),
-    row(
-        "Lock alpha",
-        &[key(Key::Slash)],
-        "Paint only where the layer has paint already",
-        has_layer,
-        |session, requests| toggle_lock(session, requests, LayerLock::Alpha),
-    )
-    .ticked(|session, _| is_locked(session, LayerLock::Alpha)),
-    row("Lock layer", &[], "No tool can change it", has_layer, |session, requests| {
-        toggle_lock(session, requests, LayerLock::All)
-    })
-    .ticked(|session, _| is_locked(session, LayerLock::All)),
 ];

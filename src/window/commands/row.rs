@@ -18,6 +18,8 @@ pub struct MenuCommand {
     pub run: fn(&Session, &mut UiRequests),
     /// For a toggle: whether it is on.
     pub is_on: Option<fn(&Session, &PanelLayout) -> bool>,
+    /// The commands of a menu within the menu; empty for a command. Those have none within.
+    pub within: &'static [MenuCommand],
 }
 
 /// A command: name, keys, hint, when it is available, what it does.
@@ -28,7 +30,12 @@ pub const fn row(
     can: fn(&Session) -> bool,
     run: fn(&Session, &mut UiRequests),
 ) -> MenuCommand {
-    MenuCommand { name, keys, hint, can, run, is_on: None }
+    MenuCommand { name, keys, hint, can, run, is_on: None, within: &[] }
+}
+
+/// A menu within a menu.
+pub const fn submenu(name: &'static str, within: &'static [MenuCommand]) -> MenuCommand {
+    MenuCommand { within, ..row(name, &[], "", always, |_, _| {}) }
 }
 
 impl MenuCommand {
@@ -49,6 +56,15 @@ impl MenuCommand {
 
     pub const fn is_line(&self) -> bool {
         self.name.is_empty()
+    }
+
+    pub const fn is_menu(&self) -> bool {
+        !self.within.is_empty()
+    }
+
+    /// Itself, or the commands within it.
+    pub fn commands(&'static self) -> &'static [MenuCommand] {
+        if self.is_menu() { self.within } else { std::slice::from_ref(self) }
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::row::{
     LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, key, row,
+    submenu,
 };
 use crate::math::Vec2;
 use crate::panel_layout::PanelKind;
@@ -94,6 +95,75 @@ pub const COMMANDS: &[MenuCommand] = &[
     )
     .ticked(|session, _| session.active().is_some_and(|open| open.view.is_some_and(|view| view.mirrored))),
     LINE,
+    submenu("Show the surface", SURFACE),
+    row(
+        "Unwrapped",
+        &[alt(Key::Num9)],
+        "Shows the surface laid flat, to paint on: a straight line here bends around the form",
+        has_surface,
+        |session, requests| match is_unwrapped(session) {
+            true => view(requests, ViewAction::Unwrapped { on: false }),
+            false => requests.request(WindowRequest::Unwrap),
+        },
+    )
+    .ticked(|session, _| is_unwrapped(session)),
+    submenu("Guides and grid", super::guides::COMMANDS),
+    LINE,
+    submenu("Panels", PANELS),
+    row(
+        "Hide panels",
+        &[key(Key::Tab)],
+        "Shows only the canvas (in full screen without the menus), or everything again",
+        always,
+        |_, requests| requests.request(WindowRequest::TogglePanels),
+    )
+    .ticked(|_, layout| layout.is_hidden),
+    row("Full screen", &[key(Key::F11)], "Or back", always, |_, requests| requests.request(WindowRequest::FullScreen)),
+    row(
+        "Larger interface",
+        &[ctrl_alt(Key::Plus), ctrl_alt(Key::Equals)],
+        "Menus, panels and text, not the picture",
+        always,
+        |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: true }),
+    ),
+    row(
+        "Smaller interface",
+        &[ctrl_alt(Key::Minus)],
+        "Menus, panels and text, not the picture",
+        always,
+        |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: false }),
+    ),
+    row("Dark, gray or light", &[], "The next theme of the window; gray is for judging colors", always, |_, requests| {
+        requests.request(WindowRequest::NextLook)
+    }),
+    row(
+        "Details in the status bar",
+        &[],
+        "The surface under the pointer, the memory in use and the time of the last redraw, or not",
+        always,
+        |_, requests| requests.request(WindowRequest::ToggleDetails),
+    ),
+    LINE,
+    row(
+        "Command palette…",
+        &[ctrl_shift(Key::P), ctrl(Key::K)],
+        "Finds any command, tool, panel or setting, also by its name in other programs",
+        always,
+        |_, requests| requests.request(WindowRequest::Palette),
+    ),
+    row(
+        "Next document",
+        &[ctrl(Key::Tab), ctrl_shift(Key::CloseBracket)],
+        "The next tab",
+        has_document,
+        |session, requests| show_neighbor(session, requests, 1),
+    ),
+    row("Previous document", &[ctrl_shift(Key::Tab)], "The tab before this one", has_document, |session, requests| {
+        show_neighbor(session, requests, session.open_documents.len().saturating_sub(1))
+    }),
+];
+
+const SURFACE: &[MenuCommand] = &[
     row(
         "Show normals",
         &[alt(Key::Num1)],
@@ -153,26 +223,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_surface,
         |_, requests| requests.request(WindowRequest::Wobble),
     ),
-    row(
-        "Unwrapped",
-        &[alt(Key::Num9)],
-        "Shows the surface laid flat, to paint on: a straight line here bends around the form",
-        has_surface,
-        |session, requests| match is_unwrapped(session) {
-            true => view(requests, ViewAction::Unwrapped { on: false }),
-            false => requests.request(WindowRequest::Unwrap),
-        },
-    )
-    .ticked(|session, _| is_unwrapped(session)),
-    LINE,
-    row(
-        "Hide panels",
-        &[key(Key::Tab)],
-        "Shows only the canvas (in full screen without the menus), or everything again",
-        always,
-        |_, requests| requests.request(WindowRequest::TogglePanels),
-    )
-    .ticked(|_, layout| layout.is_hidden),
+];
+
+const PANELS: &[MenuCommand] = &[
     row("Panels on the other side", &[], "To the left of the canvas, or to the right", always, |_, requests| {
         requests.request(WindowRequest::OtherSide)
     }),
@@ -188,39 +241,4 @@ pub const COMMANDS: &[MenuCommand] = &[
         requests.request(WindowRequest::Float(PanelKind::Layers))
     })
     .ticked(|_, layout| layout.floating.contains(&PanelKind::Layers)),
-    row("Full screen", &[key(Key::F11)], "Or back", always, |_, requests| requests.request(WindowRequest::FullScreen)),
-    row(
-        "Larger interface",
-        &[ctrl_alt(Key::Plus), ctrl_alt(Key::Equals)],
-        "Menus, panels and text, not the picture",
-        always,
-        |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: true }),
-    ),
-    row(
-        "Smaller interface",
-        &[ctrl_alt(Key::Minus)],
-        "Menus, panels and text, not the picture",
-        always,
-        |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: false }),
-    ),
-    row("Dark, gray or light", &[], "The next theme of the window; gray is for judging colors", always, |_, requests| {
-        requests.request(WindowRequest::NextLook)
-    }),
-    row(
-        "Command palette…",
-        &[ctrl_shift(Key::P), ctrl(Key::K)],
-        "Finds any command, tool, panel or setting, also by its name in other programs",
-        always,
-        |_, requests| requests.request(WindowRequest::Palette),
-    ),
-    row(
-        "Next document",
-        &[ctrl(Key::Tab), ctrl_shift(Key::CloseBracket)],
-        "The next tab",
-        has_document,
-        |session, requests| show_neighbor(session, requests, 1),
-    ),
-    row("Previous document", &[ctrl_shift(Key::Tab)], "The tab before this one", has_document, |session, requests| {
-        show_neighbor(session, requests, session.open_documents.len().saturating_sub(1))
-    }),
 ];

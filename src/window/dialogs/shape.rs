@@ -131,7 +131,7 @@ impl ShapeDialog {
             }
             FigureBackground::Painted => Some(
                 "No layer has an outline: this one is opaque all over, and its background has many colors. Select the \
-                 figure (W or L), then Layer, New part, Inflate selection.",
+                 figure (W or L), then Layer, New part, Puff up selection.",
             ),
             _ => Some(
                 "There is no drawing yet. A shape is made from what a layer covers: paint a figure \

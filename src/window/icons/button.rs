@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::Icon;
-use eframe::egui::{self, Rect, Response, Sense, StrokeKind, Ui, Vec2, vec2};
+use eframe::egui::{self, Rect, Response, Sense, StrokeKind, Ui, Vec2};
 
 /// The side of an icon's button, screen points.
 pub const BUTTON_PT: f32 = 24.0;
@@ -10,6 +10,23 @@ pub const BUTTON_PT: f32 = 24.0;
 /// A button with an icon and, for screen readers, tests and the tooltip, a name.
 pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, on: bool) -> Response {
     sized_button(ui, icon, label, on, BUTTON_PT)
+}
+
+/// A button that is on most of the time, so that only its icon says so.
+pub fn quiet_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32) -> Response {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side_pt), Sense::click());
+    let enabled = ui.is_enabled();
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, on, label));
+    if ui.is_rect_visible(rect) {
+        let look = ui.style().interact(&response);
+        if response.hovered() || response.has_focus() {
+            ui.painter().rect_filled(rect.shrink(0.5), look.corner_radius, look.weak_bg_fill);
+        }
+        let color = if on { look.text_color() } else { ui.visuals().weak_text_color() };
+        let side = icon.grid().min(0.74 * side_pt);
+        icon.draw(ui.painter(), Rect::from_center_size(rect.center(), Vec2::splat(side)), color);
+    }
+    response
 }
 
 pub fn sized_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32) -> Response {
@@ -27,7 +44,7 @@ pub fn sized_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32
                 StrokeKind::Inside,
             );
         }
-        let inner = Rect::from_center_size(rect.center(), vec2(16.0, 16.0).min(rect.size() * 0.72));
+        let inner = Rect::from_center_size(rect.center(), Vec2::splat(icon.grid()).min(rect.size() * 0.74));
         icon.draw(ui.painter(), inner, look.text_color());
     }
     response

@@ -6,7 +6,8 @@ use crate::paint::BrushMode;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::widgets::{NumberField, check, choice};
+use crate::surface::Operator;
+use crate::widgets::{NumberField, check, choice, radio, sentence};
 use eframe::egui::Ui;
 
 /// The brush modes.
@@ -75,19 +76,28 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             );
         }
     }
-    let hint = "How far from the pen a bent mark may land, in diameters; 0 is anywhere. The cursor shows it";
-    let reach = NumberField::new("Reach", 0.0..=20.0, hint).decimals(1).inline(
-        ui,
-        session.tools.brush.reach,
-        60.0,
-    );
-    requests.actions.extend(reach.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
+    if session.tools.operator != Operator::None {
+        let hint = "How far from the pen a bent mark may land, in diameters; 0 is anywhere. The \
+                    outline under the pointer shows it";
+        let spread = NumberField::new("Spread", 0.0..=20.0, hint).decimals(1);
+        let spread = spread.inline(ui, session.tools.brush.reach, 60.0);
+        requests.actions.extend(spread.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
+    }
     if session.shown_document().is_some_and(|document| !document.parts.is_empty()) {
         let hint = "A stroke that begins on a part of the shape stays on it";
         let on = check(ui, "This part only", hint, !session.tools.crosses_parts);
         let across = on.map(|on| Action::Hand(HandAction::AcrossParts { on: !on }));
         requests.actions.extend(across);
     }
-    let bounded = choice(ui, "Brush limit", session.tools.brush.bounded, &BOUNDS);
-    requests.actions.extend(bounded.map(|bounded| Action::Hand(HandAction::Bounded { bounded })));
+}
+
+/// Where the brush may paint, one choice below the other.
+pub fn limits(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let mut bounded = session.tools.brush.bounded;
+    for (choice, label) in BOUNDS {
+        radio(ui, &mut bounded, choice, sentence(label));
+    }
+    if bounded != session.tools.brush.bounded {
+        requests.act(Action::Hand(HandAction::Bounded { bounded }));
+    }
 }

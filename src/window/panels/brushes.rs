@@ -1,8 +1,9 @@
 //! The brushes: presets in groups, each with a picture of its stroke on a ball, and the sliders of
 //! the current one. Floor 7.
 
-use super::{brush, colors};
+use super::brush;
 use crate::file_purpose::FilePurpose;
+use crate::icons::{BUTTON_PT, Icon, icon_button};
 use crate::io::recipe::{BrushPreset, PresetGroup};
 use crate::paint::{Brush, Property};
 use crate::requests::{UiRequests, WindowRequest};
@@ -17,21 +18,23 @@ use eframe::egui::{
 };
 
 pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
-    colors::strip(ui, session, requests);
     let id = edits_id();
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
-    ui.horizontal(|ui| {
+    let sought = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
         ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
         ui.selectable_value(&mut edits, true, "Current brush")
             .on_hover_text("Settings of the current brush");
+        if edits { String::new() } else { search(ui, requests) }
     });
+    let sought = sought.inner;
     ui.data_mut(|data| data.insert_temp(id, edits));
     if edits {
         numbers(ui, session, requests);
         brush::show(ui, session, requests);
         keep(ui, requests);
     } else {
-        presets(ui, session, swatches, requests);
+        presets(ui, session, swatches, &sought, requests);
     }
 }
 
@@ -45,16 +48,22 @@ pub fn edit(ctx: &egui::Context) {
     ctx.data_mut(|data| data.insert_temp(edits_id(), true));
 }
 
-fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
-    let search = search(ui, requests);
-    if !session.presets.iter().any(|preset| is_found(preset, &search)) {
+/// The presets that a search finds, group by group.
+fn presets(
+    ui: &mut Ui,
+    session: &Session,
+    swatches: &mut Swatches,
+    search: &str,
+    requests: &mut UiRequests,
+) {
+    if !session.presets.iter().any(|preset| is_found(preset, search)) {
         ui.weak(format!("No brush is called “{}”", search.trim()));
     }
     for (group, name) in PresetGroup::ALL {
         let presets = session
             .presets
             .iter()
-            .filter(|preset| preset.group == group && is_found(preset, &search));
+            .filter(|preset| preset.group == group && is_found(preset, search));
         let presets: Vec<&BrushPreset> = presets.collect();
         if presets.is_empty() {
             continue;
@@ -103,21 +112,20 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     ui.data_mut(|data| data.insert_temp(id, name));
 }
 
-/// The row above the list: returns the search text.
+/// The field that finds brushes, and the button that imports some; returns the text.
 fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     let id = Id::unique("brush search");
     let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
-    ui.horizontal(|ui| {
-        let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(ui.available_width() - 74.0);
-        set_accessible_name(&ui.add(field), "Search brushes");
-        let import = ui.button("Import…").on_hover_text(
-            "Brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), a preset (.json), or a picture as a tip",
-        );
-        set_accessible_name(&import, "Import a brush…");
-        if import.clicked() {
-            requests.request(WindowRequest::Choose(FilePurpose::Brush));
-        }
-    });
+    let room_pt = ui.available_width() - BUTTON_PT - 14.0;
+    let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(room_pt);
+    set_accessible_name(&ui.add(field), "Search brushes");
+    let import = icon_button(ui, Icon::Add, "Import a brush…", false).on_hover_text(
+        "Import brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), a preset (.json), or a picture as \
+         a tip",
+    );
+    if import.clicked() {
+        requests.request(WindowRequest::Choose(FilePurpose::Brush));
+    }
     ui.data_mut(|data| data.insert_temp(id, search.clone()));
     search
 }

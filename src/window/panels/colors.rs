@@ -1,64 +1,106 @@
-//! Color: a square of saturation and value next to a bar of hues, numbers, and the last ones used.
-//! Floor 7.
+//! Color: a square of saturation and value next to a bar of hues, or a wheel of hues around it; the
+//! last colors used, numbers and a palette. Floor 7. `wheel` draws the areas.
 
+mod wheel;
+
+use crate::icons::{Icon, icon_button};
 use crate::math::srgb::Color;
-use crate::requests::UiRequests;
+use crate::panel_layout::{ColorView, PanelKind};
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::theme::color32;
-use crate::widgets::{NumberField, ValueChange, set_accessible_name, swatch};
-use eframe::egui::{self, Color32, Id, Mesh, Rect, Sense, Shape, Stroke, TextEdit, Ui, pos2, vec2};
+use crate::widgets::{NumberField, ValueChange, check, set_accessible_name, swatch};
+use eframe::egui::{
+    self, Id, Popup, PopupCloseBehavior, Sense, StrokeKind, TextEdit, Ui, Vec2, vec2,
+};
 
-pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    if let Some(changed) = picker(ui, "Current color", session.tools.color) {
-        requests.act(Action::Hand(HandAction::Color { color: changed.to }));
-    }
-    let recent = session.recent_colors.iter().enumerate();
-    swatches(
-        ui,
-        "Recent",
-        recent.map(|(i, &color)| (format!("Recent color {}", i + 1), color)),
-        requests,
-    );
-    let palette =
-        PALETTE.iter().map(|&[r, g, b]| ("Palette".to_owned(), Color { r, g, b, a: 255 }));
-    swatches(ui, "Palette", palette, requests);
+/// Sides of a swatch of the row, points, and the gap between two.
+const SWATCH_PT: f32 = 18.0;
+const GAP_PT: f32 = 3.0;
+
+/// The panel where it has a window of its own.
+pub fn show(ui: &mut Ui, session: &Session, view: &mut ColorView, requests: &mut UiRequests) {
+    let area_pt = (0.8 * ui.available_width()).max(80.0).min(260.0);
+    fixed(ui, session, view, area_pt, requests);
 }
 
-/// The current color and the last ones, in one row: for panels that hide the picker.
-pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    /// As many as a narrow panel has room for.
-    const RECENT: usize = 8;
+/// The part that is always in sight: the area, so many points high, and the last colors in a row
+/// that never moves.
+pub fn fixed(
+    ui: &mut Ui,
+    session: &Session,
+    view: &mut ColorView,
+    area_pt: f32,
+    requests: &mut UiRequests,
+) {
+    const LABEL: &str = "Current color";
+    let color = session.tools.color;
+    let size = vec2(ui.available_width(), area_pt);
+    let mut changed = area(ui, LABEL, color, size, view.is_wheel);
+    row(ui, session, view, requests);
+    if view.has_numbers {
+        changed = numbers(ui, LABEL, color).or(changed);
+        palette(ui, requests);
+    }
+    if let Some(changed) = changed {
+        requests.act(Action::Hand(HandAction::Color { color: changed.to }));
+    }
+}
+
+/// Both colors, the last ones, and a menu. Places that hold no color yet are empty.
+fn row(ui: &mut Ui, session: &Session, view: &mut ColorView, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
-        if let Some(changed) = button(ui, "Changes the current color", session.tools.color) {
-            requests.act(Action::Hand(HandAction::Color { color: changed.to }));
+        ui.spacing_mut().item_spacing.x = GAP_PT;
+        swatch(ui, "Paint color", session.tools.color, vec2(1.6 * SWATCH_PT, SWATCH_PT));
+        let other =
+            swatch(ui, "Other color", session.tools.second_color, vec2(SWATCH_PT, SWATCH_PT));
+        if other.on_hover_text("Click to paint with it (X)").clicked() {
+            requests.act(Action::Hand(HandAction::SwapColors {}));
         }
-        ui.spacing_mut().item_spacing.x = 3.0;
-        for (i, &color) in session.recent_colors.iter().take(RECENT).enumerate() {
-            if swatch(ui, &format!("Paint with recent color {}", i + 1), color, vec2(18.0, 18.0))
-                .clicked()
-            {
+        ui.add_space(7.0);
+        let room_pt = ui.available_width() - crate::icons::BUTTON_PT - 2.0;
+        let places = (room_pt / (SWATCH_PT + GAP_PT)).max(0.0) as usize;
+        for i in 0..places {
+            let size = vec2(SWATCH_PT, SWATCH_PT);
+            let Some(&color) = session.recent_colors.get(i) else {
+                let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+                let line = ui.visuals().widgets.noninteractive.bg_stroke;
+                ui.painter().rect_stroke(rect, 3.0, line, StrokeKind::Inside);
+                continue;
+            };
+            if swatch(ui, &format!("Recent color {}", i + 1), color, size).clicked() {
                 requests.act(Action::Hand(HandAction::Color { color }));
             }
+        }
+        menu(ui, view, requests);
+    });
+}
+
+/// What the panel shows, and where.
+fn menu(ui: &mut Ui, view: &mut ColorView, requests: &mut UiRequests) {
+    let dots = icon_button(ui, Icon::Dots, "Color", false)
+        .on_hover_text("Wheel, numbers and palette, window of its own");
+    let stays = PopupCloseBehavior::CloseOnClickOutside;
+    Popup::menu(&dots).close_behavior(stays).show(|ui| {
+        let hint = "A wheel of hues around the square";
+        view.is_wheel = check(ui, "Wheel", hint, view.is_wheel).unwrap_or(view.is_wheel);
+        let hint = "Hue, saturation, value, red, green, blue, hex, and a palette";
+        let numbers = check(ui, "Numbers and palette", hint, view.has_numbers);
+        view.has_numbers = numbers.unwrap_or(view.has_numbers);
+        if ui.button("In a window of its own, or back").clicked() {
+            requests.request(WindowRequest::Float(PanelKind::Color));
+            ui.close();
         }
     });
 }
 
 /// Colors to select by a click.
-fn swatches(
-    ui: &mut Ui,
-    name: &str,
-    colors: impl ExactSizeIterator<Item = (String, Color)>,
-    requests: &mut UiRequests,
-) {
-    if colors.len() == 0 {
-        return;
-    }
-    ui.weak(name);
+fn palette(ui: &mut Ui, requests: &mut UiRequests) {
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
-        for (label, color) in colors {
-            if swatch(ui, &label, color, vec2(18.0, 18.0)).clicked() {
+        ui.spacing_mut().item_spacing = vec2(GAP_PT, GAP_PT);
+        for [r, g, b] in PALETTE {
+            let color = Color { r, g, b, a: 255 };
+            if swatch(ui, "Palette", color, vec2(SWATCH_PT, SWATCH_PT)).clicked() {
                 requests.act(Action::Hand(HandAction::Color { color }));
             }
         }
@@ -106,70 +148,79 @@ fn hsv(color: Color) -> [f32; 3] {
     [hue / 6.0, if high > 0.0 { span / high } else { 0.0 }, high]
 }
 
-/// The picker; `label` names it for tests and keeps its hue while the color is gray.
+/// The hue, saturation and value of a color; `label` keeps the hue while the color is gray.
+fn known_hsv(ui: &Ui, label: &str, color: Color) -> [f32; 3] {
+    let kept = ui.data(|data| data.get_temp::<(Color, [f32; 3])>(kept_id(label)));
+    kept.filter(|(seen, _)| *seen == color).map_or_else(|| hsv(color), |(_, hsv)| hsv)
+}
+
+fn kept_id(label: &str) -> Id {
+    Id::unique(("hue", label.to_owned()))
+}
+
+/// The color of a hue, a saturation and a value, which are remembered.
+fn put(ui: &Ui, label: &str, hsv: [f32; 3], a: u8, done: bool) -> ValueChange<Color> {
+    let to = srgb(hsv, a);
+    ui.data_mut(|data| data.insert_temp(kept_id(label), (to, hsv)));
+    ValueChange { to, done }
+}
+
+/// The picker with its numbers; `label` names it for tests.
 pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>> {
-    let kept = Id::unique(("hue", label.to_owned()));
-    let mut now = hsv(color);
-    if let Some((seen, hsv)) = ui.data(|data| data.get_temp::<(Color, [f32; 3])>(kept))
-        && seen == color
-    {
-        now = hsv;
-    }
-    let mut out = None;
-    let mut put = |ui: &Ui, hsv: [f32; 3], done: bool| {
-        let to = srgb(hsv, color.a);
-        ui.data_mut(|data| data.insert_temp(kept, (to, hsv)));
-        out = Some(ValueChange { to, done });
+    let width = ui.available_width().min(240.0);
+    let changed = area(ui, label, color, vec2(width, (0.55 * width).max(60.0)), false);
+    numbers(ui, label, color).or(changed)
+}
+
+/// The area where a color is chosen by eye.
+fn area(
+    ui: &mut Ui,
+    label: &str,
+    color: Color,
+    size: Vec2,
+    is_wheel: bool,
+) -> Option<ValueChange<Color>> {
+    let now = known_hsv(ui, label, color);
+    let changed = match is_wheel {
+        true => wheel::wheel(ui, label, now, size),
+        false => wheel::square_and_bar(ui, label, now, size),
     };
-    let side = (ui.available_width() - 30.0).clamp(60.0, 190.0);
-    ui.horizontal(|ui| {
-        if let Some(changed) = square(ui, label, now, side) {
-            put(ui, changed.to, changed.done);
-        }
-        if let Some(changed) = hues(ui, label, now, side) {
-            put(ui, changed.to, changed.done);
-        }
-    });
+    changed.map(|changed| put(ui, label, changed.to, color.a, changed.done))
+}
+
+/// Hue, saturation, value, red, green, blue, and hex.
+fn numbers(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>> {
+    let now = known_hsv(ui, label, color);
+    let mut out = None;
     // The salt distinguishes the panel's picker from one in a popup.
-    egui::Grid::new(("numbers", label)).num_columns(6).min_col_width(0.0).spacing([5.0, 4.0]).show(
-        ui,
-        |ui| {
-            for (i, (letter, name, scale)) in
-                [("H", "Hue", 360.0), ("S", "Saturation", 100.0), ("V", "Value", 100.0)]
-                    .into_iter()
-                    .enumerate()
-            {
-                ui.weak(letter);
-                if let Some(changed) =
-                    NumberField::new(name, 0.0..=scale, name).decimals(0).field(ui, now[i] * scale)
-                {
-                    let mut hsv = now;
-                    hsv[i] = changed.to / scale;
-                    let to = srgb(hsv, color.a);
-                    ui.data_mut(|data| data.insert_temp(kept, (to, hsv)));
-                    out = Some(ValueChange { to, done: changed.done });
-                }
+    let grid = egui::Grid::new(("numbers", label)).num_columns(6).min_col_width(0.0);
+    grid.spacing([5.0, 4.0]).show(ui, |ui| {
+        let rows = [("H", "Hue", 360.0), ("S", "Saturation", 100.0), ("V", "Value", 100.0)];
+        for (i, (letter, name, scale)) in rows.into_iter().enumerate() {
+            ui.weak(letter);
+            let field = NumberField::new(name, 0.0..=scale, name).decimals(0);
+            if let Some(changed) = field.field(ui, now[i] * scale) {
+                let mut hsv = now;
+                hsv[i] = changed.to / scale;
+                out = Some(put(ui, label, hsv, color.a, changed.done));
             }
-            ui.end_row();
-            let bytes = [color.r, color.g, color.b];
-            for (i, (letter, name)) in
-                [("R", "Red"), ("G", "Green"), ("B", "Blue")].into_iter().enumerate()
-            {
-                ui.weak(letter);
-                if let Some(changed) = NumberField::new(name, 0.0..=255.0, name)
-                    .decimals(0)
-                    .field(ui, f32::from(bytes[i]))
-                {
-                    let mut next = bytes;
-                    next[i] = changed.to as u8;
-                    let [r, g, b] = next;
-                    out =
-                        Some(ValueChange { to: Color { r, g, b, a: color.a }, done: changed.done });
-                }
+        }
+        ui.end_row();
+        let bytes = [color.r, color.g, color.b];
+        for (i, (letter, name)) in
+            [("R", "Red"), ("G", "Green"), ("B", "Blue")].into_iter().enumerate()
+        {
+            ui.weak(letter);
+            let field = NumberField::new(name, 0.0..=255.0, name).decimals(0);
+            if let Some(changed) = field.field(ui, f32::from(bytes[i])) {
+                let mut next = bytes;
+                next[i] = changed.to as u8;
+                let [r, g, b] = next;
+                out = Some(ValueChange { to: Color { r, g, b, a: color.a }, done: changed.done });
             }
-            ui.end_row();
-        },
-    );
+        }
+        ui.end_row();
+    });
     ui.horizontal(|ui| {
         ui.weak("Hex");
         if let Some(to) = hex(ui, color) {
@@ -177,88 +228,6 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Colo
         }
     });
     out
-}
-
-/// Saturation to the right, value upward.
-fn square(
-    ui: &mut Ui,
-    label: &str,
-    [h, s, v]: [f32; 3],
-    side: f32,
-) -> Option<ValueChange<[f32; 3]>> {
-    let (rect, response) = ui.allocate_exact_size(vec2(side, side * 0.62), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColorWell, true, label));
-    let mut mesh = Mesh::default();
-    const CELLS: u32 = 8;
-    for j in 0..=CELLS {
-        for i in 0..=CELLS {
-            let (x, y) = (i as f32 / CELLS as f32, j as f32 / CELLS as f32);
-            mesh.colored_vertex(rect.lerp_inside(vec2(x, y)), color32(srgb([h, x, 1.0 - y], 255)));
-        }
-    }
-    grid(&mut mesh, CELLS, CELLS);
-    ui.painter().add(Shape::mesh(mesh));
-    let at = rect.lerp_inside(vec2(s, 1.0 - v));
-    ui.painter().circle_stroke(at, 5.0, Stroke::new(2.5, Color32::from_black_alpha(150)));
-    ui.painter().circle_stroke(at, 5.0, Stroke::new(1.4, Color32::WHITE));
-    picked(&response, rect).map(|changed| changed.map(|[x, y]| [h, x, 1.0 - y]))
-}
-
-/// The hues from top to bottom.
-fn hues(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<ValueChange<[f32; 3]>> {
-    let (rect, response) = ui.allocate_exact_size(vec2(18.0, side * 0.62), Sense::click_and_drag());
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Slider, true, format!("Hue of {label}"))
-    });
-    let mut mesh = Mesh::default();
-    const CELLS: u32 = 24;
-    for j in 0..=CELLS {
-        let y = j as f32 / CELLS as f32;
-        for x in [0.0, 1.0] {
-            mesh.colored_vertex(rect.lerp_inside(vec2(x, y)), color32(srgb([y, 1.0, 1.0], 255)));
-        }
-    }
-    grid(&mut mesh, 1, CELLS);
-    ui.painter().add(Shape::mesh(mesh));
-    let y = rect.top() + h * rect.height();
-    let mark =
-        Rect::from_min_max(pos2(rect.left() - 1.0, y - 2.5), pos2(rect.right() + 1.0, y + 2.5));
-    ui.painter().rect_stroke(
-        mark,
-        2.0,
-        Stroke::new(2.5, Color32::from_black_alpha(150)),
-        egui::StrokeKind::Outside,
-    );
-    ui.painter().rect_stroke(
-        mark,
-        2.0,
-        Stroke::new(1.4, Color32::WHITE),
-        egui::StrokeKind::Outside,
-    );
-    picked(&response, rect).map(|changed| changed.map(|[_, y]| [y.min(0.9999), s, v]))
-}
-
-/// Triangles of a grid of colors.
-fn grid(mesh: &mut Mesh, cols: u32, rows: u32) {
-    for j in 0..rows {
-        for i in 0..cols {
-            let at = |i: u32, j: u32| j * (cols + 1) + i;
-            mesh.add_triangle(at(i, j), at(i + 1, j), at(i, j + 1));
-            mesh.add_triangle(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-        }
-    }
-}
-
-/// Where a rectangle was pressed or dragged, each side in `[0, 1]`.
-fn picked(response: &egui::Response, rect: Rect) -> Option<ValueChange<[f32; 2]>> {
-    let is_held =
-        response.is_pointer_button_down_on() || response.clicked() || response.drag_stopped();
-    let pos = response.interact_pointer_pos().filter(|_| is_held)?;
-    let along = ((pos - rect.min) / rect.size()).clamp(vec2(0.0, 0.0), vec2(1.0, 1.0));
-    Some(ValueChange {
-        to: [along.x, along.y],
-        done: response.drag_stopped() || response.clicked(),
-    })
 }
 
 /// `#rrggbb`, read when the field is left.

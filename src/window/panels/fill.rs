@@ -12,9 +12,9 @@ use eframe::egui::Ui;
 
 /// The paint limits, with their labels.
 pub const BOUNDS: [(PaintLimit, &str); 3] = [
-    (PaintLimit::Free, "everywhere"),
+    (PaintLimit::Free, "anywhere"),
     (PaintLimit::Surface, "on the surface"),
-    (PaintLimit::Object, "on one object"),
+    (PaintLimit::Object, "connected"),
 ];
 
 /// In a bar.

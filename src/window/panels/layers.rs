@@ -1,14 +1,14 @@
-//! The layer list, the topmost first, with controls of the selected layers above and below. Floor
-//! 7. `row` shows one layer, `drag` handles dragging, `menu` the context menu, `filter` the field
-//! that finds layers.
+//! The layer list, the topmost first, with controls of the selected layers above and below. Floor 7.
+//! `row` shows one layer, `drag` handles dragging, `menu` the context menu, `filter` the field that
+//! finds layers.
 
 mod drag;
 mod filter;
 mod menu;
 mod row;
 
-use crate::document::{Content, LayerId, LayerLabel, LayerLock};
-use crate::icons::{Icon, icon_button};
+use crate::document::{Content, Layer, LayerId, LayerLabel, LayerLock};
+use crate::icons::{BUTTON_PT, Icon, icon_button};
 use crate::paint::FormPattern;
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
@@ -17,7 +17,7 @@ use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use crate::thumbnails::Thumbnails;
 use crate::tools::ToolKind;
 use crate::widgets::{NumberField, choice};
-use eframe::egui::{self, Color32, Ui};
+use eframe::egui::{self, Color32, Frame, Panel, Ui};
 use row::LayerRow;
 
 pub fn kind_icon(content: &Content) -> Icon {
@@ -61,9 +61,13 @@ pub fn show(
         return;
     };
     head(ui, session, requests);
-    filter::show(ui, document);
-    foot(ui, session, requests);
-    let height = ui.available_height();
+    let beneath = Panel::bottom("layer buttons")
+        .resizable(false)
+        .show_separator_line(false)
+        .frame(Frame::NONE)
+        .exact_size(BUTTON_PT + 2.0);
+    beneath.show(ui, |ui| foot(ui, session, requests));
+    let height = ui.available_height() - 2.0;
     egui::ScrollArea::vertical()
         .id_salt("layers")
         .max_height(height)
@@ -86,9 +90,12 @@ pub fn show(
         });
 }
 
-/// Blend mode and opacity of the selected layers, showing those of the primary one.
+/// Blend mode and opacity of the selected layers, showing those of the primary one; locks, clipping,
+/// and the field that finds layers.
 fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
+    let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {
+        return drop(ui.horizontal(|ui| filter::show(ui, session)));
+    };
     let selected = session
         .active()
         .map(|open| LayerPaths::of(open.document(), &open.selected_layers()))
@@ -97,45 +104,14 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::LABELS) {
             set(requests, &selected, Property::Blend { mode }, true);
         }
-        let number = NumberField::new("Opacity", 0.0..=1.0, "Of the whole layer");
-        if let Some(changed) =
-            number.inline(ui, layer.opacity, (ui.available_width() - 112.0).max(30.0))
-        {
+        let number = NumberField::new("Opacity", 0.0..=1.0, "Of the whole layer").share();
+        if let Some(changed) = number.row(ui, layer.opacity) {
             set(requests, &selected, Property::Opacity { to: changed.to }, changed.done);
         }
     });
     ui.horizontal(|ui| {
-        let toggles = [
-            (
-                Icon::LockAlpha,
-                "Lock alpha",
-                layer.lock == LayerLock::Alpha,
-                "Paints only where there is paint (/)",
-            ),
-            (Icon::Lock, "Lock layer", layer.lock == LayerLock::All, "No tool can change it"),
-            (
-                Icon::Clip,
-                "Clip to layer below",
-                layer.clip_below,
-                "Paint only where the layer beneath has paint",
-            ),
-        ];
-        for (icon, label, is_on, hint) in toggles {
-            if icon_button(ui, icon, label, is_on)
-                .on_hover_text(format!("{label}\n{hint}"))
-                .clicked()
-            {
-                let lock = |lock: LayerLock| Property::Locked {
-                    lock: if is_on { LayerLock::None } else { lock },
-                };
-                let to = match icon {
-                    Icon::LockAlpha => lock(LayerLock::Alpha),
-                    Icon::Lock => lock(LayerLock::All),
-                    _ => Property::ClipBelow { on: !is_on },
-                };
-                set(requests, &selected, to, true);
-            }
-        }
+        ui.spacing_mut().item_spacing.x = 1.0;
+        toggles(ui, layer, &selected, requests);
         let is_alone = session.active().is_some_and(|open| open.solo == Some(layer.id));
         if icon_button(ui, Icon::Solo, "Show layer alone", is_alone)
             .on_hover_text("Shows this layer alone")
@@ -143,12 +119,49 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         {
             requests.act(Action::Layer(LayerAction::Solo { layer: path }));
         }
+        ui.add_space(6.0);
+        filter::show(ui, session);
     });
+}
+
+/// Locks and clipping.
+fn toggles(ui: &mut Ui, layer: &Layer, selected: &LayerPaths, requests: &mut UiRequests) {
+    let toggles = [
+        (
+            Icon::LockAlpha,
+            "Lock alpha",
+            layer.lock == LayerLock::Alpha,
+            "Paints only where there is paint (/)",
+        ),
+        (Icon::Lock, "Lock layer", layer.lock == LayerLock::All, "No tool can change it"),
+        (
+            Icon::Clip,
+            "Clip to layer below",
+            layer.clip_below,
+            "Paint only where the layer beneath has paint",
+        ),
+    ];
+    for (icon, label, is_on, hint) in toggles {
+        let button = icon_button(ui, icon, label, is_on);
+        if !button.on_hover_text(format!("{label}\n{hint}")).clicked() {
+            continue;
+        }
+        let lock = |lock: LayerLock| Property::Locked {
+            lock: if is_on { LayerLock::None } else { lock },
+        };
+        let to = match icon {
+            Icon::LockAlpha => lock(LayerLock::Alpha),
+            Icon::Lock => lock(LayerLock::All),
+            _ => Property::ClipBelow { on: !is_on },
+        };
+        set(requests, selected, to, true);
+    }
 }
 
 /// The buttons that make, copy, merge and delete.
 fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
         ui.menu_button("+ Add", |ui| {
             for (kind, name) in NewLayer::LABELS {
                 if ui.button(name).clicked() {

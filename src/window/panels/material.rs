@@ -22,7 +22,7 @@ pub fn shading(
     moods: &MoodPictures,
     setter: &mut LayerSetter,
 ) {
-    if let Some(model) = choice_row(ui, "Model", shading.model, &Model::ALL) {
+    if let Some(model) = choice_row(ui, "Material", shading.model, &Model::LABELS) {
         setter.set(Property::ShadingModel { model }, true);
     }
     let is_painter = shading.model == Model::Painter;
@@ -30,8 +30,16 @@ pub fn shading(
         painter::moods(ui, shading, moods, setter);
     }
     let words = match is_painter {
-        true => ["Soft light", "Key", "Shine"],
-        false => ["Ambient", "Diffuse", "Specular"],
+        true => [
+            ("Soft light", "Light from all around; 0 turns it off"),
+            ("Key", "Light of the lamps; 0 turns it off"),
+            ("Shine", "Highlights of the lamps; 0 turns them off"),
+        ],
+        false => [
+            ("Shadow", "What is there without a lamp (ambient); 0 turns it off"),
+            ("Light", "Light of the lamps (diffuse); 0 turns it off"),
+            ("Shine", "Highlights of the lamps (specular); 0 turns them off"),
+        ],
     };
     term(ui, words[0], shading.ambient, setter, |term| Property::Ambient { term });
     term(ui, words[1], shading.diffuse, setter, |term| Property::Diffuse { term });
@@ -86,7 +94,7 @@ pub fn shading(
     }
     if matches!(shading.model, Model::AmbientOcclusion | Model::DiffuseEnvironment) {
         let number =
-            NumberField::new("Reach", 0.0..=400.0, "Distance up to which occluders count, px")
+            NumberField::new("Distance", 0.0..=400.0, "Distance up to which occluders count, px")
                 .decimals(0);
         setter.take(
             number
@@ -195,12 +203,18 @@ fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut LayerSetter
     );
 }
 
-fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut LayerSetter, put: fn(Term) -> Property) {
+/// One of the three terms of a material, by its name and what it is.
+fn term(
+    ui: &mut Ui,
+    (label, hint): (&str, &str),
+    term: Term,
+    setter: &mut LayerSetter,
+    put: fn(Term) -> Property,
+) {
     ui.horizontal(|ui| {
         let color = colors::button(ui, &format!("{label} color"), term.color);
         setter.take(color.map(|c| c.map(|color| put(Term { color, ..term }))));
-        let weight = NumberField::new(label, 0.0..=2.0, "Weight of the term; 0 turns it off")
-            .row(ui, term.weight);
+        let weight = NumberField::new(label, 0.0..=2.0, hint).row(ui, term.weight);
         setter.take(weight.map(|c| c.map(|weight| put(Term { weight, ..term }))));
     });
     let gamma = format!("{label} relief");

@@ -1,9 +1,7 @@
 //! The menu bar and the documents' tabs.
 //! Floor 7.
 
-use crate::commands::{
-    ADJUSTMENT_LAYERS, ADJUSTMENTS, GUIDES, MENUS, MenuCommand, PARTS, SHADING, TRANSFORMS,
-};
+use crate::commands::{MENUS, MenuCommand};
 use crate::icons::{Icon, sized_button};
 use crate::keymap::key_text;
 use crate::requests::{UiRequests, WindowRequest};
@@ -27,40 +25,6 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                         for command in commands {
                             entry(ui, session, settings, command, requests);
                             match command.name {
-                                "New gradient layer" => {
-                                    drop(ui.menu_button("New shading layer", |ui| {
-                                        SHADING.iter().for_each(|command| {
-                                            entry(ui, session, settings, command, requests)
-                                        });
-                                    }))
-                                }
-                                "New radiance scaling" => {
-                                    drop(ui.menu_button("New adjustment layer", |ui| {
-                                        ADJUSTMENT_LAYERS.iter().for_each(|command| {
-                                            entry(ui, session, settings, command, requests)
-                                        });
-                                    }))
-                                }
-                                "Image size…" => drop(ui.menu_button("Adjust", |ui| {
-                                    ADJUSTMENTS.iter().for_each(|command| {
-                                        entry(ui, session, settings, command, requests)
-                                    });
-                                })),
-                                "Give it a shape…" => drop(ui.menu_button("New part", |ui| {
-                                    PARTS.iter().for_each(|command| {
-                                        entry(ui, session, settings, command, requests)
-                                    });
-                                })),
-                                "Transform" => drop(ui.menu_button("Transform layer", |ui| {
-                                    TRANSFORMS.iter().for_each(|command| {
-                                        entry(ui, session, settings, command, requests)
-                                    });
-                                })),
-                                "Mirror view" => drop(ui.menu_button("Guides and grid", |ui| {
-                                    GUIDES.iter().for_each(|command| {
-                                        entry(ui, session, settings, command, requests)
-                                    });
-                                })),
                                 "Open…" => recent_files(ui, &settings.recent, requests),
                                 "Keep selection…" => kept_selections(ui, session, requests),
                                 _ => {}
@@ -82,6 +46,12 @@ fn entry(
 ) {
     if command.is_line() {
         return drop(ui.separator());
+    }
+    if command.is_menu() {
+        let each = |ui: &mut Ui| {
+            command.within.iter().for_each(|row| entry(ui, session, settings, row, requests))
+        };
+        return drop(ui.menu_button(command.name, each));
     }
     let is_on = command.is_on.is_some_and(|is_on| is_on(session, &settings.layout));
     let mut button = Button::selectable(is_on, command.name);

@@ -1,5 +1,5 @@
-//! The options bar above the canvas: the operator with its sliders, and the options of the current
-//! tool. Floor 7.
+//! The options bar above the canvas: one row with what the tool in hand needs, bending first; the
+//! rest is behind *More*. Floor 7.
 
 use super::{assistants, brush_mode, crop, fill, liquify, select, shaping, transform};
 use crate::operators::{
@@ -10,68 +10,69 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
+use crate::theme;
 use crate::tools::{Symmetry, ToolKind};
-use crate::widgets::{NumberField, ValueChange, check_box};
+use crate::widgets::{NumberField, ValueChange, check, title};
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::scroll_area::ScrollBarVisibility;
-use eframe::egui::{Button, RichText, ScrollArea, Ui};
+use eframe::egui::{Button, Frame, PopupCloseBehavior, RichText, ScrollArea, Ui, vec2};
 
-/// Rows of the bar: how marks bend, and the options of the tool. Both are always shown.
-pub const ROWS: f32 = 2.0;
+/// The height of the bar inside its margins, points.
+pub const HEIGHT_PT: f32 = 24.0;
+/// From this width of the window on, points, the hardness of the brush is in the bar.
+const WIDE_PT: f32 = 1240.0;
+/// Numbers of a bend in the bar; the others are behind *More*.
+const NUMBERS: usize = 2;
 
+/// The bar: one row, which a narrow window scrolls sideways.
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    row(ui, "operator", |ui| bending(ui, session, requests));
-    row(ui, "tool", |ui| of_tool(ui, session, requests));
-}
-
-/// One row, which a narrow window scrolls sideways.
-fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
     // A plain wheel scrolls it: nothing here goes up or down.
     ui.style_mut().always_scroll_the_only_direction = true;
-    let area = ScrollArea::horizontal()
-        .id_salt(name)
-        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+    let area = ScrollArea::horizontal().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     area.show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.set_min_height(ui.spacing().interact_size.y);
-            show(ui);
+            ui.set_min_height(HEIGHT_PT);
+            if is_bending(session.tool) {
+                bending(ui, session, requests);
+                divide(ui);
+            }
+            of_tool(ui, session, requests);
         })
     });
 }
 
+/// A line between two groups of the bar, with air around it.
+fn divide(ui: &mut Ui) {
+    ui.add_space(3.0);
+    ui.separator();
+    ui.add_space(3.0);
+}
+
+/// Whether a tool makes or changes something that bends.
+fn is_bending(tool: ToolKind) -> bool {
+    use ToolKind::{Anchors, Brush, Eraser, Gradient, Image, Move, Strokes, Text};
+    matches!(tool, Brush | Eraser | Gradient | Image | Text | Anchors | Move | Strokes)
+}
+
 /// The operator and its numbers.
 fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    if session.tool == ToolKind::Fill {
-        return drop(ui.weak("Fills are not bent: they color the pixels that they cover"));
-    }
-    if session.tool.is_shape_tool() {
-        return drop(ui.weak(
-            "The shape is what everything bends over: parts, nearest first, are in the panel Shape",
-        ));
-    }
-    if session.tool == ToolKind::Transform {
-        return transform::ways(ui, session, requests);
-    }
-    if session.tool == ToolKind::Crop {
-        return drop(ui.weak("Everything moves with the canvas; paint beyond it is kept"));
-    }
-    if session.tool.is_selection_tool() {
-        return drop(
-            ui.weak("Selections limit where you can paint: every brush, fill, gradient and eraser respects them"),
-        );
-    }
     let (whose, operator) = whose(session);
-    let about = match whose {
-        OperatorOwner::Hand => "New marks",
-        OperatorOwner::Layer(_) => "Selected layer",
-    };
-    ui.label(RichText::new(about).weak());
-    for OfferedOperator { label, begins, hint } in OPERATORS {
-        let is_on = has_operator(session, begins);
-        if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
-            give(session, requests, begins);
-        }
+    if let OperatorOwner::Layer(_) = whose {
+        ui.weak("Selected layer").on_hover_text("What you set here bends the selected layer");
     }
-    ui.add_space(6.0);
+    let track = Frame::new().fill(theme::bar_ground(ui.visuals())).corner_radius(5);
+    track.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        for OfferedOperator { label, begins, hint } in OPERATORS {
+            let is_on = has_operator(session, begins);
+            let text = RichText::new(label);
+            let text = if is_on { text.strong() } else { text };
+            let segment = Button::selectable(is_on, text).min_size(vec2(0.0, 22.0));
+            if ui.add(segment).on_hover_text(hint).clicked() && !is_on {
+                give(session, requests, begins);
+            }
+        }
+    });
     if let Some(changed) = numbers(ui, operator) {
         set(requests, &whose, changed);
     }
@@ -90,15 +91,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     match session.tool {
         ToolKind::Fill => fill::options(ui, session.tools.fill, requests),
-        ToolKind::Brush | ToolKind::Eraser => {
-            brush(ui, session, requests);
-            symmetry(ui, session, requests);
-            let mut by_speed = session.tools.presses_by_speed;
-            let hint = "A mouse, or a finger without pressure, presses less when it moves faster";
-            if check_box(ui, &mut by_speed, "Pressure from speed").on_hover_text(hint).changed() {
-                requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
-            }
-        }
+        ToolKind::Brush | ToolKind::Eraser => brush(ui, session, requests),
         tool if tool.is_selection_tool() => select::options(ui, session, requests),
         tool if tool.is_shape_tool() => shaping::options(ui, session, requests),
         ToolKind::Transform => transform::options(ui, session, requests),
@@ -112,51 +105,59 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
 }
 
+/// The choices of symmetry, with their names.
+const SYMMETRIES: [(Symmetry, &str); 8] = [
+    (Symmetry::None, "No symmetry"),
+    (Symmetry::Vertical, "Left and right"),
+    (Symmetry::Horizontal, "Above and below"),
+    (Symmetry::Both, "All four"),
+    (Symmetry::Radial(3), "3 times round"),
+    (Symmetry::Radial(5), "5 times round"),
+    (Symmetry::Radial(6), "6 times round"),
+    (Symmetry::Radial(8), "8 times round"),
+];
+const SYMMETRY_HINT: &str = "Repeats every stroke about an axis or a point, which the tool \
+                             Assistants moves; each copy bends at its own place";
+
 /// How strokes repeat, as a menu.
 fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    const CHOICES: [(Symmetry, &str); 8] = [
-        (Symmetry::None, "No symmetry"),
-        (Symmetry::Vertical, "Left and right"),
-        (Symmetry::Horizontal, "Above and below"),
-        (Symmetry::Both, "All four"),
-        (Symmetry::Radial(3), "3 times round"),
-        (Symmetry::Radial(5), "5 times round"),
-        (Symmetry::Radial(6), "6 times round"),
-        (Symmetry::Radial(8), "8 times round"),
-    ];
-    let known = CHOICES
-        .iter()
-        .find(|(choice, _)| *choice == session.tools.symmetry.kind)
-        .map(|(_, label)| *label);
-    let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| {
-        for (choice, label) in CHOICES {
-            if ui.selectable_label(choice == session.tools.symmetry.kind, label).clicked() {
-                requests.act(Action::Hand(HandAction::Symmetry { symmetry: choice }));
-                ui.close();
-            }
+    let now = session.tools.symmetry.kind;
+    let known = SYMMETRIES.iter().find(|(choice, _)| *choice == now).map(|(_, label)| *label);
+    let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| symmetries(ui, now, requests));
+    menu.response.on_hover_text(SYMMETRY_HINT);
+}
+
+fn symmetries(ui: &mut Ui, now: Symmetry, requests: &mut UiRequests) {
+    for (choice, label) in SYMMETRIES {
+        let row = ui.selectable_label(choice == now, label).on_hover_text(SYMMETRY_HINT);
+        if row.clicked() {
+            requests.act(Action::Hand(HandAction::Symmetry { symmetry: choice }));
+            ui.close();
         }
-    });
-    let hint = "Repeats every stroke about an axis or a point, which the tool Assistants moves; each copy bends at its \
-                own place";
-    menu.response.on_hover_text(hint);
+    }
 }
 
 /// The live sliders of an operator, in a bar.
 fn numbers(ui: &mut Ui, operator: Operator) -> Option<ValueChange<Operator>> {
-    numbers_by(operator, |number, value| number.inline(ui, value, 96.0))
+    numbers_by(operator, 0..NUMBERS, |number, value| number.inline(ui, value, 90.0))
 }
 
 /// The same, one below the other.
 pub fn number_rows(ui: &mut Ui, operator: Operator) -> Option<ValueChange<Operator>> {
-    numbers_by(operator, |number, value| number.row(ui, value))
+    numbers_by(operator, 0..usize::MAX, |number, value| number.row(ui, value))
 }
 
+/// Some of the numbers of an operator, by their places in its table.
 fn numbers_by(
     operator: Operator,
+    which: std::ops::Range<usize>,
     mut show: impl FnMut(NumberField<'static>, f32) -> Option<ValueChange<f32>>,
 ) -> Option<ValueChange<Operator>> {
     let mut changed = None;
-    for (number, value) in operator.numbers() {
+    for (i, (number, value)) in operator.numbers().into_iter().enumerate() {
+        if !which.contains(&i) {
+            continue;
+        }
         let field = NumberField::new(number.label, number.useful.clone(), hint_of(number.key));
         let field = if number.key == "smooth" { field.px() } else { field };
         if let Some(to) = show(field, value) {
@@ -169,6 +170,7 @@ fn numbers_by(
 
 fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.tools.brush;
+    let is_wide = ui.ctx().content_rect().width() >= WIDE_PT;
     let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
     let size = NumberField::new(
         "Size",
@@ -177,15 +179,58 @@ fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     )
     .px();
     push(size.inline(ui, brush.size, 90.0).map(|c| HandAction::Size { to: c.to }));
-    let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke");
+    let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke").share();
     push(opacity.inline(ui, brush.opacity, 60.0).map(|c| HandAction::Opacity { to: c.to }));
-    let hardness = NumberField::new(
-        "Hardness",
-        0.0..=1.0,
-        "How much of the dab is fully covered (Shift with [ and ])",
-    );
-    push(hardness.inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }));
+    if is_wide {
+        push(hardness().inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }));
+    }
     if session.tool == ToolKind::Brush {
         brush_mode::options(ui, session, requests);
+    }
+    if session.tools.symmetry.kind != Symmetry::None {
+        symmetry(ui, session, requests);
+    }
+    more(ui, |ui| more_of_brush(ui, session, is_wide, requests));
+}
+
+fn hardness() -> NumberField<'static> {
+    let hint = "How much of the dab is fully covered (Shift with [ and ])";
+    NumberField::new("Hardness", 0.0..=1.0, hint).share()
+}
+
+/// A button for what the tool needs less often; it stays open while something is set there.
+fn more(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
+    let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let (button, _) = MenuButton::new("More").config(stays).ui(ui, |ui| {
+        ui.set_width(250.0);
+        show(ui);
+    });
+    crate::widgets::set_accessible_name(&button, "More options");
+    button.on_hover_text("What this tool needs less often");
+}
+
+fn more_of_brush(ui: &mut Ui, session: &Session, is_wide: bool, requests: &mut UiRequests) {
+    if !is_wide {
+        let changed = hardness().row(ui, session.tools.brush.hardness);
+        requests
+            .actions
+            .extend(changed.map(|c| Action::Hand(HandAction::Hardness { to: c.to })));
+    }
+    let (whose, operator) = whose(session);
+    if let Some(changed) =
+        numbers_by(operator, NUMBERS..usize::MAX, |number, value| number.row(ui, value))
+    {
+        set(requests, &whose, changed);
+    }
+    if session.tool == ToolKind::Brush {
+        title(ui, "Where it paints");
+        brush_mode::limits(ui, session, requests);
+    }
+    title(ui, "Symmetry");
+    ui.horizontal_wrapped(|ui| symmetries(ui, session.tools.symmetry.kind, requests));
+    title(ui, "Mouse and finger");
+    let hint = "A mouse, or a finger without pressure, presses less when it moves faster";
+    if let Some(on) = check(ui, "Pressure from speed", hint, session.tools.presses_by_speed) {
+        requests.act(Action::Hand(HandAction::PressBySpeed { on }));
     }
 }

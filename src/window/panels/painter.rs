@@ -138,7 +138,7 @@ pub fn shadows(ui: &mut Ui, shadows: Shadows, setter: &mut LayerSetter) {
         return;
     }
     settings(ui, Shadows::SETTINGS, shadows, setter, |shadows| Property::Shadowed { shadows });
-    let changed = colors::button(ui, "Shadow color", shadows.color);
+    let changed = colors::button(ui, "Color of cast shadows", shadows.color);
     setter.take(
         changed
             .map(|c| c.map(|color| Property::Shadowed { shadows: Shadows { color, ..shadows } })),

@@ -79,7 +79,7 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     let field = NumberField::new("Size", Touch::RADIUS, "Radius of a touch").px();
     to = field.inline(ui, now.radius, 70.0).map(|c| ShapeSettings { radius: c.to, ..now }).or(to);
     let hint = "How far a touch reaches; 0: to the rim of the part and to the next touches";
-    let field = NumberField::new("Reach", Touch::REACH, hint).px();
+    let field = NumberField::new("Spread", Touch::REACH, hint).px();
     field.inline(ui, now.reach, 70.0).map(|c| ShapeSettings { reach: c.to, ..now }).or(to)
 }
 

@@ -1,5 +1,5 @@
-//! The status bar: zoom, the point under the pointer with the map values there, memory, the time of
-//! the last redraw, and a hint for the current tool. Floor 7.
+//! The status bar: zoom, the point under the pointer, messages and a hint for the current tool; if
+//! they are asked for, the map values there, memory, and the time of the last redraw. Floor 7.
 
 use crate::canvas::Canvas;
 use crate::document::MemoryUse;
@@ -18,7 +18,7 @@ pub fn show<W: JobWindow>(
     session: &Session,
     canvas: &Canvas,
     jobs: &Jobs<W>,
-    (memory, kept_share): (&mut MemoryMeter, f32),
+    (details, kept_share): (Option<&mut MemoryMeter>, f32),
     requests: &mut UiRequests,
 ) {
     ui.horizontal(|ui| {
@@ -76,10 +76,11 @@ pub fn show<W: JobWindow>(
         // The canvas is drawn later: its state may still belong to the previous document.
         let is_here =
             |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
+        let is_detailed = details.is_some();
         if let Some(at) = canvas.under.filter(is_here) {
             let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);
             ui.label(RichText::new(format!("{x}, {y}")).monospace());
-            if let Some(surface) = document.surface.as_deref().filter(|s| s.coverage(x, y) > 0) {
+            if let Some(surface) = document.surface.as_deref().filter(|s| is_detailed && s.coverage(x, y) > 0) {
                 let n = surface.normal(x, y);
                 let about =
                     format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
@@ -90,21 +91,30 @@ pub fn show<W: JobWindow>(
             ui.weak(session.tool.hint());
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
-            let text = if canvas.is_busy {
-                RichText::new("Painting…").weak()
-            } else {
-                RichText::new(took).weak()
-            };
-            ui.label(text).on_hover_text("Time of the last redraw");
-            let is_idle = !canvas.is_busy && !ui.input(|input| input.pointer.any_down());
-            let used = memory.documents(session, kept_share, is_idle);
-            memory_menu(ui, memory, kept_share, used, requests);
+            if let Some(memory) = details {
+                measured(ui, session, canvas, (memory, kept_share), requests);
+            }
             if document.surface.is_none() {
                 ui.weak("No surface: marks stay flat");
             }
         });
     });
+}
+
+/// The time of the last redraw, and the memory of the document.
+fn measured(
+    ui: &mut Ui,
+    session: &Session,
+    canvas: &Canvas,
+    (memory, kept_share): (&mut MemoryMeter, f32),
+    requests: &mut UiRequests,
+) {
+    let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
+    let took = if canvas.is_busy { "Painting…".to_owned() } else { took };
+    ui.weak(took).on_hover_text("Time of the last redraw");
+    let is_idle = !canvas.is_busy && !ui.input(|input| input.pointer.any_down());
+    let used = memory.documents(session, kept_share, is_idle);
+    memory_menu(ui, memory, kept_share, used, requests);
 }
 
 /// The memory of the document in front; the menu lists it, and sets how much may be kept for speed.

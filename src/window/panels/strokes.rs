@@ -115,7 +115,7 @@ fn buttons(
             if stroke > 0 && icon_button(ui, Icon::Down, "Stroke down", false).clicked() {
                 act(StrokeAction::Order { layer: layer(), stroke, to: stroke - 1 });
             }
-            let hint = "Takes over its brush, operator and color";
+            let hint = "Takes over its brush, bending and color";
             if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Use its brush", false)
                 .on_hover_text(hint)
                 .clicked()

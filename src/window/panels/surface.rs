@@ -90,9 +90,9 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::FlowDepth => "How a texture on the surface is compressed",
         SurfaceView::FlowNormals => "How a reflection is compressed",
         SurfaceView::Unwrapped => "The painting on the unwrapped surface",
-        SurfaceView::FlowOperator => "How the selected layer's operator compresses its image",
+        SurfaceView::FlowOperator => "How the selected layer's bending compresses its image",
         SurfaceView::Scaling => {
-            "Radiance scaling: how much light of each brightness is raised on convex parts and \
+            "Bring out form: how much light of each brightness is raised on convex parts and \
              lowered on concave ones"
         }
         SurfaceView::Clay => "Unpainted, in even light: the form alone",

@@ -14,8 +14,16 @@ use crate::widgets::{choice, set_accessible_name};
 use eframe::egui::{Button, DragValue, Ui};
 use std::ops::RangeInclusive;
 
-/// The upper row: commands, sampling, pivot.
-pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+/// The gizmo in numbers, commands, sampling, pivot.
+pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    target(ui, session, requests);
+    gizmo(ui, session, requests);
+    ui.add_space(6.0);
+    ways(ui, session, requests);
+}
+
+/// Layers, or the shape.
+fn target(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.shown_document().is_some_and(|document| document.surface.is_some())
         && let Some(target) = choice(
             ui,
@@ -26,6 +34,10 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     {
         requests.act(Action::Hand(HandAction::TransformTarget { carried: target }));
     }
+}
+
+/// Commands, sampling, pivot.
+fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let mut commands = TRANSFORMS.split(MenuCommand::is_line);
     for command in commands.next().unwrap_or_default() {
         let button = ui
@@ -104,8 +116,8 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     menu.response.on_hover_text(hint);
 }
 
-/// The lower row: the gizmo in numbers; sides and angles change about the pivot.
-pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+/// The gizmo in numbers; sides and angles change about the pivot.
+fn gizmo(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(open) = session.active() else { return };
     let of_shape = session.tools.transform.target == TransformTarget::Shape
         && open.document().surface.is_some();

@@ -7,7 +7,12 @@ use crate::requests::UiRequests;
 use eframe::egui;
 
 impl MainWindow {
-    /// The menus' titles, and the commands of each.
+    /// The names of all commands, menu by menu.
+    pub fn commands() -> impl Iterator<Item = &'static str> {
+        commands::all().map(|command| command.name)
+    }
+
+    /// The menus' titles, and the rows of each: commands, and menus within the menu.
     pub fn menus() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
         let names = |commands: &[commands::MenuCommand]| {
             commands.iter().map(|command| command.name).collect::<Vec<_>>()

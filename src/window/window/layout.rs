@@ -2,13 +2,17 @@
 //! Not here: the panels themselves (`panels`).
 
 use super::MainWindow;
+use crate::jobs::JobKind;
 use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
 use crate::panels;
 use crate::requests::UiRequests;
 use crate::theme::ACCENT;
-use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
+use crate::widgets::{tab, tab_width_pt};
+use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, Ui};
 
+/// The height that the layers take at first, if there is room: more than six of them.
+const LAYERS_PT: f32 = 392.0;
 /// The range of the panels' width, points.
 const WIDTHS_PT: std::ops::RangeInclusive<f32> = 230.0..=460.0;
 
@@ -25,15 +29,13 @@ impl MainWindow {
                 .show(ui, |ui| panels::menu::show(ui, &self.session, settings, requests));
         }
         if !self.settings.layout.is_hidden {
-            // Always as tall as its two rows, so that nothing below it moves when its content
-            // changes.
-            let rows_pt = panels::options::ROWS * ui.spacing().interact_size.y
-                + (panels::options::ROWS - 1.0) * ui.spacing().item_spacing.y;
+            // Always as tall, so that nothing below it moves when its content changes.
             Panel::top("options")
-                .exact_size(rows_pt + 6.0)
+                .exact_size(panels::options::HEIGHT_PT + 6.0)
                 .frame(bar(ui))
                 .show(ui, |ui| panels::options::show(ui, &self.session, requests));
-            let memory = (&mut self.memory, self.settings.kept_share);
+            let details = self.settings.has_details.then_some(&mut self.memory);
+            let memory = (details, self.settings.kept_share);
             Panel::bottom("status").frame(bar(ui)).show(ui, |ui| {
                 panels::status::show(ui, &self.session, &self.canvas, &self.jobs, memory, requests)
             });
@@ -56,9 +58,17 @@ impl MainWindow {
         CentralPanel::no_frame().show(ui, |ui| {
             let area = ui.max_rect();
             self.canvas.show(ui, &self.session, &mut requests.actions);
+            // What was asked for comes soon.
+            let is_coming = self.jobs.under_way.iter().any(|job| job.kind == JobKind::Working);
+            if self.session.open_documents.is_empty() && !is_coming {
+                let about = (&*self.settings.recent, &self.settings.keymap);
+                panels::start::show(ui, area, about, &mut self.start, requests);
+            } else {
+                self.start.forget();
+            }
             panels::text::type_on_canvas(ui, &self.session, requests);
             self.show_steps(ui);
-            self.show_messages(ui.ctx(), area);
+            self.messages.show(ui.ctx(), area);
             show_hovered(ui, area, self.session.active().is_some());
         });
     }
@@ -83,28 +93,38 @@ impl MainWindow {
         self.settings.layout.width_pt = shown.response.rect.width().round();
     }
 
-    /// The panel in front above, the layers below.
+    /// The color, the panel in front, the layers below.
     fn together(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let floating = &self.settings.layout.floating;
-        let strip: Vec<_> = PanelKind::ALL
-            .into_iter()
-            .filter(|(front, _)| !front.is_below() && !floating.contains(front))
-            .collect();
+        let shown = |is_below: bool| -> Vec<_> {
+            let among = PanelKind::ALL.into_iter();
+            let among = among.filter(|(panel, _)| panel.is_tab() && panel.is_below() == is_below);
+            among.filter(|(panel, _)| !floating.contains(panel)).collect()
+        };
+        let (strip, below) = (shown(false), shown(true));
+        let has_color = !floating.contains(&PanelKind::Color);
+        let height_pt = ui.available_height();
+        if has_color {
+            // Never so large that brushes and layers have no room.
+            let area_pt = (0.21 * height_pt - 36.0).max(70.0).min(190.0);
+            panels::colors::fixed(ui, &self.session, &mut self.settings.color, area_pt, requests);
+            ui.add_space(4.0);
+            ui.separator();
+        }
         let front = match self.settings.layout.front {
             front if strip.iter().any(|(known, _)| *known == front) => Some(front),
             _ => strip.first().map(|(front, _)| *front),
         };
-        let below: Vec<_> = PanelKind::ALL
-            .into_iter()
-            .filter(|(panel, _)| panel.is_below() && !floating.contains(panel))
-            .collect();
         let has_below = !below.is_empty();
         if let Some(front) = front {
             if has_below {
-                let above = Panel::top("front")
+                let left_pt = ui.available_height();
+                let front_pt = (left_pt - LAYERS_PT).max(130.0).min(0.5 * left_pt);
+                // Each height of the window has a division of its own.
+                let above = Panel::top(Id::unique(("front", (height_pt / 24.0) as i32)))
                     .resizable(true)
-                    .default_size(372.0)
-                    .size_range(140.0..=640.0);
+                    .default_size(front_pt)
+                    .size_range(100.0..=(left_pt - 120.0).max(101.0));
                 // Aligned on the left with the layers beneath.
                 let above =
                     above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
@@ -147,7 +167,8 @@ impl MainWindow {
         area.show(ui, |ui| self.panel(ui, front, requests));
     }
 
-    /// The names of panels that share an area, and which of them is in front.
+    /// The names of panels that share an area, and which of them is in front. In one row: without
+    /// room for all names, only the one in front shows its own.
     fn tabs(
         &mut self,
         ui: &mut Ui,
@@ -155,10 +176,21 @@ impl MainWindow {
         mut front: PanelKind,
     ) -> PanelKind {
         let mut gone = None;
-        ui.horizontal_wrapped(|ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            let room_pt = ui.available_width();
+            let needed = |has_icon| -> f32 {
+                strip.iter().map(|(_, name)| tab_width_pt(ui, has_icon, name)).sum()
+            };
+            let (fits_icons, fits) = (needed(true) <= room_pt, needed(false) <= room_pt);
             for &(choice, name) in strip {
-                let open = ui.selectable_value(&mut front, choice, name);
-                let open = open.on_hover_text("Right-click for a window of its own");
+                let is_on = choice == front;
+                let icon = Some(choice.icon()).filter(|_| fits_icons || !fits);
+                let open = tab(ui, icon, name, fits || is_on, is_on);
+                if open.clicked() {
+                    front = choice;
+                }
+                let open = open.on_hover_text(format!("{name}\nRight-click for a window of its own"));
                 open.context_menu(|ui| {
                     if ui.button("In a window of its own").clicked() {
                         gone = Some(choice);
@@ -173,7 +205,9 @@ impl MainWindow {
 
     fn panel(&mut self, ui: &mut Ui, front: PanelKind, requests: &mut UiRequests) {
         match front {
-            PanelKind::Color => panels::colors::show(ui, &self.session, requests),
+            PanelKind::Color => {
+                panels::colors::show(ui, &self.session, &mut self.settings.color, requests)
+            }
             PanelKind::Brushes => {
                 panels::brushes::show(ui, &self.session, &mut self.swatches, requests)
             }
@@ -217,38 +251,6 @@ impl MainWindow {
             if !is_open {
                 self.settings.layout.floating.retain(|other| *other != front);
             }
-        }
-    }
-
-    /// Errors, over the top of the canvas, which does not move.
-    fn show_messages(&mut self, ctx: &egui::Context, canvas: egui::Rect) {
-        if self.messages.is_empty() {
-            return;
-        }
-        let (mut read, mut all_read) = (None, false);
-        let area = egui::Area::new(Id::unique("messages"))
-            .order(egui::Order::Foreground)
-            .fixed_pos(canvas.left_top());
-        area.show(ctx, |ui| {
-            Frame::popup(ui.style()).corner_radius(0).show(ui, |ui| {
-                ui.set_width(canvas.width() - 14.0);
-                let area = egui::ScrollArea::vertical().max_height(canvas.height() * 0.25);
-                area.auto_shrink([false, true]).show(ui, |ui| {
-                    for (i, message) in self.messages.iter().enumerate() {
-                        ui.horizontal_wrapped(|ui| {
-                            if ui.button("Dismiss").clicked() {
-                                read = Some(i);
-                            }
-                            ui.label(RichText::new(message).color(ui.visuals().warn_fg_color));
-                        });
-                    }
-                });
-                all_read = self.messages.len() > 2 && ui.button("Dismiss all").clicked();
-            });
-        });
-        read.map(|i| self.messages.remove(i));
-        if all_read {
-            self.messages.clear();
         }
     }
 }

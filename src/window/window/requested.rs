@@ -29,7 +29,7 @@ impl MainWindow {
             WindowRequest::Choose(purpose) => self.ask_for(purpose, ""),
             WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
             WindowRequest::Open(file) => self.open_files(vec![file], None),
-            WindowRequest::OpenSample => self.open_sample(),
+            WindowRequest::OpenSample(index) => self.open_sample(index),
             WindowRequest::Save => self.save(None),
             WindowRequest::SaveAs => self.save_as(None),
             WindowRequest::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
@@ -109,6 +109,9 @@ impl MainWindow {
             WindowRequest::ShowPanel(panel) => self.settings.layout.show(panel),
             WindowRequest::EditBrush => crate::panels::brushes::edit(ctx),
             WindowRequest::NextLook => self.show_next_look(ctx),
+            WindowRequest::ToggleDetails => {
+                self.settings.has_details = !self.settings.has_details;
+            }
             WindowRequest::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),
             WindowRequest::Scale(scale) => self.scale(ctx, scale),
             WindowRequest::FullScreen => {

@@ -73,13 +73,20 @@ impl PartHandle {
         };
         Some(match self {
             PartHandle::Puff => format!("Height {:.2}", height_of(&part.kind)?.0),
-            PartHandle::Tilt => format!("Tilt {:.0}°, {:.0}°", part.tilt_deg.x, part.tilt_deg.y),
+            PartHandle::Tilt => describe_tilt(part.tilt_deg),
             PartHandle::Profile => format!("Pillow – tube {:.2}", inflation?.profile),
             PartHandle::Rim => format!("Rim {:.0}°", inflation?.rim_deg),
             PartHandle::Depth => format!("Raise {:.0} px", part.raise),
             PartHandle::Corner(_) | PartHandle::Turn | PartHandle::Body => return None,
         })
     }
+}
+
+/// Where a part faces that leans by so many degrees, up toward the right and toward the bottom.
+pub fn describe_tilt(tilt_deg: Vec2) -> String {
+    let Vec2 { x, y } = tilt_deg;
+    let (across, along) = (if x < 0.0 { "right" } else { "left" }, if y < 0.0 { "down" } else { "up" });
+    format!("Face {across} {:.0}°, {along} {:.0}°", x.abs(), y.abs())
 }
 
 impl PartGizmo {

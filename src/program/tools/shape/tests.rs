@@ -87,6 +87,12 @@ fn handles_puff_tilt_scale_and_turn_the_selected_part() {
     assert!(label == "Puff part" && (inflation.puff - 2.0).abs() < 0.05, "{}", inflation.puff);
     let (_, part) = drag(gizmo.tilt().unwrap(), vec2(20.0, -40.0));
     assert_eq!(part.tilt_deg, vec2(-10.0, 20.0), "it faces where the ball goes");
+    let said = PartHandle::Tilt.describe(&part);
+    assert_eq!(said.as_deref(), Some("Face right 10°, up 20°"));
+    let surface = document.with_part(part).surface.unwrap();
+    let middle = gizmo.middle().as_uvec2();
+    let n = surface.normal(middle.x as usize, middle.y as usize);
+    assert!(n.x > 0.1 && n.y > 0.2, "to the right and up: {n}");
     let (label, part) = drag(gizmo.profile().unwrap(), vec2(60.0, 3.0));
     let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
     assert!(label == "Pillow – tube" && inflation.profile == 0.5, "{}", inflation.profile);

@@ -30,7 +30,7 @@ const BRUSH: [(&str, &str); 8] = [
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 54] = [
+const SYNONYMS: [(&str, &[&str]); 63] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
@@ -72,6 +72,15 @@ const SYNONYMS: [(&str, &[&str]); 54] = [
     ("bake", &["into pixels"]),
     ("operator", &["bend"]),
     ("chrome", &["bend: gloss"]),
+    ("shading", &["layer", "bend: gloss"]),
+    ("phong", &["soft plastic"]),
+    ("lambertian", &["velvet"]),
+    ("anisotropic", &["brushed metal"]),
+    ("ashikhmin", &["brushed metal"]),
+    ("matcap", &["painted ball"]),
+    ("lit", &["painted ball", "lit by an environment"]),
+    ("radiance", &["bring out form"]),
+    ("scaling", &["image size", "bring out form"]),
     ("highlight", &["bend: gloss"]),
     ("print", &["bend: wrap"]),
     ("folder", &["group"]),
@@ -80,7 +89,7 @@ const SYNONYMS: [(&str, &[&str]); 54] = [
     ("clipping", &["clip to layer below"]),
     ("ruler", &["rulers", "guides", "assistants"]),
     ("symmetry", &["assistants"]),
-    ("inflate", &["give it a shape"]),
+    ("inflate", &["give it a shape", "puff up"]),
     ("3d", &["give it a shape", "open maps"]),
     ("theme", &["dark, gray or light"]),
     ("preferences", &["keyboard shortcuts", "larger interface", "dark, gray or light"]),

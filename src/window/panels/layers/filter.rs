@@ -3,6 +3,8 @@
 
 use super::color_of;
 use crate::document::{Content, Document, Layer, LayerId, LayerLabel};
+use crate::icons::{BUTTON_PT, Icon, icon_button};
+use crate::session::Session;
 use crate::widgets::set_accessible_name;
 use eframe::egui::{self, Button, Id, RichText, TextEdit, Ui};
 use std::sync::Arc;
@@ -73,30 +75,29 @@ fn id() -> Id {
     Id::unique("layer filter")
 }
 
-/// The field, and a menu of kinds and labels; Escape in the field clears both.
-pub fn show(ui: &mut Ui, document: &Document) {
+/// The field, and a menu of kinds and labels, in a row; Escape in the field clears both.
+pub fn show(ui: &mut Ui, session: &Session) {
+    let Some(document) = session.shown_document() else { return };
     let mut filter = current(ui);
-    ui.horizontal(|ui| {
-        let field = TextEdit::singleline(&mut filter.text)
-            .hint_text("Filter")
-            .desired_width(ui.available_width() - 92.0);
-        let field = ui.add(field);
-        set_accessible_name(&field, "Filter layers");
-        if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+    let buttons = if filter.is_empty() { 1.0 } else { 2.0 };
+    let field = TextEdit::singleline(&mut filter.text)
+        .hint_text("Filter")
+        .desired_width(ui.available_width() - buttons * (BUTTON_PT + 2.0) - 10.0);
+    let field = ui.add(field);
+    set_accessible_name(&field, "Filter layers");
+    if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        filter = LayerFilter::default();
+    }
+    let is_narrowed = filter.kind.is_some() || filter.label.is_some();
+    let menu = icon_button(ui, Icon::Dots, "Kinds of layers", is_narrowed);
+    egui::Popup::menu(&menu).show(|ui| kinds(ui, document, &mut filter));
+    menu.on_hover_text("Shows only layers of a kind or a label");
+    if !filter.is_empty() {
+        let hint = "Shows all layers again (Escape)";
+        if icon_button(ui, Icon::Close, "Show all layers", false).on_hover_text(hint).clicked() {
             filter = LayerFilter::default();
         }
-        let chosen =
-            filter.kind.map(str::to_owned).or(filter.label.map(|label| label.name().to_owned()));
-        let menu = ui.menu_button(chosen.as_deref().unwrap_or("all kinds"), |ui| {
-            kinds(ui, document, &mut filter)
-        });
-        menu.response.on_hover_text("Shows only layers of a kind or a label");
-        if !filter.is_empty()
-            && ui.small_button("×").on_hover_text("Shows all layers again (Escape)").clicked()
-        {
-            filter = LayerFilter::default();
-        }
-    });
+    }
     ui.data_mut(|data| data.insert_temp(id(), filter));
 }
 

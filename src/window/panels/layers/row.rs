@@ -3,13 +3,13 @@
 
 use super::{color_of, drag, kind_icon, menu, set};
 use crate::document::{Document, Layer, LayerId, LayerLock, MaskKind};
-use crate::icons::{Icon, sized_button};
+use crate::icons::{Icon, quiet_button};
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, SelectionAction};
 use crate::session::selected_layers::range;
 use crate::session::{Action, LayerPath, OpenDocument, Property, Session};
-use crate::theme::{ACCENT, strengthen_hints};
+use crate::theme::{ACCENT, CHECKER, strengthen_hints};
 use crate::thumbnails::Thumbnails;
 use crate::tools::ModifierKeys;
 use eframe::egui::{
@@ -18,7 +18,12 @@ use eframe::egui::{
 };
 use std::sync::Arc;
 
-const ROW_PT: f32 = 38.0;
+const ROW_PT: f32 = 44.0;
+/// Sides of the pictures of a layer and of its mask.
+const PICTURE_PT: f32 = 40.0;
+const MASK_PT: f32 = 30.0;
+/// Of the squares behind what is transparent.
+const CHECKER_PT: f32 = 5.0;
 const INDENT_PT: f32 = 14.0;
 /// The width of the strip of a label's color.
 const LABEL_PT: f32 = 4.0;
@@ -145,7 +150,7 @@ impl LayerRow<'_> {
     fn switches(&self, ui: &mut Ui, requests: &mut UiRequests) {
         let layer = self.layer;
         let eye = if layer.visible { Icon::Shown } else { Icon::Hidden };
-        let eye = sized_button(ui, eye, &format!("Show {}", layer.name), layer.visible, 22.0);
+        let eye = quiet_button(ui, eye, &format!("Show {}", layer.name), layer.visible, 22.0);
         if eye.on_hover_text("Show or hide; with Alt this layer alone, or all again").clicked() {
             if ui.input(|input| input.modifiers.alt) {
                 requests.act(Action::Layer(LayerAction::Solo { layer: self.path.clone() }));
@@ -161,7 +166,7 @@ impl LayerRow<'_> {
         if layer.content.group().is_some() {
             let is_folded = is_folded(ui, layer.id);
             let icon = if is_folded { Icon::Closed } else { Icon::Opened };
-            if sized_button(ui, icon, &format!("Fold {}", layer.name), false, 18.0).clicked() {
+            if quiet_button(ui, icon, &format!("Fold {}", layer.name), true, 18.0).clicked() {
                 ui.data_mut(|data| data.insert_temp(folded(layer.id), !is_folded));
             }
         }
@@ -178,7 +183,7 @@ impl LayerRow<'_> {
             .session
             .active()
             .is_some_and(|open| open.on_mask && open.primary == Some(self.layer.id));
-        let (rect, response) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::click());
+        let (rect, response) = ui.allocate_exact_size(vec2(MASK_PT, MASK_PT), Sense::click());
         let label = format!("Mask of {}", self.layer.name);
         response
             .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, &label));
@@ -192,7 +197,7 @@ impl LayerRow<'_> {
                 let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                 ui.painter().image(texture, at, uv, Color32::WHITE);
             }
-            None => Icon::Mask.draw(ui.painter(), rect.shrink(5.0), Color32::from_gray(0xe4)),
+            None => Icon::Mask.draw(ui.painter(), rect.shrink(7.0), Color32::from_gray(0xe4)),
         }
         if mask.disabled {
             let cross = Stroke::new(2.0, ui.visuals().error_fg_color);
@@ -225,21 +230,32 @@ fn picture(
     layer: &Arc<Layer>,
     thumbnails: &mut Thumbnails,
 ) -> Rect {
-    let (rect, _) = ui.allocate_exact_size(vec2(30.0, 30.0), Sense::hover());
-    let icon = kind_icon(&layer.content);
-    ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x70));
+    let (rect, _) = ui.allocate_exact_size(vec2(PICTURE_PT, PICTURE_PT), Sense::hover());
     if let Some((texture, size)) = thumbnails.of(ui.ctx(), document, layer) {
         let scale = (rect.width() / size.x).min(rect.height() / size.y);
         let at = Rect::from_center_size(rect.center(), size * scale);
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        checker(ui, at);
         ui.painter().image(texture, at, uv, Color32::WHITE);
-        let badge = Rect::from_min_size(rect.max - vec2(13.0, 13.0), vec2(13.0, 13.0));
-        ui.painter().rect_filled(badge, 3.0, Color32::from_black_alpha(150));
-        icon.draw(ui.painter(), badge.shrink(1.5), Color32::from_gray(0xe4));
     } else {
-        icon.draw(ui.painter(), rect.shrink(6.0), Color32::from_gray(0xe4));
+        ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
+        kind_icon(&layer.content).draw(ui.painter(), rect.shrink(11.0), ui.visuals().text_color());
     }
     rect
+}
+
+/// Squares behind what is transparent.
+fn checker(ui: &Ui, rect: Rect) {
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    let [light, dark] = CHECKER;
+    painter.rect_filled(rect, 0.0, light);
+    let squares = |length: f32| (length / CHECKER_PT).ceil() as i32;
+    for j in 0..squares(rect.height()) {
+        for i in (j % 2..squares(rect.width())).step_by(2) {
+            let at = rect.min + vec2(i as f32, j as f32) * CHECKER_PT;
+            painter.rect_filled(Rect::from_min_size(at, vec2(CHECKER_PT, CHECKER_PT)), 0.0, dark);
+        }
+    }
 }
 
 /// The name, or a text field to change it.
@@ -293,7 +309,7 @@ fn name(
         room.max(10.0),
         TextStyle::Body,
     );
-    ui.painter().galley(pos2(at.left() + 3.0, at.top() + 4.0), galley, color);
+    ui.painter().galley(pos2(at.left() + 4.0, at.top() + 5.0), galley, color);
     let mode = if layer.blend == BlendMode::Normal {
         String::new()
     } else {
@@ -306,12 +322,16 @@ fn name(
     };
     let about = format!("{}{mode}{opacity}", layer.content.label());
     let font = TextStyle::Small.resolve(ui.style());
+    let weak = ui.visuals().weak_text_color();
+    let line = at.bottom() - 13.0;
+    let mark = Rect::from_center_size(pos2(at.left() + 9.5, line), vec2(11.0, 11.0));
+    kind_icon(&layer.content).draw(ui.painter(), mark, weak);
     ui.painter().text(
-        pos2(at.left() + 3.0, at.bottom() - 5.0),
-        Align2::LEFT_BOTTOM,
+        pos2(mark.right() + 4.0, line),
+        Align2::LEFT_CENTER,
         about,
         font,
-        ui.visuals().weak_text_color(),
+        weak,
     );
     for (i, icon) in badges.iter().enumerate() {
         let center = pos2(at.right() - 10.0 - 17.0 * i as f32, at.center().y);

@@ -91,7 +91,7 @@ pub fn lines(ui: &mut Ui, now: Lines) -> Option<ValueChange<Lines>> {
         .show(ui, |angle_deg| Lines { angle_deg, ..now });
     let hint = "How far a line reaches; 0: to the rim and to the next lines";
     let reach =
-        length("Reach", &Lines::REACH, hint, now.reach).show(ui, |reach| Lines { reach, ..now });
+        length("Spread", &Lines::REACH, hint, now.reach).show(ui, |reach| Lines { reach, ..now });
     ui.weak(match now.form {
         LineForm::Ridge => "The form falls away on both sides of a line.",
         LineForm::Valley => "The form rises on both sides of a line.",

@@ -33,11 +33,11 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     kind.or(stands)
 }
 
-const PUFF_HINT: &str = "Factor of the height: at 1 a disc becomes a half ball";
+const PUFF_HINT: &str = "How far it puffs up: at 1 a disc becomes a half ball";
 
 /// Puff, with fine steps where they are needed.
 fn puff(value: f32) -> NumberRow<'static> {
-    let row = number("Puff", &Inflation::PUFF, PUFF_HINT, value);
+    let row = number("Height", &Inflation::PUFF, PUFF_HINT, value);
     NumberRow { field: row.field.logarithmic(), ..row }
 }
 

@@ -15,7 +15,7 @@ impl LayerKind for RadianceScaling {
     }
 
     fn label(&self) -> &'static str {
-        "Radiance scaling"
+        "Bring out form"
     }
 
     fn role(&self) -> Role<'_> {

@@ -24,7 +24,7 @@ rilievo_engine::named! {
         Fill = "fill" => "Fill layer",
         Gradient = "gradient" => "Gradient layer",
         Shading = "shading" => "Shading layer",
-        RadianceScaling = "radiance scaling" => "Radiance scaling",
+        RadianceScaling = "radiance scaling" => "Bring out form",
         Normals = "normals" => "Detail normals",
         Group = "group" => "Group",
     }
@@ -48,7 +48,7 @@ pub(super) fn lit_layer(model: Model, document: &Document) -> Layer {
     let is_painted =
         document.walk().iter().any(|(_, layer)| layer.visible && layer.content.has_pixels());
     shading.painter.beneath = model == Model::Painter && is_painted;
-    let name = document.free_layer_name(&model_name(model));
+    let name = document.free_layer_name(model.label());
     let mut layer = Layer::new(name, Content::Shading(Live::new(shading)));
     if model == Model::Toon {
         layer.blend = BlendMode::Multiply;
@@ -65,14 +65,6 @@ fn make_drawing(pattern: FormPattern, size: Size) -> Content {
 /// nor coarser ones look drawn.
 fn on_canvas(size: Size) -> f32 {
     (size.longer_side() / 1024.0).max(0.5).min(8.0)
-}
-
-/// “ambient-occlusion” as the name of a layer.
-fn model_name(model: Model) -> String {
-    let word = if model == Model::Painter { "painter's light" } else { model.name() };
-    let spaced = word.replace('-', " ");
-    let mut letters = spaced.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 pub(super) fn make_layer(
@@ -108,7 +100,7 @@ pub(super) fn make_layer(
         }
         NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
         NewLayer::RadianceScaling => {
-            ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default()))
+            ("Bring out form", Content::RadianceScaling(RadianceScaling::default()))
         }
         NewLayer::Normals => {
             let normals = NormalLayer {

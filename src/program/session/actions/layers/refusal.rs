@@ -83,7 +83,7 @@ impl LayerAction {
                 };
                 match layer.find(document).is_some_and(shows_ball) {
                     true => Ok(()),
-                    false => Err("Select a shading layer of a lit sphere first."),
+                    false => Err("Select a layer that is lit by a painted ball first."),
                 }
             }
             LayerAction::MakeStrokes { layer } | LayerAction::DrawWith { layer } => {

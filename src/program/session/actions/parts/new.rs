@@ -14,8 +14,8 @@ rilievo_engine::named! {
     /// The kinds of new parts.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum NewPart {
-        InflateLayer = "inflate" => ("Inflate this layer", "What the selected layer covers, filled with air"),
-        InflateSelection = "inflate selection" => ("Inflate selection", "What is selected, filled with air"),
+        InflateLayer = "inflate" => ("Puff up this layer", "What the selected layer covers, filled with air"),
+        InflateSelection = "inflate selection" => ("Puff up selection", "What is selected, filled with air"),
         Bevel = "bevel" => ("Bevel", "The selection, or the selected layer, with a slope along its rim"),
         Sphere = "sphere" => ("Sphere", "A ball in the middle of the canvas"),
         Ellipsoid = "ellipsoid" => ("Ellipsoid", "An egg with three axes"),
@@ -78,7 +78,7 @@ pub fn make_part(kind: NewPart, open: &OpenDocument) -> Result<Part, PartRefusal
         }
         NewPart::InflateSelection => {
             let outline = of_selection(document)
-                .ok_or("Nothing is selected, so there is nothing to inflate.")?;
+                .ok_or("Nothing is selected, so there is nothing to puff up.")?;
             PartKind::Inflate { outline, inflation: Inflation::default() }
         }
         NewPart::Bevel => {
