@@ -63,10 +63,8 @@ impl Sample {
         let size = Size::new(SIDE as u32, SIDE as u32);
         let down = (vec2(0.0, 0.0), vec2(0.0, SIDE as f32));
         let dark = [(0.0, [0x3a; 3]), (1.0, [0x24; 3])];
-        let behind = Layer {
-            clip_to_surface: false,
-            ..gradient("Background", down, &dark, Operator::None)
-        };
+        let behind =
+            Layer { clip_to_surface: false, ..gradient("Background", down, &dark, Operator::None) };
         let layers = std::iter::once(behind).chain((self.layers)(size)).map(Arc::new).collect();
         let document =
             Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
@@ -85,7 +83,8 @@ fn bent(name: &str, stops: &Stops, alpha: f32) -> Layer {
 }
 
 fn gradient(name: &str, (from, to): (Vec2, Vec2), stops: &Stops, operator: Operator) -> Layer {
-    let stop = |&(t, [r, g, b]): &(f32, [u8; 3])| GradientStop { t, color: Color { r, g, b, a: 255 } };
+    let stop =
+        |&(t, [r, g, b]): &(f32, [u8; 3])| GradientStop { t, color: Color { r, g, b, a: 255 } };
     let gradient = Gradient {
         from,
         to,

@@ -86,7 +86,8 @@ fn painted(card: &StartCard) -> Option<ColorImage> {
         StartCard::File(file) => {
             let length = std::fs::metadata(file).ok()?.len();
             let budget = Budget::of_this_machine();
-            let small = (length <= LARGEST_BYTES).then(|| thumbnail(file, SIDE_PX, &budget).ok())??;
+            let small =
+                (length <= LARGEST_BYTES).then(|| thumbnail(file, SIDE_PX, &budget).ok())??;
             let size = [small.size.width as usize, small.size.height as usize];
             Some(ColorImage::from_rgba_unmultiplied(size, &small.rgba))
         }

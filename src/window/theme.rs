@@ -88,7 +88,11 @@ pub fn bar_ground(visuals: &Visuals) -> Color32 {
 
 /// How far a number goes, on its bar: the accent only while it is held.
 pub fn bar_fill(visuals: &Visuals, is_held: bool) -> Color32 {
-    if is_held { visuals.selection.bg_fill } else { Color32::from_gray(Look::of(visuals).grays().filled) }
+    if is_held {
+        visuals.selection.bg_fill
+    } else {
+        Color32::from_gray(Look::of(visuals).grays().filled)
+    }
 }
 
 /// Where the value of a number is, on its bar.
@@ -359,7 +363,8 @@ mod tests {
                 let shown = ui.visuals().widgets.inactive.bg_stroke.color;
                 assert_eq!(shown, Color32::from_gray(look.grays().outline), "{name}");
                 strengthen_hints(ui);
-                let on_row = contrast(ui.visuals().weak_text_color(), ui.visuals().selection.bg_fill);
+                let on_row =
+                    contrast(ui.visuals().weak_text_color(), ui.visuals().selection.bg_fill);
                 assert!(on_row >= 4.5, "{name}: the kind of the selected row {on_row:.2}");
             });
         }

@@ -184,6 +184,7 @@ pub fn choice_row<T: Copy + PartialEq>(
 ) -> Option<T> {
     ui.horizontal(|ui| {
         name(ui, label);
+        ui.spacing_mut().combo_width = ui.available_width();
         choice(ui, label, current, choices)
     })
     .inner
@@ -238,6 +239,23 @@ pub fn title(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).strong());
 }
 
+/// Several choices on a common ground, of which one is on.
+pub fn segments(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
+    let track = egui::Frame::new().fill(theme::bar_ground(ui.visuals())).corner_radius(5);
+    track.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        show(ui);
+    });
+}
+
+/// One of them.
+pub fn segment(ui: &mut Ui, label: &str, hint: &str, on: bool) -> bool {
+    let text = if on { RichText::new(label).strong() } else { RichText::new(label) };
+    let button =
+        egui::Button::selectable(on, text).min_size(vec2(0.0, ui.spacing().interact_size.y));
+    ui.add(button).on_hover_text(hint).clicked()
+}
+
 /// The height of a tab, points.
 const TAB_PT: f32 = 24.0;
 /// Around the content of a tab, and between its icon and its name, points.
@@ -261,9 +279,7 @@ pub fn tab(ui: &mut Ui, icon: Option<Icon>, label: &str, shows_name: bool, on: b
         false => icon_pt + 2.0 * TAB_INSET_PT - 2.0,
     };
     let (rect, response) = ui.allocate_exact_size(vec2(width, TAB_PT), egui::Sense::click());
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, on, label)
-    });
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, on, label));
     let visuals = ui.visuals();
     let color = match on || response.hovered() || response.has_focus() {
         true => visuals.strong_text_color(),

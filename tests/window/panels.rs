@@ -154,8 +154,7 @@ fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
 #[test]
 fn the_status_bar_says_what_is_measured_if_that_is_asked_for() {
     let mut harness = window();
-    let has_memory =
-        |harness: &Story| harness.query_by_label("Memory of this document").is_some();
+    let has_memory = |harness: &Story| harness.query_by_label("Memory of this document").is_some();
     assert!(!has_memory(&harness));
     command(&mut harness, "Details in the status bar");
     assert!(has_memory(&harness));

@@ -2,7 +2,8 @@
 //! Floor 7.
 
 use super::row::{
-    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, submenu,
+    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row,
+    submenu,
 };
 use crate::requests::WindowRequest;
 use crate::session::Action;

@@ -124,7 +124,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| add(requests, NewLayer::Strokes),
     ),
-    row("New group", &[], "Layers flattened together", has_document, |_, requests| add(requests, NewLayer::Group)),
+    row("New group", &[], "Layers flattened together", has_document, |_, requests| {
+        add(requests, NewLayer::Group)
+    }),
     submenu("New live layer", LIVE),
     submenu("New shading layer", super::shading::COMMANDS),
     submenu("New adjustment layer", super::adjustments::LAYERS),
@@ -153,9 +155,15 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
     ),
-    row("Duplicate layer", &[], "Copies the selected layers, above them", has_document, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
-    }),
+    row(
+        "Duplicate layer",
+        &[],
+        "Copies the selected layers, above them",
+        has_document,
+        |session, requests| {
+            with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
+        },
+    ),
     row(
         "Delete layer",
         &[shift(Key::Delete)],
@@ -184,7 +192,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[ctrl(Key::E), ctrl_shift(Key::M)],
         "Makes one paint layer of this layer and the one below it, or of all selected ones",
         has_document,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::MergeDown { layer }),
+        |session, requests| {
+            with_selected(session, requests, |layer| LayerAction::MergeDown { layer })
+        },
     ),
     row(
         "Turn layer into pixels",
@@ -207,7 +217,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[ctrl_alt(Key::G)],
         "Paint only where the layer beneath has paint",
         has_layer,
-        |session, requests| set(session, requests, Property::ClipBelow { on: !is_clipped(session) }),
+        |session, requests| {
+            set(session, requests, Property::ClipBelow { on: !is_clipped(session) })
+        },
     )
     .ticked(|session, _| is_clipped(session)),
     row(
@@ -222,19 +234,31 @@ pub const COMMANDS: &[MenuCommand] = &[
         toggle_lock(session, requests, LayerLock::All)
     })
     .ticked(|session, _| is_locked(session, LayerLock::All)),
-    row("Show or hide layer", &[], "Same as the eye of the selected layer", has_layer, |session, requests| {
-        set(session, requests, Property::Visible { on: !is_shown(session) });
-    })
+    row(
+        "Show or hide layer",
+        &[],
+        "Same as the eye of the selected layer",
+        has_layer,
+        |session, requests| {
+            set(session, requests, Property::Visible { on: !is_shown(session) });
+        },
+    )
     .ticked(|session, _| is_shown(session)),
-    row("Show layer alone", &[], "Hides all other layers, or shows them again", has_layer, |session, requests| {
-        with_primary(session, requests, |layer| LayerAction::Solo { layer })
-    })
+    row(
+        "Show layer alone",
+        &[],
+        "Hides all other layers, or shows them again",
+        has_layer,
+        |session, requests| with_primary(session, requests, |layer| LayerAction::Solo { layer }),
+    )
     .ticked(|session, _| is_alone(session)),
 ];
 
 /// Layers that stay as they were set, and can be set again.
 const LIVE: &[MenuCommand] = &[
-    row("New fill layer", &[], "A layer of one color", has_document, |_, requests| add(requests, NewLayer::Fill)),
+    row("New fill layer", &[], "A layer of one color", has_document, |_, requests| {
+        add(requests, NewLayer::Fill)
+    }),
     row(
         "New gradient layer",
         &[],
@@ -277,7 +301,12 @@ const DRAWING: &[MenuCommand] = &[
         "Split part by place",
         &[],
         "Separate areas of the selected part's color, such as two eyes, become separate parts",
-        |session| session.active().and_then(|open| open.selected_part()).is_some_and(|part| part.is_of_color()),
+        |session| {
+            session
+                .active()
+                .and_then(|open| open.selected_part())
+                .is_some_and(|part| part.is_of_color())
+        },
         |session, requests| {
             if let Some(part) = session.active().and_then(|open| open.selected_part()) {
                 requests.act(Action::Part(PartAction::Split { part: part.id.clone() }));
@@ -333,14 +362,18 @@ const ORDER: &[MenuCommand] = &[
         &[ctrl(Key::PageUp)],
         "Moves the selected layers above the next one",
         has_layer,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: 1 }),
+        |session, requests| {
+            with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: 1 })
+        },
     ),
     row(
         "Move layer down",
         &[ctrl(Key::PageDown)],
         "Moves the selected layers below the next one",
         has_layer,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
+        |session, requests| {
+            with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 })
+        },
     ),
     LINE,
     row(

@@ -12,13 +12,9 @@ fn add(requests: &mut UiRequests, model: Model) {
 }
 
 pub const COMMANDS: &[MenuCommand] = &[
-    row(
-        "New painter's light layer",
-        &[],
-        Model::Painter.hint(),
-        has_document,
-        |_, requests| add(requests, Model::Painter),
-    ),
+    row("New painter's light layer", &[], Model::Painter.hint(), has_document, |_, requests| {
+        add(requests, Model::Painter)
+    }),
     row("New soft plastic layer", &[], Model::Phong.hint(), has_document, |_, requests| {
         add(requests, Model::Phong)
     }),
@@ -34,20 +30,12 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("New painted ball layer", &[], Model::LitSphere.hint(), has_document, |_, requests| {
         add(requests, Model::LitSphere)
     }),
-    row(
-        "New mirror layer",
-        &[],
-        Model::Mirror.hint(),
-        has_document,
-        |_, requests| add(requests, Model::Mirror),
-    ),
-    row(
-        "New glass layer",
-        &[],
-        Model::Refraction.hint(),
-        has_document,
-        |_, requests| add(requests, Model::Refraction),
-    ),
+    row("New mirror layer", &[], Model::Mirror.hint(), has_document, |_, requests| {
+        add(requests, Model::Mirror)
+    }),
+    row("New glass layer", &[], Model::Refraction.hint(), has_document, |_, requests| {
+        add(requests, Model::Refraction)
+    }),
     row(
         "New layer lit by an environment",
         &[],

@@ -51,9 +51,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| view(requests, ViewAction::Zoom { factor: 1.25, about: Vec2::ZERO }),
     ),
-    row("Zoom out", &[ctrl(Key::Minus), key(Key::Minus)], "Or turn the wheel", has_document, |_, requests| {
-        view(requests, ViewAction::Zoom { factor: 0.8, about: Vec2::ZERO })
-    }),
+    row(
+        "Zoom out",
+        &[ctrl(Key::Minus), key(Key::Minus)],
+        "Or turn the wheel",
+        has_document,
+        |_, requests| view(requests, ViewAction::Zoom { factor: 0.8, about: Vec2::ZERO }),
+    ),
     row(
         "Fit canvas",
         &[ctrl(Key::Num0), key(Key::Num2)],
@@ -93,7 +97,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| view(requests, ViewAction::Mirror {}),
     )
-    .ticked(|session, _| session.active().is_some_and(|open| open.view.is_some_and(|view| view.mirrored))),
+    .ticked(|session, _| {
+        session.active().is_some_and(|open| open.view.is_some_and(|view| view.mirrored))
+    }),
     LINE,
     submenu("Show the surface", SURFACE),
     row(
@@ -118,7 +124,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.request(WindowRequest::TogglePanels),
     )
     .ticked(|_, layout| layout.is_hidden),
-    row("Full screen", &[key(Key::F11)], "Or back", always, |_, requests| requests.request(WindowRequest::FullScreen)),
+    row("Full screen", &[key(Key::F11)], "Or back", always, |_, requests| {
+        requests.request(WindowRequest::FullScreen)
+    }),
     row(
         "Larger interface",
         &[ctrl_alt(Key::Plus), ctrl_alt(Key::Equals)],
@@ -133,9 +141,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::ResizeInterface { is_larger: false }),
     ),
-    row("Dark, gray or light", &[], "The next theme of the window; gray is for judging colors", always, |_, requests| {
-        requests.request(WindowRequest::NextLook)
-    }),
+    row(
+        "Dark, gray or light",
+        &[],
+        "The next theme of the window; gray is for judging colors",
+        always,
+        |_, requests| requests.request(WindowRequest::NextLook),
+    ),
     row(
         "Details in the status bar",
         &[],
@@ -158,9 +170,15 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |session, requests| show_neighbor(session, requests, 1),
     ),
-    row("Previous document", &[ctrl_shift(Key::Tab)], "The tab before this one", has_document, |session, requests| {
-        show_neighbor(session, requests, session.open_documents.len().saturating_sub(1))
-    }),
+    row(
+        "Previous document",
+        &[ctrl_shift(Key::Tab)],
+        "The tab before this one",
+        has_document,
+        |session, requests| {
+            show_neighbor(session, requests, session.open_documents.len().saturating_sub(1))
+        },
+    ),
 ];
 
 const SURFACE: &[MenuCommand] = &[
@@ -180,9 +198,13 @@ const SURFACE: &[MenuCommand] = &[
         |session, requests| overlay(session, requests, "depth"),
     )
     .ticked(|session, _| is_over(session, "depth")),
-    row("Show curvature", &[alt(Key::Num3)], "Convex blue, concave red", has_surface, |session, requests| {
-        overlay(session, requests, "curvature")
-    })
+    row(
+        "Show curvature",
+        &[alt(Key::Num3)],
+        "Convex blue, concave red",
+        has_surface,
+        |session, requests| overlay(session, requests, "curvature"),
+    )
     .ticked(|session, _| is_over(session, "curvature")),
     row(
         "Show anchor weights",

@@ -44,7 +44,8 @@ pub fn sized_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32
                 StrokeKind::Inside,
             );
         }
-        let inner = Rect::from_center_size(rect.center(), Vec2::splat(icon.grid()).min(rect.size() * 0.74));
+        let inner =
+            Rect::from_center_size(rect.center(), Vec2::splat(icon.grid()).min(rect.size() * 0.74));
         icon.draw(ui.painter(), inner, look.text_color());
     }
     response

@@ -11,7 +11,7 @@ use crate::session::actions::{FileAction, HandAction};
 use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
 use crate::swatches::Swatches;
-use crate::widgets::{NumberField, set_accessible_name, title};
+use crate::widgets::{NumberField, segment, segments, set_accessible_name, title};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     self, Align, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2,
@@ -22,9 +22,17 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     let sought = ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
-        ui.selectable_value(&mut edits, true, "Current brush")
-            .on_hover_text("Settings of the current brush");
+        segments(ui, |ui| {
+            for (which, label, hint) in [
+                (false, "Presets", "Brushes to choose from"),
+                (true, "Current brush", "Settings of the current brush"),
+            ] {
+                if segment(ui, label, hint, edits == which) {
+                    edits = which;
+                }
+            }
+        });
+        ui.add_space(3.0);
         if edits { String::new() } else { search(ui, requests) }
     });
     let sought = sought.inner;
@@ -183,17 +191,19 @@ fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let size = NumberField::new("Size", Brush::HAND_SIZE, "Diameter of a dab").px();
     push(size.row(ui, brush.size).map(|c| HandAction::Size { to: c.to }));
     let hardness =
-        NumberField::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered");
+        NumberField::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered")
+            .share();
     push(hardness.row(ui, brush.hardness).map(|c| HandAction::Hardness { to: c.to }));
     let softness = NumberField::new(
         "Softness",
         0.0..=1.0,
         "Blur of the footprint: a rougher, less glossy mark",
-    );
+    )
+    .share();
     push(softness.row(ui, brush.softness).map(|c| HandAction::Softness { to: c.to }));
-    let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke");
+    let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke").share();
     push(opacity.row(ui, brush.opacity).map(|c| HandAction::Opacity { to: c.to }));
-    let flow = NumberField::new("Flow", 0.0..=1.0, "What one dab adds");
+    let flow = NumberField::new("Flow", 0.0..=1.0, "What one dab adds").share();
     push(flow.row(ui, brush.flow).map(|c| HandAction::Flow { to: c.to }));
     let spacing = NumberField::new("Spacing", 0.01..=4.0, "Distance between dabs, in diameters")
         .logarithmic();
@@ -204,8 +214,10 @@ fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     title(ui, "Pen pressure");
     let [size, flow] =
         [Property::Size, Property::Flow].map(|property| brush.dynamics.pressure_share(property));
-    let drives = NumberField::new("Size", 0.0..=1.0, "How much the size follows the pressure");
+    let drives =
+        NumberField::new("Size", 0.0..=1.0, "How much the size follows the pressure").share();
     push(drives.row(ui, size).map(|c| HandAction::Pressure { size: c.to, flow }));
-    let drives = NumberField::new("Flow", 0.0..=1.0, "How much the flow follows the pressure");
+    let drives =
+        NumberField::new("Flow", 0.0..=1.0, "How much the flow follows the pressure").share();
     push(drives.row(ui, flow).map(|c| HandAction::Pressure { size, flow: c.to }));
 }

@@ -11,7 +11,7 @@ use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::widgets::{NumberField, ValueChange, check, set_accessible_name, swatch};
 use eframe::egui::{
-    self, Id, Popup, PopupCloseBehavior, Sense, StrokeKind, TextEdit, Ui, Vec2, vec2,
+    self, Id, Popup, PopupCloseBehavior, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2, vec2,
 };
 
 /// Sides of a swatch of the row, points, and the gap between two.
@@ -64,7 +64,7 @@ fn row(ui: &mut Ui, session: &Session, view: &mut ColorView, requests: &mut UiRe
             let size = vec2(SWATCH_PT, SWATCH_PT);
             let Some(&color) = session.recent_colors.get(i) else {
                 let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-                let line = ui.visuals().widgets.noninteractive.bg_stroke;
+                let line = Stroke::new(1.0, ui.visuals().widgets.inactive.weak_bg_fill);
                 ui.painter().rect_stroke(rect, 3.0, line, StrokeKind::Inside);
                 continue;
             };

@@ -146,9 +146,8 @@ fn toggles(ui: &mut Ui, layer: &Layer, selected: &LayerPaths, requests: &mut UiR
         if !button.on_hover_text(format!("{label}\n{hint}")).clicked() {
             continue;
         }
-        let lock = |lock: LayerLock| Property::Locked {
-            lock: if is_on { LayerLock::None } else { lock },
-        };
+        let lock =
+            |lock: LayerLock| Property::Locked { lock: if is_on { LayerLock::None } else { lock } };
         let to = match icon {
             Icon::LockAlpha => lock(LayerLock::Alpha),
             Icon::Lock => lock(LayerLock::All),

@@ -8,7 +8,8 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, SelectionAction};
 use crate::session::{Action, Session};
 use crate::settings::Settings;
-use eframe::egui::{self, Button, RichText, Ui};
+use crate::widgets::tab;
+use eframe::egui::{self, Button, Ui};
 use std::path::PathBuf;
 
 /// The menus, made from the commands.
@@ -102,12 +103,11 @@ pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         for (index, open) in session.open_documents.iter().enumerate() {
             let is_front = index == session.current;
             let title = format!("{}{}", if open.is_dirty() { "• " } else { "" }, open.title());
-            let text = if is_front { RichText::new(title).strong() } else { RichText::new(title) };
             let path = open
                 .file
                 .as_ref()
                 .map_or_else(|| "Not saved yet".to_owned(), |file| file.display().to_string());
-            let response = ui.add(Button::selectable(is_front, text)).on_hover_text(path);
+            let response = tab(ui, None, &title, true, is_front).on_hover_text(path);
             if response.clicked() {
                 requests.act(Action::File(FileAction::Show { index }));
             }

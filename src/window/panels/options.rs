@@ -10,12 +10,11 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
-use crate::theme;
 use crate::tools::{Symmetry, ToolKind};
-use crate::widgets::{NumberField, ValueChange, check, title};
+use crate::widgets::{NumberField, ValueChange, check, segment, segments, title};
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::scroll_area::ScrollBarVisibility;
-use eframe::egui::{Button, Frame, PopupCloseBehavior, RichText, ScrollArea, Ui, vec2};
+use eframe::egui::{PopupCloseBehavior, ScrollArea, Ui};
 
 /// The height of the bar inside its margins, points.
 pub const HEIGHT_PT: f32 = 24.0;
@@ -60,15 +59,10 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if let OperatorOwner::Layer(_) = whose {
         ui.weak("Selected layer").on_hover_text("What you set here bends the selected layer");
     }
-    let track = Frame::new().fill(theme::bar_ground(ui.visuals())).corner_radius(5);
-    track.show(ui, |ui| {
-        ui.spacing_mut().item_spacing.x = 0.0;
+    segments(ui, |ui| {
         for OfferedOperator { label, begins, hint } in OPERATORS {
             let is_on = has_operator(session, begins);
-            let text = RichText::new(label);
-            let text = if is_on { text.strong() } else { text };
-            let segment = Button::selectable(is_on, text).min_size(vec2(0.0, 22.0));
-            if ui.add(segment).on_hover_text(hint).clicked() && !is_on {
+            if segment(ui, label, hint, is_on) && !is_on {
                 give(session, requests, begins);
             }
         }
@@ -182,7 +176,9 @@ fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke").share();
     push(opacity.inline(ui, brush.opacity, 60.0).map(|c| HandAction::Opacity { to: c.to }));
     if is_wide {
-        push(hardness().inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }));
+        push(
+            hardness().inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }),
+        );
     }
     if session.tool == ToolKind::Brush {
         brush_mode::options(ui, session, requests);
@@ -212,9 +208,7 @@ fn more(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
 fn more_of_brush(ui: &mut Ui, session: &Session, is_wide: bool, requests: &mut UiRequests) {
     if !is_wide {
         let changed = hardness().row(ui, session.tools.brush.hardness);
-        requests
-            .actions
-            .extend(changed.map(|c| Action::Hand(HandAction::Hardness { to: c.to })));
+        requests.actions.extend(changed.map(|c| Action::Hand(HandAction::Hardness { to: c.to })));
     }
     let (whose, operator) = whose(session);
     if let Some(changed) =

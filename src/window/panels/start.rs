@@ -48,7 +48,9 @@ pub fn show(
             ui.spacing_mut().item_spacing = Vec2::splat(GAP_PT);
             ui.add_space((0.08 * area.height()).min(64.0));
             ui.label(RichText::new("Rilievo").size(28.0).strong());
-            ui.weak("Paint on shapes: drop a drawing, a photo, normal maps or a project anywhere here.");
+            ui.weak(
+                "Paint on shapes: drop a drawing, a photo, normal maps or a project anywhere here.",
+            );
             beginnings(ui, keymap, requests);
             let files: Vec<StartCard> = recent.iter().cloned().map(StartCard::File).collect();
             cards(ui, "Recent", &files, pictures, requests);
@@ -68,8 +70,7 @@ fn beginnings(ui: &mut Ui, keymap: &Keymap, requests: &mut UiRequests) {
             let Some(command) = find_command(name) else { continue };
             let keys = keymap.first(command).map(|keys| key_text(ui.ctx(), keys));
             let hint = format!("{} {}", command.hint, keys.unwrap_or_default());
-            let (rect, response) =
-                ui.allocate_exact_size(vec2(side, COMMAND_PT), Sense::click());
+            let (rect, response) = ui.allocate_exact_size(vec2(side, COMMAND_PT), Sense::click());
             frame(ui, rect, &response, title);
             let visuals = ui.visuals();
             let (strong, weak) = (visuals.strong_text_color(), visuals.weak_text_color());

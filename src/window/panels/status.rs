@@ -80,7 +80,9 @@ pub fn show<W: JobWindow>(
         if let Some(at) = canvas.under.filter(is_here) {
             let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);
             ui.label(RichText::new(format!("{x}, {y}")).monospace());
-            if let Some(surface) = document.surface.as_deref().filter(|s| is_detailed && s.coverage(x, y) > 0) {
+            if let Some(surface) =
+                document.surface.as_deref().filter(|s| is_detailed && s.coverage(x, y) > 0)
+            {
                 let n = surface.normal(x, y);
                 let about =
                     format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));

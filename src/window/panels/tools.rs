@@ -9,7 +9,9 @@ use crate::session::{Action, Session};
 use crate::tools::ToolKind;
 use crate::widgets::swatch_at;
 use eframe::egui::scroll_area::ScrollBarVisibility;
-use eframe::egui::{Align, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, Vec2, pos2, vec2};
+use eframe::egui::{
+    Align, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, Vec2, pos2, vec2,
+};
 
 /// The tools in groups, which lines divide: painting, selecting, layers, the shape, the view.
 const GROUPS: [&[ToolKind]; 5] = {
@@ -55,7 +57,8 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRe
             for row in group.chunks(columns) {
                 ui.horizontal(|ui| {
                     ui.add_space((beside_pt - GAP_PT).max(0.0));
-                    row.iter().for_each(|tool| button(ui, session, keymap, (*tool, side), requests));
+                    row.iter()
+                        .for_each(|tool| button(ui, session, keymap, (*tool, side), requests));
                 });
             }
         }
@@ -117,7 +120,13 @@ fn colors(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
     swatch_at(ui, "First color", session.tools.color, square(whole.min, SWATCH_PT));
     let corners = [
-        (Icon::Swap, "Swap colors", "Swap colors (X)", swap, whole.right_top() - vec2(BUTTON_PT, 0.0)),
+        (
+            Icon::Swap,
+            "Swap colors",
+            "Swap colors (X)",
+            swap,
+            whole.right_top() - vec2(BUTTON_PT, 0.0),
+        ),
         (
             Icon::Reset,
             "Default colors",

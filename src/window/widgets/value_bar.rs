@@ -7,8 +7,9 @@ use super::{NumberField, ValueChange, begin_with, set_accessible_name};
 use crate::theme;
 use eframe::egui::accesskit::{Action, ActionData};
 use eframe::egui::{
-    self, Align2, CursorIcon, DragValue, EventFilter, Id, Key, Modifiers, PointerButton, Rect, Response, Sense,
-    Stroke, StrokeKind, TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2, vec2,
+    self, Align2, CursorIcon, DragValue, EventFilter, Id, Key, Modifiers, PointerButton, Rect,
+    Response, Sense, Stroke, StrokeKind, TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText, pos2,
+    vec2,
 };
 use std::ops::RangeInclusive;
 

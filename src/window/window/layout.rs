@@ -105,6 +105,7 @@ impl MainWindow {
         let has_color = !floating.contains(&PanelKind::Color);
         let height_pt = ui.available_height();
         if has_color {
+            ui.add_space(7.0);
             // Never so large that brushes and layers have no room.
             let area_pt = (0.21 * height_pt - 36.0).max(70.0).min(190.0);
             panels::colors::fixed(ui, &self.session, &mut self.settings.color, area_pt, requests);
@@ -190,7 +191,8 @@ impl MainWindow {
                 if open.clicked() {
                     front = choice;
                 }
-                let open = open.on_hover_text(format!("{name}\nRight-click for a window of its own"));
+                let open =
+                    open.on_hover_text(format!("{name}\nRight-click for a window of its own"));
                 open.context_menu(|ui| {
                     if ui.button("In a window of its own").clicked() {
                         gone = Some(choice);

@@ -85,7 +85,8 @@ impl PartHandle {
 /// Where a part faces that leans by so many degrees, up toward the right and toward the bottom.
 pub fn describe_tilt(tilt_deg: Vec2) -> String {
     let Vec2 { x, y } = tilt_deg;
-    let (across, along) = (if x < 0.0 { "right" } else { "left" }, if y < 0.0 { "down" } else { "up" });
+    let (across, along) =
+        (if x < 0.0 { "right" } else { "left" }, if y < 0.0 { "down" } else { "up" });
     format!("Face {across} {:.0}°, {along} {:.0}°", x.abs(), y.abs())
 }
 

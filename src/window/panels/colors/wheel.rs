@@ -21,12 +21,7 @@ const WITHIN: f32 = 0.68;
 type Hsv = [f32; 3];
 
 /// Saturation to the right, value upward; the hues from top to bottom beside it.
-pub fn square_and_bar(
-    ui: &mut Ui,
-    label: &str,
-    now: Hsv,
-    size: Vec2,
-) -> Option<ValueChange<Hsv>> {
+pub fn square_and_bar(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<ValueChange<Hsv>> {
     let [h, s, v] = now;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = GAP_PT;
@@ -35,11 +30,8 @@ pub fn square_and_bar(
         response.widget_info(|| WidgetInfo::labeled(Role::ColorWell, true, label));
         draw_square(ui.painter(), rect, now);
         let chosen = picked(&response, rect).map(|c| c.map(|[x, y]| [h, x, 1.0 - y]));
-        let (bar, response) =
-            ui.allocate_exact_size(vec2(BAR_PT, size.y), Sense::click_and_drag());
-        response.widget_info(|| {
-            WidgetInfo::labeled(Role::Slider, true, format!("Hue of {label}"))
-        });
+        let (bar, response) = ui.allocate_exact_size(vec2(BAR_PT, size.y), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("Hue of {label}")));
         draw_bar(ui.painter(), bar, h);
         chosen.or(picked(&response, bar).map(|c| c.map(|[_, y]| [y.min(0.9999), s, v])))
     })

@@ -326,13 +326,7 @@ fn name(
     let line = at.bottom() - 13.0;
     let mark = Rect::from_center_size(pos2(at.left() + 9.5, line), vec2(11.0, 11.0));
     kind_icon(&layer.content).draw(ui.painter(), mark, weak);
-    ui.painter().text(
-        pos2(mark.right() + 4.0, line),
-        Align2::LEFT_CENTER,
-        about,
-        font,
-        weak,
-    );
+    ui.painter().text(pos2(mark.right() + 4.0, line), Align2::LEFT_CENTER, about, font, weak);
     for (i, icon) in badges.iter().enumerate() {
         let center = pos2(at.right() - 10.0 - 17.0 * i as f32, at.center().y);
         icon.draw(

@@ -193,7 +193,10 @@ mod tests {
             (LayerAction::Bake { layer: top.clone() }, LayerAction::MergeDown { layer: top });
         assert_eq!(no_room(&bake, 16_000_000), None);
         let why = no_room(&bake, 15_000_000).unwrap();
-        assert_eq!(why, "Turning the layer into pixels takes 16 MB of memory, and 15 MB are free for it.");
+        assert_eq!(
+            why,
+            "Turning the layer into pixels takes 16 MB of memory, and 15 MB are free for it."
+        );
         assert_eq!(no_room(&merge, 32_000_000), None);
         assert!(no_room(&merge, 31_000_000).unwrap().starts_with("Merging layers takes 32 MB"));
         assert_eq!(no_room(&LayerAction::Flatten {}, 16_000_000), None);
