@@ -15,7 +15,7 @@ use std::sync::Arc;
 const SIDE: usize = 640;
 
 /// A sample of the start screen.
-pub struct Sample {
+pub struct StartSample {
     pub name: &'static str,
     pub about: &'static str,
     /// What lies on the shape, the lowest first.
@@ -23,18 +23,18 @@ pub struct Sample {
 }
 
 /// All samples; the first is the one of the Help menu.
-pub const SAMPLES: [Sample; 3] = [
-    Sample {
+pub const SAMPLES: [StartSample; 3] = [
+    StartSample {
         name: "Ball and ring",
         about: "A shape with a gradient that follows it: drop a photo, paint highlights",
         layers: |_| vec![bent("Base", &CLAY, 0.6)],
     },
-    Sample {
+    StartSample {
         name: "Chrome",
         about: "A horizon that is bent as metal reflects it",
         layers: |_| vec![bent("Chrome", &CHROME, 1.0)],
     },
-    Sample {
+    StartSample {
         name: "In a painter's light",
         about: "Flat color under a lamp with shadows: move the light on the canvas (A)",
         layers: lit,
@@ -56,7 +56,7 @@ const CHROME: [(f32, [u8; 3]); 6] = [
 /// The color under the painter's light.
 const SKIN: Color = Color { r: 0xd8, g: 0x8c, b: 0x62, a: 255 };
 
-impl Sample {
+impl StartSample {
     /// The sample as a document of its own.
     pub fn open(&self) -> Result<OpenedFile> {
         let surface = surface().map_err(|error| Error::unsupported("sample", error))?;

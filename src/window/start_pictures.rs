@@ -2,7 +2,7 @@
 //! their card is first in sight. Floor 7. Not here: the screen (`panels::start`).
 
 use super::mood_pictures::image_of;
-use super::sample::{SAMPLES, Sample};
+use super::sample::{SAMPLES, StartSample};
 use super::{Error, jobs};
 use crate::document::DocumentReducer;
 use crate::io::Budget;
@@ -92,7 +92,7 @@ fn painted(card: &StartCard) -> Option<ColorImage> {
             Some(ColorImage::from_rgba_unmultiplied(size, &small.rgba))
         }
         StartCard::Sample(index) => {
-            let opened = SAMPLES.get(*index).map(Sample::open)?.ok()?;
+            let opened = SAMPLES.get(*index).map(StartSample::open)?.ok()?;
             let document = opened.open.document();
             let factor = (SIDE_PX as f32 / document.size.longer_side()).min(1.0);
             image_of(&DocumentReducer::new(factor).of(document).ok()?)

@@ -183,7 +183,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[ctrl_shift(Key::G)],
         "Takes the layers out of the selected groups",
         has_document,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Ungroup { layer }),
+        |session, requests| {
+            with_selected(session, requests, |layer| LayerAction::Ungroup { layer })
+        },
     ),
     submenu("Arrange and select", ORDER),
     LINE,
