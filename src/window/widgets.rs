@@ -6,6 +6,7 @@ mod value_bar;
 use super::icons::Icon;
 use super::theme::{self, color32, outline};
 use crate::math::srgb::Color;
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
     self, DragValue, ProgressBar, Response, RichText, ScrollArea, TextEdit, Ui,
     text::{CCursor, CCursorRange},
@@ -254,6 +255,17 @@ pub fn segment(ui: &mut Ui, label: &str, hint: &str, on: bool) -> bool {
     let button =
         egui::Button::selectable(on, text).min_size(vec2(0.0, ui.spacing().interact_size.y));
     ui.add(button).on_hover_text(hint).clicked()
+}
+
+/// A button for what the tool needs less often; it stays open while something is set there.
+pub fn more(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
+    let stays = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+    let (button, _) = MenuButton::new("More").config(stays).ui(ui, |ui| {
+        ui.set_width(250.0);
+        show(ui);
+    });
+    set_accessible_name(&button, "More options");
+    button.on_hover_text("What this tool needs less often");
 }
 
 /// The height of a tab, points.

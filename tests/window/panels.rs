@@ -136,19 +136,19 @@ fn a_small_window_has_room_for_the_options_the_tools_and_six_layers() {
 #[test]
 fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
     let mut harness = window();
-    press(&mut harness, "Transform");
-    harness.set_size(vec2(1024.0, 700.0));
+    press(&mut harness, "Assistants");
+    harness.set_size(vec2(640.0, 700.0));
     steps(&mut harness);
-    let ends = |harness: &Story| harness.get_by_label("Mirror and turn").rect().right();
-    assert!(ends(&harness) > 1016.0, "{}", ends(&harness));
-    harness.hover_at(pos2(600.0, 42.0));
+    let ends = |harness: &Story| harness.get_by_label("Magnetism").rect().right();
+    assert!(ends(&harness) > 636.0, "{}", ends(&harness));
+    harness.hover_at(pos2(300.0, 42.0));
     steps(&mut harness);
     let (unit, delta) = (MouseWheelUnit::Point, vec2(0.0, -900.0));
     let (phase, source) = (TouchPhase::Move, MouseWheelSource::Wheel);
     let wheel = Event::MouseWheel { unit, delta, phase, source, modifiers: Modifiers::NONE };
     harness.input_mut().events.push(wheel);
     // The wheel is followed smoothly.
-    until(&mut harness, |harness| ends(harness) < 1020.0);
+    until(&mut harness, |harness| ends(harness) < 640.0);
 }
 
 #[test]

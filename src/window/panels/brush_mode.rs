@@ -76,14 +76,16 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             );
         }
     }
-    if session.tools.operator != Operator::None {
+    let document = session.shown_document();
+    let has_surface = document.is_none_or(|document| document.surface.is_some());
+    if has_surface && session.tools.operator != Operator::None {
         let hint = "How far from the pen a bent mark may land, in diameters; 0 is anywhere. The \
                     outline under the pointer shows it";
         let spread = NumberField::new("Spread", 0.0..=20.0, hint).decimals(1);
         let spread = spread.inline(ui, session.tools.brush.reach, 60.0);
         requests.actions.extend(spread.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
     }
-    if session.shown_document().is_some_and(|document| !document.parts.is_empty()) {
+    if document.is_some_and(|document| !document.parts.is_empty()) {
         let hint = "A stroke that begins on a part of the shape stays on it";
         let on = check(ui, "This part only", hint, !session.tools.crosses_parts);
         let across = on.map(|on| Action::Hand(HandAction::AcrossParts { on: !on }));

@@ -11,10 +11,9 @@ use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
 use crate::tools::{Symmetry, ToolKind};
-use crate::widgets::{NumberField, ValueChange, check, segment, segments, title};
-use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use crate::widgets::{NumberField, ValueChange, check, more, segment, segments, title};
 use eframe::egui::scroll_area::ScrollBarVisibility;
-use eframe::egui::{PopupCloseBehavior, ScrollArea, Ui};
+use eframe::egui::{ScrollArea, Ui};
 
 /// The height of the bar inside its margins, points.
 pub const HEIGHT_PT: f32 = 24.0;
@@ -67,11 +66,12 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
     });
-    if let Some(changed) = numbers(ui, operator) {
-        set(requests, &whose, changed);
-    }
     let has_surface = session.shown_document().is_none_or(|document| document.surface.is_some());
-    if !has_surface && operator != Operator::None {
+    if has_surface {
+        if let Some(changed) = numbers(ui, operator) {
+            set(requests, &whose, changed);
+        }
+    } else if operator != Operator::None {
         ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks stay flat");
         let hint = "Makes a shape from what the drawing covers, so that marks bend over it and \
                     light falls on it";
@@ -192,17 +192,6 @@ fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 fn hardness() -> NumberField<'static> {
     let hint = "How much of the dab is fully covered (Shift with [ and ])";
     NumberField::new("Hardness", 0.0..=1.0, hint).share()
-}
-
-/// A button for what the tool needs less often; it stays open while something is set there.
-fn more(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
-    let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let (button, _) = MenuButton::new("More").config(stays).ui(ui, |ui| {
-        ui.set_width(250.0);
-        show(ui);
-    });
-    crate::widgets::set_accessible_name(&button, "More options");
-    button.on_hover_text("What this tool needs less often");
 }
 
 fn more_of_brush(ui: &mut Ui, session: &Session, is_wide: bool, requests: &mut UiRequests) {

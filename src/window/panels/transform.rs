@@ -1,7 +1,7 @@
 //! The options of the transform tool: its commands, how pixels are sampled, and its gizmo in
 //! numbers. Floor 7.
 
-use crate::commands::{MenuCommand, TRANSFORMS};
+use crate::commands::TRANSFORMS;
 use crate::document::LayerLock;
 use crate::math::Vec2;
 use crate::raster::Resampling;
@@ -10,16 +10,23 @@ use crate::session::actions::{HandAction, LayerAction, PartAction};
 use crate::session::{Action, Property, Session};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{GizmoNumbers, PIVOTS};
-use crate::widgets::{choice, set_accessible_name};
+use crate::widgets::{choice, choice_row, more, set_accessible_name};
 use eframe::egui::{Button, DragValue, Ui};
 use std::ops::RangeInclusive;
 
-/// The gizmo in numbers, commands, sampling, pivot.
+/// What is transformed, the gizmo in numbers, and a mesh; the rest is behind *More*.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     target(ui, session, requests);
     gizmo(ui, session, requests);
-    ui.add_space(6.0);
-    ways(ui, session, requests);
+    if let Some(apply) = TRANSFORMS.first() {
+        let button = ui.add_enabled((apply.can)(session), Button::new("Apply"));
+        set_accessible_name(&button, apply.name);
+        if button.on_hover_text(format!("{} (Enter)", apply.hint)).clicked() {
+            (apply.run)(session, requests);
+        }
+    }
+    meshes(ui, session, requests);
+    more(ui, |ui| ways(ui, session, requests));
 }
 
 /// Layers, or the shape.
@@ -36,57 +43,44 @@ fn target(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
 }
 
-/// Commands, sampling, pivot.
+/// Sampling, pivot, and the other commands.
 fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let mut commands = TRANSFORMS.split(MenuCommand::is_line);
-    for command in commands.next().unwrap_or_default() {
-        let button = ui
-            .add_enabled((command.can)(session), Button::new(command.name))
-            .on_hover_text(command.hint);
-        if button.clicked() {
-            (command.run)(session, requests);
-        }
-    }
-    ui.menu_button("Mirror and turn", |ui| {
-        for command in commands.next().unwrap_or_default() {
-            let entry = ui
-                .add_enabled((command.can)(session), Button::new(command.name))
-                .on_hover_text(command.hint);
-            if entry.clicked() {
-                (command.run)(session, requests);
-                ui.close();
-            }
-        }
-    });
-    meshes(ui, session, requests);
-    ui.add_space(6.0);
-    let Some(open) = session.active() else { return };
-    let selected = open.outermost_selected();
-    let transforms =
-        selected.iter().filter_map(|id| open.document().layer(*id)?.transform.as_ref());
-    if let Some(transform) = transforms.last() {
-        ui.label("Pixels");
-        if let Some(filter) =
-            choice(ui, "How pixels are sampled", transform.filter, &Resampling::ALL)
+    if let Some(open) = session.active() {
+        let selected = open.outermost_selected();
+        let transforms =
+            selected.iter().filter_map(|id| open.document().layer(*id)?.transform.as_ref());
+        if let Some(transform) = transforms.last()
+            && let Some(filter) = choice_row(ui, "Pixels", transform.filter, &Resampling::ALL)
         {
-            let to = Property::Sampled { filter };
-            requests.act(Action::Layer(LayerAction::Set {
-                layer: session.layer_paths(),
-                to,
-                done: true,
-            }));
+            let (layer, to) = (session.layer_paths(), Property::Sampled { filter });
+            requests.act(Action::Layer(LayerAction::Set { layer, to, done: true }));
+        }
+        if let Some(gizmo) = open.gizmo(session.tools.transform.target) {
+            pivot(ui, gizmo.pivot_share, requests);
         }
     }
-    if let Some(gizmo) = open.gizmo(session.tools.transform.target) {
-        ui.label("Pivot");
-        let choices = PIVOTS.map(|(share, name)| (Some(share), name));
-        let known =
-            PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == gizmo.pivot_share);
-        let mut all: Vec<(Option<Vec2>, &str)> = choices.into();
-        all.extend(known.is_none().then_some((None, "set by hand")));
-        if let Some(Some(at)) = choice(ui, "Pivot", known, &all) {
-            requests.act(Action::Layer(LayerAction::Pivot { at }));
+    ui.separator();
+    for command in TRANSFORMS.iter().skip(1) {
+        if command.is_line() {
+            ui.separator();
+            continue;
         }
+        let entry = ui.add_enabled((command.can)(session), Button::new(command.name).frame(false));
+        if entry.on_hover_text(command.hint).clicked() {
+            (command.run)(session, requests);
+            ui.close();
+        }
+    }
+}
+
+/// The place about which sides and angles change.
+fn pivot(ui: &mut Ui, now: Vec2, requests: &mut UiRequests) {
+    let choices = PIVOTS.map(|(share, name)| (Some(share), name));
+    let known = PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == now);
+    let mut all: Vec<(Option<Vec2>, &str)> = choices.into();
+    all.extend(known.is_none().then_some((None, "set by hand")));
+    if let Some(Some(at)) = choice_row(ui, "Pivot", known, &all) {
+        requests.act(Action::Layer(LayerAction::Pivot { at }));
     }
 }
 

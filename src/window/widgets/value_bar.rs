@@ -171,7 +171,8 @@ fn moved(
     } else {
         (at.x - response.rect.left()) / response.rect.width()
     };
-    ui.data_mut(|data| match is_over(response) {
+    let is_over = is_over(response);
+    ui.data_mut(|data| match is_over {
         true => data.remove::<f32>(kept),
         false => {
             data.insert_temp(kept, share.max(0.0).min(1.0));
