@@ -250,11 +250,11 @@ pub fn segments(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
 }
 
 /// One of them.
-pub fn segment(ui: &mut Ui, label: &str, hint: &str, on: bool) -> bool {
+pub fn segment(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Response {
     let text = if on { RichText::new(label).strong() } else { RichText::new(label) };
     let button =
         egui::Button::selectable(on, text).min_size(vec2(0.0, ui.spacing().interact_size.y));
-    ui.add(button).on_hover_text(hint).clicked()
+    ui.add(button).on_hover_text(hint)
 }
 
 /// A button for what the tool needs less often; it stays open while something is set there.

@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
                 (false, "Presets", "Brushes to choose from"),
                 (true, "Current brush", "Settings of the current brush"),
             ] {
-                if segment(ui, label, hint, edits == which) {
+                if segment(ui, label, hint, edits == which).clicked() {
                     edits = which;
                 }
             }

@@ -61,7 +61,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     segments(ui, |ui| {
         for OfferedOperator { label, begins, hint } in OPERATORS {
             let is_on = has_operator(session, begins);
-            if segment(ui, label, hint, is_on) && !is_on {
+            if segment(ui, label, hint, is_on).clicked() && !is_on {
                 give(session, requests, begins);
             }
         }
