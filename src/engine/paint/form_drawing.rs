@@ -63,13 +63,13 @@ impl FormDrawing {
     /// The pen that lines begin with: a nib that pressure widens, black at once.
     pub fn pen() -> Brush {
         let dynamics = Dynamics::none().with(Property::Size, Input::Pressure, Curve::Share(0.9));
-        Brush { size: 4.0, hardness: 0.85, spacing: 0.1, dynamics, ..Brush::default() }
+        Brush { size: 4.0, hardness: 0.85, spacing: 0.2, dynamics, ..Brush::default() }
     }
 
     /// The tool that hatching begins with: its width is its pressure.
     pub fn burin() -> Brush {
         let dynamics = Dynamics::none().with(Property::Size, Input::Pressure, Curve::Share(1.0));
-        Brush { size: 5.0, hardness: 0.85, spacing: 0.1, dynamics, ..Brush::default() }
+        Brush { size: 5.0, hardness: 0.85, spacing: 0.2, dynamics, ..Brush::default() }
     }
 
     /// Toward its light, camera space (y up), any length.

@@ -6,7 +6,7 @@ use super::{HatchSettings, HatchWay};
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::Plane;
 use crate::surface::form_lines::{SmoothNormals, diffuse_copy, gradient_of};
-use crate::surface::unwrap::metric::stretch;
+use crate::surface::unwrap::metric::STEEPEST_NZ;
 use crate::surface::{Surface, links};
 use std::f32::consts::FRAC_PI_2;
 
@@ -17,8 +17,8 @@ const HINT: f32 = 1e-5;
 pub struct DirectionField<'s> {
     surface: &'s Surface,
     normals: &'s SmoothNormals,
-    /// cos 2θ and sin 2θ of the first family at each pixel, of any length.
-    doubled: [Plane<f32>; 2],
+    /// cos 2θ and sin 2θ of the first family at each pixel.
+    doubled: Plane<[f32; 2]>,
 }
 
 /// The principal directions at a pixel.
@@ -71,12 +71,22 @@ impl<'s> DirectionField<'s> {
             HatchWay::Around => of_form(surface, normals, settings, -turned),
             HatchWay::Along => of_form(surface, normals, settings, FRAC_PI_2 - turned),
         };
+        let unit = |x: usize, y: usize| {
+            let way = vec2(doubled[0].at(x, y), doubled[1].at(x, y));
+            way.normalize_or(Vec2::X).to_array()
+        };
+        let doubled = Plane::from_fn(surface.size(), unit);
         Self { surface, normals, doubled }
     }
 
     /// S at a pixel.
     pub fn root(&self, x: usize, y: usize) -> Mat2 {
         root(self.normals, x, y)
+    }
+
+    /// S⁻¹ at a pixel.
+    pub fn inverse_root(&self, x: usize, y: usize) -> Mat2 {
+        scale_along(self.normals.nbar(x, y), self.normals.nz(x, y).max(STEEPEST_NZ).min(1.0))
     }
 
     /// Whether a pixel and the one that a step leads to are of one piece.
@@ -106,13 +116,13 @@ impl<'s> DirectionField<'s> {
     /// The direction of a family at a place, unit, in the tangent plane: of both, the one nearer to
     /// `near`.
     pub fn direction(&self, at: Vec2, family: u8, near: Vec2) -> Vec2 {
-        let [c, s] = self.between(at);
-        let way = Vec2::from_angle(0.5 * s.atan2(c) + f32::from(family) * FRAC_PI_2);
+        let along = halve_angle(self.between(at));
+        let way = if family == 0 { along } else { along.perp() };
         if way.dot(near) < 0.0 { -way } else { way }
     }
 
     /// The doubled direction between pixels, of those that are linked to the nearest.
-    fn between(&self, at: Vec2) -> [f32; 2] {
+    fn between(&self, at: Vec2) -> Vec2 {
         let size = self.surface.size();
         let (w, h) = (size.width as i32, size.height as i32);
         let middle = ((at.x as i32).clamp(0, w - 1), (at.y as i32).clamp(0, h - 1));
@@ -120,24 +130,42 @@ impl<'s> DirectionField<'s> {
         let (x, y) = (corner.x.floor() as i32, corner.y.floor() as i32);
         let (fx, fy) = (corner.x - x as f32, corner.y - y as f32);
         let own = (middle.0 as usize, middle.1 as usize);
-        let mut sum = [0.0; 2];
+        let mut sum = Vec2::ZERO;
         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             let weight = if dx == 1 { fx } else { 1.0 - fx } * if dy == 1 { fy } else { 1.0 - fy };
             let (px, py) = ((x + dx).clamp(0, w - 1), (y + dy).clamp(0, h - 1));
             let there = (px as usize, py as usize);
             let from = if self.is_joined(own, there) { there } else { own };
-            let (c, s) = (self.doubled[0].at(from.0, from.1), self.doubled[1].at(from.0, from.1));
-            let scale = weight / c.hypot(s).max(1e-12);
-            sum[0] += scale * c;
-            sum[1] += scale * s;
+            sum += weight * Vec2::from(self.doubled.at(from.0, from.1));
         }
         sum
     }
 }
 
-/// S at a pixel of smooth normals.
+/// The unit direction whose angle is half of another's, with cos ≥ 0: (1 + cos 2θ, sin 2θ) is along
+/// it, and (sin 2θ, 1 − cos 2θ), where the other vanishes.
+fn halve_angle(doubled: Vec2) -> Vec2 {
+    let unit = doubled.normalize_or(Vec2::X);
+    if unit.x >= 0.0 {
+        return vec2(1.0 + unit.x, unit.y).normalize();
+    }
+    let half = vec2(unit.y, 1.0 - unit.x).normalize();
+    if half.x < 0.0 { -half } else { half }
+}
+
+/// S at a pixel of smooth normals: `stretch` to the power 1, without its power.
 fn root(normals: &SmoothNormals, x: usize, y: usize) -> Mat2 {
-    stretch(normals.nbar(x, y), normals.nz(x, y), 1.0)
+    scale_along(normals.nbar(x, y), 1.0 / normals.nz(x, y).max(STEEPEST_NZ).min(1.0))
+}
+
+/// Scales by a factor along n̄.
+fn scale_along(nbar: Vec2, factor: f32) -> Mat2 {
+    let (along, grown) = (nbar.normalize_or_zero(), factor - 1.0);
+    let across = grown * along.x * along.y;
+    Mat2::from_cols(
+        vec2(1.0 + grown * along.x * along.x, across),
+        vec2(across, 1.0 + grown * along.y * along.y),
+    )
 }
 
 /// e^{2iθ} of the direction in which the form bends most, weighted by how clear it is and diffused;

@@ -3,8 +3,9 @@
 
 use super::directions::DirectionField;
 use crate::math::{Vec2, hash, vec2};
-use crate::surface::Surface;
+use crate::surface::{Objects, Surface};
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// The side of a cell of the grid of points, px.
 const CELL_PX: usize = 4;
@@ -30,13 +31,15 @@ struct PlacedPoint {
     line: u32,
     /// Its position along its line, px.
     along: i32,
+    /// The object that it lies on.
+    object: u32,
 }
 
 /// Lines of one family as they are placed.
 pub struct Streamlines<'f> {
     field: &'f DirectionField<'f>,
     size: (usize, usize),
-    labels: std::sync::Arc<crate::surface::Objects>,
+    objects: Arc<Objects>,
     family: u8,
     columns: usize,
     cells: Vec<Vec<PlacedPoint>>,
@@ -49,8 +52,8 @@ impl<'f> Streamlines<'f> {
         let size = (surface.size().width as usize, surface.size().height as usize);
         let columns = size.0.div_ceil(CELL_PX);
         let cells = vec![Vec::new(); columns * size.1.div_ceil(CELL_PX)];
-        let labels = surface.objects();
-        Self { field, size, labels, family, columns, cells, lines: Vec::new() }
+        let objects = surface.objects();
+        Self { field, size, objects, family, columns, cells, lines: Vec::new() }
     }
 
     /// The lines, each with its level.
@@ -82,18 +85,18 @@ impl<'f> Streamlines<'f> {
     fn follow(&mut self, queue: &mut VecDeque<u32>, level: u8, apart: f32) {
         let every = ((SEED_EVERY * apart) as usize).max(1);
         while let Some(line) = queue.pop_front() {
-            let points = self.lines[line as usize].1.clone();
+            let points = std::mem::take(&mut self.lines[line as usize].1);
             let starts = points.windows(2).step_by(every);
             let sides = starts.flat_map(|pair| [(pair[0], pair[1], 1.0), (pair[0], pair[1], -1.0)]);
             for (at, next, side) in sides {
                 let Some((x, y)) = self.pixel(at) else { continue };
-                let root = self.field.root(x, y);
-                let along = (root * (next - at)).normalize_or_zero();
-                let beside = at + side * apart * (root.inverse() * along.perp());
+                let along = (self.field.root(x, y) * (next - at)).normalize_or_zero();
+                let beside = at + side * apart * (self.field.inverse_root(x, y) * along.perp());
                 if self.try_line(beside, level, apart) {
                     queue.push_back(self.lines.len() as u32 - 1);
                 }
             }
+            self.lines[line as usize].1 = points;
         }
     }
 
@@ -117,7 +120,7 @@ impl<'f> Streamlines<'f> {
         if self.is_crowded(at, way, START * apart, (line, 0)) {
             return false;
         }
-        self.put(PlacedPoint { at, way, line, along: 0 });
+        self.put(at, way, (line, 0));
         let forth = self.trace(at, way, 1, line, apart);
         let back = self.trace(at, -way, -1, line, apart);
         let length = (forth.len() + back.len()) as f32;
@@ -156,7 +159,7 @@ impl<'f> Streamlines<'f> {
             {
                 break;
             }
-            self.put(PlacedPoint { at: next, way: turned, line, along });
+            self.put(next, turned, (line, along));
             points.push(next);
             (at, way, pixel) = (next, turned, there);
         }
@@ -165,7 +168,7 @@ impl<'f> Streamlines<'f> {
 
     /// A pixel in the picture along a direction of the tangent plane.
     fn step(&self, (x, y): (usize, usize), way: Vec2) -> Vec2 {
-        (self.field.root(x, y).inverse() * way).normalize_or_zero()
+        (self.field.inverse_root(x, y) * way).normalize_or_zero()
     }
 
     fn cell(&self, at: Vec2) -> usize {
@@ -173,9 +176,10 @@ impl<'f> Streamlines<'f> {
         (y * self.columns + x).min(self.cells.len() - 1)
     }
 
-    fn put(&mut self, point: PlacedPoint) {
-        let cell = self.cell(point.at);
-        self.cells[cell].push(point);
+    fn put(&mut self, at: Vec2, way: Vec2, (line, along): (u32, i32)) {
+        let cell = self.cell(at);
+        let object = self.objects.labels().at(at.x as usize, at.y as usize);
+        self.cells[cell].push(PlacedPoint { at, way, line, along, object });
     }
 
     /// Whether a line of the family is nearer than a distance on the surface: another one, or the
@@ -183,7 +187,7 @@ impl<'f> Streamlines<'f> {
     fn is_crowded(&self, at: Vec2, way: Vec2, px: f32, (line, along): (u32, i32)) -> bool {
         let Some((x, y)) = self.pixel(at) else { return true };
         let root = self.field.root(x, y);
-        let label = self.labels.labels().at(x, y);
+        let object = self.objects.labels().at(x, y);
         let [low, high] = [-px, px].map(|by| {
             let cell =
                 |v: f32, n: usize| (v.max(0.0) as usize / CELL_PX).min(n.div_ceil(CELL_PX) - 1);
@@ -191,11 +195,10 @@ impl<'f> Streamlines<'f> {
         });
         let own = (3.0 * px) as i32 + 3;
         let is_near = |point: &PlacedPoint| {
-            let is_other = point.line != line || (point.along - along).abs() > own;
-            is_other
+            (root * (point.at - at)).length_squared() < px * px
+                && (point.line != line || (point.along - along).abs() > own)
                 && point.way.dot(way).abs() > SAME_FAMILY
-                && (root * (point.at - at)).length_squared() < px * px
-                && self.labels.labels().at(point.at.x as usize, point.at.y as usize) == label
+                && point.object == object
         };
         (low.1..=high.1).any(|row| {
             self.cells[row * self.columns + low.0..=row * self.columns + high.0]
