@@ -11,6 +11,7 @@ mod dab;
 mod dab_walker;
 pub mod dynamics;
 pub mod fill;
+pub mod filter;
 pub mod form_drawing;
 pub mod gradient;
 pub mod grain;
@@ -48,6 +49,7 @@ pub use brush_options::{
 };
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use fill::Fill;
+pub use filter::{LiveFilter, PictureFilter};
 pub use form_drawing::{DrawingHand, FormDrawing, FormPattern};
 pub use gradient::{Gradient, GradientStop};
 pub use image::{PictureSource, PlacedImage, Placement};

@@ -4,6 +4,7 @@
 mod adjustments;
 mod edit;
 mod file;
+mod filters;
 mod guides;
 mod help;
 mod image;

@@ -5,6 +5,7 @@ pub mod adjust;
 pub mod canvas;
 pub mod edge;
 pub mod export;
+pub mod filter;
 pub mod grid;
 pub mod help;
 pub mod import;
@@ -37,6 +38,7 @@ use std::path::PathBuf;
 pub enum Dialog {
     New(new::NewDialog),
     Adjust(Box<adjust::AdjustDialog>),
+    Filter(Box<filter::FilterDialog>),
     Edge(edge::EdgeDialog),
     Keep(edge::KeepDialog),
     Grid,
@@ -103,7 +105,7 @@ impl Dialog {
         requests: &mut UiRequests,
     ) -> DialogAnswer {
         let mut modal = Modal::new(Id::unique("dialog"));
-        if let Dialog::Adjust(_) | Dialog::Materials(_) = self {
+        if let Dialog::Adjust(_) | Dialog::Filter(_) | Dialog::Materials(_) = self {
             // Beside the picture, which shows what it does.
             let beside = Modal::default_area(Id::unique("dialog"))
                 .anchor(egui::Align2::RIGHT_TOP, egui::vec2(-24.0, 72.0));
@@ -114,6 +116,7 @@ impl Dialog {
             match self {
                 Dialog::New(new) => new.show(ui, requests),
                 Dialog::Adjust(adjust) => adjust.show(ui, requests),
+                Dialog::Filter(filter) => filter.show(ui, requests),
                 Dialog::Edge(edge) => edge.show(ui, requests),
                 Dialog::Keep(keep) => {
                     let kept = session.active().map_or(&[][..], |open| &open.document().selections);
@@ -148,6 +151,9 @@ impl Dialog {
         };
         if let (Dialog::Adjust(adjust), DialogAnswer::Close) = (&*self, &answer) {
             adjust.forget(requests);
+        }
+        if let (Dialog::Filter(filter), DialogAnswer::Close) = (&*self, &answer) {
+            filter.forget(requests);
         }
         answer
     }

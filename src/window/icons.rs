@@ -41,6 +41,7 @@ pub enum Icon {
     Shading,
     Scaling,
     Adjustment,
+    Filter,
     Normals,
     Ink,
     FormLines,
@@ -139,6 +140,12 @@ impl Icon {
                     (14.5, 12.0),
                 ]),
                 Line(&[(1.5, 14.0), (14.5, 14.0)]),
+            ],
+            // A dot that spreads.
+            Icon::Filter => &[
+                Circle((8.0, 8.0), 6.2),
+                Circle((8.0, 8.0), 3.8),
+                Filled(&[(8.0, 6.2), (9.8, 8.0), (8.0, 9.8), (6.2, 8.0)]),
             ],
             // Half light, half dark.
             Icon::Adjustment => &[

@@ -3,7 +3,7 @@
 
 use super::file_purpose::FilePurpose;
 use super::panel_layout::PanelKind;
-use crate::paint::ColorAdjustment;
+use crate::paint::{ColorAdjustment, PictureFilter};
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, PasteTo};
 use std::path::PathBuf;
@@ -67,6 +67,7 @@ pub enum WindowRequest {
     Quit,
     /// For the paint of the selected layers.
     AdjustDialog(Box<ColorAdjustment>),
+    FilterDialog(Box<PictureFilter>),
     EdgeDialog(EdgeChange),
     KeepDialog,
     GridDialog,

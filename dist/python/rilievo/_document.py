@@ -81,6 +81,10 @@ class Document:
         adjustment = {"kind": kind, **settings}
         return self.do("layer", "add adjustment", adjustment=adjustment)["layer"]
 
+    def filter(self, kind, **settings):
+        """Add a filter layer (gaussian-blur, unsharp-mask, grain …); returns its path."""
+        return self.do("layer", "add filter", filter={"kind": kind, **settings})["layer"]
+
     def place(self, file, at):
         """Place a picture as an image layer, pinned at a point; returns its path."""
         return self.do("file", "place", file=file, at=list(at))["layer"]

@@ -59,7 +59,7 @@ impl Composer<'_> {
             return ComposeFlow::Continue(());
         }
         match node.layer.content.role() {
-            Role::Adjusts(_) => self.adjustment(node, onto, &coverage),
+            Role::Adjusts(_) => self.adjustment(node, onto, &coverage, atop),
             // Clipped to something, or with something clipped to it, a group needs pixels of its
             // own.
             Role::Groups(group)
@@ -221,12 +221,13 @@ impl Composer<'_> {
     }
 
     /// Changes what lies beneath; what is clipped to it is painted on the changed picture, within
-    /// its mask.
+    /// its mask. `atop`: it is clipped to what is there, whose alpha stays.
     fn adjustment(
         &self,
         node: &PreparedLayer,
         onto: &mut PlanarTile,
         coverage: &TileCoverage,
+        atop: bool,
     ) -> ComposeFlow {
         let index = node.adjustments.start;
         if self.sought == Some(index) {
@@ -238,11 +239,14 @@ impl Composer<'_> {
             return ComposeFlow::Continue(());
         };
         let exactness = self.floats.map_or(Exactness::Fast, FloatTiles::exactness);
-        let apply = |pixels: &mut PlanarTile| match &self.far {
-            Some(far) => {
+        let filtered = self.prepared.filtered_tile(index, self.at, self.floats);
+        let apply = |pixels: &mut PlanarTile| match (&filtered, &self.far) {
+            (Some(filtered), Some(far)) => filtered.put_on_far_side(far, pixels, atop),
+            (Some(filtered), None) => filtered.put_on(pixels, atop),
+            (None, Some(far)) => {
                 adjust_far_side(adjustment, &node.far_scene(*far), beneath, exactness, pixels)
             }
-            None => {
+            (None, None) => {
                 let place = AdjustedPlace::Tile { scene: &node.scene, at: self.at };
                 adjustment.adjust(&place, beneath, exactness, pixels);
             }
@@ -276,6 +280,10 @@ impl Composer<'_> {
         let layer = &node.layer;
         let may_hide =
             layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
+        if layer.content.filter().is_some() {
+            // It replaces what is there by what it has composed itself.
+            return may_hide && !layer.blend_linear;
+        }
         // Groups and adjustments are never known to hide before they are composed.
         let is_whole = || match &self.far {
             Some(far) => mask::is_whole_on_far_side(node, far),

@@ -25,6 +25,7 @@ impl MemoryCount {
                 self.add_painted(coverage.size().area() as u64);
             }
             layer.content.count(self, keeps);
+            layer.cache.count(self, keeps);
         }
     }
 }

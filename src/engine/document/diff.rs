@@ -2,6 +2,7 @@
 //! found by comparing pointers and parameters, never pixels. Floor 4. It is conservative: a tile
 //! that is not reported is the same; a reported one may differ.
 
+use super::filter_stage::tiles_touched;
 use super::layer::content::{Changed, Touched};
 use super::layer::on_canvas::on_canvas;
 use super::{Content, Document, Layer, LayerId, LayerMap, LayerTransform, LayerWarp};
@@ -181,6 +182,10 @@ impl Diff<'_> {
             return self.report_displaced(new, Version::New, |diff| {
                 diff.compare_stacks(&a.layers, &b.layers, beneath)
             });
+        }
+        if let Some(filter) = new.content.filter().filter(|_| beneath) {
+            let touched = tiles_touched(filter, &self.changed, self.scene.size.rect());
+            self.report_tiles(touched);
         }
         if beneath && new.content.is_composed_of_beneath() {
             return self.report_both(old, new);

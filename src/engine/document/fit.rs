@@ -182,6 +182,7 @@ impl Total {
                 self.values += marks::form_drawing_values(live.params());
             }
             Content::Fill(_)
+            | Content::Filter(_)
             | Content::Pixels(_)
             | Content::Normals(_)
             | Content::Ink(_)
@@ -219,8 +220,9 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
         return Err("shows nothing of its own, so a mesh or liquify cannot displace it".into());
     }
     match &layer.content {
-        // The numbers of an adjustment are held where it is made.
-        Content::Fill(_) | Content::Ink(_) | Content::Group(_) | Content::Adjustment(_) => Ok(()),
+        // The numbers of adjustments and filters are held where they are made.
+        Content::Fill(_) | Content::Ink(_) | Content::Group(_) => Ok(()),
+        Content::Adjustment(_) | Content::Filter(_) => Ok(()),
         Content::Pixels(pixels) => pixels_fit(pixels, canvas),
         Content::Image(live) => marks::image(live.params()),
         Content::Gradient(live) => marks::gradient(live.params()),

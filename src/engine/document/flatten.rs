@@ -36,6 +36,7 @@ pub fn flatten_to_floats(
     let mut pixels = filled_or_unwind(document.size.area(), [0.0; 4]);
     for part in tiles.chunks(FLOATS_AT_A_TIME) {
         floats.render(&prepared, part, progress);
+        prepared.filter_beneath(part, usize::MAX, Some(&floats), progress)?;
         let composed = in_parallel(part, progress, |at| prepared.compose_tile(at, Some(&floats)))?;
         for (at, tile) in part.iter().zip(composed) {
             let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
@@ -74,6 +75,7 @@ fn flatten_in_floats(
     let mut grid = TileGrid::for_rect(document.size.rect());
     for part in tiles.chunks(FLOATS_AT_A_TIME) {
         floats.render(prepared, part, progress);
+        prepared.filter_beneath(part, usize::MAX, Some(&floats), progress)?;
         let composed = in_parallel(part, progress, |at| tile(at, &floats))?;
         part.iter().zip(composed).for_each(|(at, tile)| grid.set(*at, tile));
     }
@@ -85,6 +87,8 @@ fn flatten_in_floats(
 /// are seen. `None` if canceled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
     let prepared = PreparedDocument::new(document, progress)?;
+    // Tiles that are not soft are composed of bytes.
+    prepared.filter_tiles(&prepared.all_tiles(), progress)?;
     flatten_in_floats(&prepared, document, progress, |at, floats| prepared.paint_tile(at, floats))
 }
 
@@ -114,7 +118,7 @@ pub fn flatten_whole(
 ) -> Option<TileGrid> {
     let document = without_others(document, ids)?;
     let mut prepared = PreparedDocument::new(&document, progress)?;
-    prepared.whole_rims = true;
+    prepared.make_rims_whole();
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
 
@@ -221,6 +225,16 @@ impl PreparedDocument {
             let _ = composer.stack(&self.stack, &mut pixels);
             pixels
         };
+        self.with_far_side(at, floats, composed)
+    }
+
+    /// A tile as it is composed, with what the other sides of its contour pixels see.
+    pub(super) fn with_far_side(
+        &self,
+        at: TileAt,
+        floats: Option<&FloatTiles>,
+        composed: impl Fn(Option<FarTile>) -> PlanarTile,
+    ) -> PlanarTile {
         let mut pixels = composed(None);
         if let Some(contours) = self.contours.as_ref().and_then(|contours| contours.on(at)) {
             let far = FarTile::new(at, contours);
@@ -242,6 +256,7 @@ impl PreparedDocument {
         tiles: &[TileAt],
         progress: &Progress,
     ) -> Option<TileGrid> {
+        self.filter_tiles(tiles, progress)?;
         let one = tiles.first().filter(|_| self.is_one_color()).map(|at| self.flatten_tile(*at));
         let tile = |at| one.clone().unwrap_or_else(|| self.flatten_tile(at));
         let composed = in_parallel(tiles, progress, tile)?;

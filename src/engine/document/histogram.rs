@@ -32,10 +32,11 @@ impl Histogram {
     pub fn of_backdrop(document: &Document, layer: LayerId, progress: &Progress) -> Option<Self> {
         let prepared = PreparedDocument::new(document, progress)?;
         let sought = prepared.adjustment_of(layer);
-        sought?;
+        let below = sought?;
         let tiles = prepared.all_tiles();
         let step = tiles.len().div_ceil(Self::MOST_TILES).max(1);
         let some: Vec<TileAt> = tiles.into_iter().step_by(step).collect();
+        prepared.filter_beneath(&some, below, None, progress)?;
         let of_tile = |at| {
             let composer = Composer { prepared: &prepared, at, far: None, sought, floats: None };
             let mut counts = Self::default();

@@ -41,12 +41,12 @@ impl PreparedDocument {
 
 impl BackdropMeter for Meter<'_> {
     fn brightest(&self) -> Option<f32> {
-        let AdjustmentLayer { layer, scene, beneath } = self.adjusted;
+        let AdjustmentLayer { layer, scene, beneath, .. } = self.adjusted;
         layer.cache.brightest.get(scene, beneath, &(), || self.measure_brightest())
     }
 
     fn gain(&self, scaling: &RadianceScaling, brightest: f32) -> Option<f32> {
-        let AdjustmentLayer { layer, scene, beneath } = self.adjusted;
+        let AdjustmentLayer { layer, scene, beneath, .. } = self.adjusted;
         layer.cache.gain.get(scene, beneath, scaling, || self.measure_gain(scaling, brightest))
     }
 }
@@ -64,7 +64,7 @@ impl Meter<'_> {
             known.fetch_max(found.to_bits(), Relaxed);
             found
         };
-        let tiles = in_parallel(&self.prepared.all_tiles(), self.progress, of_tile)?;
+        let tiles = in_parallel(&self.filtered_tiles()?, self.progress, of_tile)?;
         Some(tiles.into_iter().fold(0.0, f32::max))
     }
 
@@ -76,7 +76,7 @@ impl Meter<'_> {
                 };
                 self.tile(at).map(means).unwrap_or_default()
             };
-            let tiles = in_parallel(&self.prepared.all_tiles(), self.progress, of_tile)?;
+            let tiles = in_parallel(&self.filtered_tiles()?, self.progress, of_tile)?;
             Some(tiles.into_iter().fold(LightSums::default(), LightSums::plus))
         };
         // What is shown is clipped, so it does not grow with the factor: coarse steps, then finer
@@ -85,6 +85,13 @@ impl Meter<'_> {
             return Some(1.0);
         };
         Some(sums(finer)?.gain(finer))
+    }
+
+    /// All tiles, after the filters beneath.
+    fn filtered_tiles(&self) -> Option<Vec<TileAt>> {
+        let (tiles, below) = (self.prepared.all_tiles(), self.prepared.beneath.len());
+        self.prepared.filter_beneath(&tiles, below, None, self.progress)?;
+        Some(tiles)
     }
 
     /// One tile of it.

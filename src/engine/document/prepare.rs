@@ -2,6 +2,7 @@
 //! surface that each sees. Floor 4. Done once before the tiles. Not here: composing one tile
 //! (`compose`).
 
+use super::filter_stage::{FilterStage, StoredTiles};
 use super::layer::on_canvas::on_canvas;
 use super::layer::warp::WarpTiles;
 use super::{
@@ -28,6 +29,8 @@ pub struct PreparedDocument {
     pub(super) whole_rims: bool,
     /// Measurements of the composite beneath each adjustment, in the order they apply.
     pub(super) beneath: Vec<BackdropStats>,
+    /// The adjustments that are filters, in that order.
+    pub(super) filters: Vec<FilterStage>,
 }
 
 /// A visible layer in its place.
@@ -56,6 +59,21 @@ pub(super) struct AdjustmentLayer {
     pub scene: Scene,
     /// Every layer beneath it in its scope (a pass-through group belongs to the scope around it).
     pub beneath: Vec<Arc<Layer>>,
+    /// What takes the frames of the groups around it to the canvas.
+    pub map: LayerMap,
+}
+
+impl AdjustmentLayer {
+    /// For a filter, with what is known of what lies beneath it.
+    fn stage(&self, index: usize) -> Option<FilterStage> {
+        let filter = self.layer.content.filter()?.clone();
+        let key = (self.layer.clip_below, self.map);
+        let fresh = || Some(Arc::<StoredTiles>::default());
+        let known = self.layer.cache.beneath.get(&self.scene, &self.beneath, &key, fresh);
+        let beneath = [known.unwrap_or_default(), Arc::default()];
+        let made = Default::default();
+        Some(FilterStage { index, filter, scene: self.scene.clone(), beneath, made })
+    }
 }
 
 impl PreparedDocument {
@@ -65,14 +83,31 @@ impl PreparedDocument {
         let scope = Scope { beneath: Beneath::NOTHING, map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
-        let mut prepared =
-            Self { size: document.size, stack, contours, whole_rims: false, beneath: Vec::new() };
+        let stages = builder.adjustments.iter().enumerate();
+        let filters = stages.filter_map(|(index, layer)| layer.stage(index)).collect();
+        let mut prepared = Self {
+            size: document.size,
+            stack,
+            contours,
+            whole_rims: false,
+            beneath: Vec::new(),
+            filters,
+        };
         for adjustment in builder.adjustments {
             // Each may depend on those beneath it, which are already measured.
             let beneath = prepared.measure(&adjustment, progress)?;
             prepared.beneath.push(beneath);
         }
         Some(prepared)
+    }
+
+    /// The surface's rim counts as wholly covered from now on.
+    pub(super) fn make_rims_whole(&mut self) {
+        self.whole_rims = true;
+        // What is known was composed otherwise.
+        self.filters.iter_mut().for_each(|stage| {
+            (stage.beneath, stage.made) = Default::default();
+        });
     }
 
     /// Every tile of the canvas, row by row.
@@ -179,7 +214,8 @@ impl StackBuilder<'_> {
         }
         if let Role::Adjusts(_) = layer.content.role() {
             let (layer, beneath) = (layer.clone(), scope.beneath.gathered());
-            self.adjustments.push(AdjustmentLayer { layer, scene: visible_scene.clone(), beneath });
+            let (scene, map) = (visible_scene.clone(), scope.map);
+            self.adjustments.push(AdjustmentLayer { layer, scene, beneath, map });
         }
         if let (Some(DerivedMask::Region(region)), Some(surface)) =
             (layer.mask.as_ref().and_then(LayerMask::derived), &visible_scene.surface)

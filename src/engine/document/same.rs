@@ -232,6 +232,7 @@ fn content(a: &Content, b: &Content) -> Option<&'static str> {
         }
         (Content::RadianceScaling(a), Content::RadianceScaling(b)) => ("scaling", a == b),
         (Content::Adjustment(a), Content::Adjustment(b)) => ("adjustment", a == b),
+        (Content::Filter(a), Content::Filter(b)) => ("filter", a == b),
         (Content::Normals(a), Content::Normals(b)) => {
             let alike =
                 (a.placement, a.outside, a.strength) == (b.placement, b.outside, b.strength);

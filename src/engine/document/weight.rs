@@ -12,6 +12,8 @@ use std::sync::Arc;
 const TILE_BYTES: u64 = Tile::most_bytes_a_pixel(false);
 /// For a tile of 16 bits, bytes a pixel.
 const TILE16_BYTES: u64 = Tile::most_bytes_a_pixel(true);
+/// For a tile that is filtered, bytes a pixel.
+const FILTERED_BYTES: u64 = 8;
 /// A tensor of curvature, and the map of κ made of it, bytes a pixel.
 const CURVATURE_BYTES: u64 = 14;
 /// Blurred normals and what lines are traced in, bytes a pixel.
@@ -81,6 +83,8 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
     mask + warped
         + match &layer.content {
             Content::Fill(_) | Content::Pixels(_) | Content::Ink(_) | Content::Adjustment(_) => 0,
+            // What is composed beneath it and what it makes of that, in 16 bits.
+            Content::Filter(_) => 2 * area * FILTERED_BYTES,
             Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
             Content::FormDrawing(_) => area * (TILE_BYTES + DRAWING_BYTES),
             Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,

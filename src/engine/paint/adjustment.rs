@@ -17,7 +17,7 @@ mod hsl;
 mod hue_saturation;
 mod lookup;
 mod mixing;
-mod parameters;
+pub(in crate::paint) mod parameters;
 mod rows;
 mod table;
 mod tones;

@@ -1,4 +1,4 @@
-//! Reads and writes adjustments of colors by the parameters that they show. Floor 5. An adjustment
+//! Reads and writes adjustments of colors and filters by the parameters that they show. Floor 5. Each
 //! is an object of its own within a layer: its kind, and what differs from how it begins.
 
 use super::images::stops;
@@ -8,31 +8,55 @@ use crate::math::srgb::Color;
 use crate::paint::adjustment::{
     ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
 };
-use crate::paint::{ColorAdjustment, GradientStop};
+use crate::paint::{ColorAdjustment, GradientStop, PictureFilter};
 use crate::{Result, base64};
 use serde_json::Value;
 
 impl RecipeValue for ColorAdjustment {
     fn to_json(&self) -> Value {
-        let mut out = JsonObject::default();
-        out.set("kind", self.name().into());
-        let mut writer = ParameterWriter(out);
-        self.clone().visit(&mut writer);
-        writer.0.into_value()
+        write(self.name(), |writer| self.clone().visit(writer))
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
-        let mut fields = node.fields()?;
-        let kinds = ColorAdjustment::all();
-        let names: Vec<(usize, &str)> =
-            kinds.iter().enumerate().map(|(i, kind)| (i, kind.name())).collect();
-        let mut adjustment = kinds[fields.required("kind")?.one_of(&names)?].clone();
-        let mut reader = ParameterReader { fields, read: Ok(()) };
-        adjustment.visit(&mut reader);
-        reader.read?;
-        reader.fields.finish()?;
-        Ok(adjustment)
+        read(node, &Self::all(), Self::name, Self::visit)
     }
+}
+
+impl RecipeValue for PictureFilter {
+    fn to_json(&self) -> Value {
+        write(self.name(), |writer| self.clone().visit(writer))
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        read(node, &Self::all(), Self::name, Self::visit)
+    }
+}
+
+/// The kind, and the parameters that are shown to a writer.
+fn write(kind: &str, show: impl FnOnce(&mut dyn ParameterVisitor)) -> Value {
+    let mut out = JsonObject::default();
+    out.set("kind", kind.into());
+    let mut writer = ParameterWriter(out);
+    show(&mut writer);
+    writer.0.into_value()
+}
+
+/// The kind that is named, with its parameters.
+fn read<T: Clone>(
+    node: &JsonNode,
+    kinds: &[T],
+    name: fn(&T) -> &'static str,
+    show: fn(&mut T, &mut dyn ParameterVisitor),
+) -> Result<T> {
+    let mut fields = node.fields()?;
+    let names: Vec<(usize, &str)> =
+        kinds.iter().enumerate().map(|(i, kind)| (i, name(kind))).collect();
+    let mut own = kinds[fields.required("kind")?.one_of(&names)?].clone();
+    let mut reader = ParameterReader { fields, read: Ok(()) };
+    show(&mut own, &mut reader);
+    reader.read?;
+    reader.fields.finish()?;
+    Ok(own)
 }
 
 /// Reads each parameter; the first refusal ends it.
@@ -176,27 +200,40 @@ mod tests {
     use serde_json::json;
     use std::path::Path;
 
-    fn read(value: &Value) -> Result<ColorAdjustment> {
+    fn read_adjustment(value: &Value) -> Result<ColorAdjustment> {
         ColorAdjustment::from_json(&JsonNode::root(Path::new("r.json"), value))
     }
 
     #[test]
     fn every_adjustment_is_read_as_it_was_written() {
         for adjustment in ColorAdjustment::all() {
-            assert_eq!(read(&adjustment.to_json()).unwrap(), adjustment);
+            assert_eq!(read_adjustment(&adjustment.to_json()).unwrap(), adjustment);
         }
         let changed = json!({
             "kind": "levels",
             "master": { "black": 12, "gamma": 1.25 },
             "blue": { "out_white": 200 }
         });
-        let levels = read(&changed).unwrap();
+        let levels = read_adjustment(&changed).unwrap();
         assert_eq!(levels.to_json(), changed);
         let curves = json!({ "kind": "curves", "red": [[0, 10], [128.5, 90], [255, 255]] });
-        assert_eq!(read(&curves).unwrap().to_json(), curves);
+        assert_eq!(read_adjustment(&curves).unwrap().to_json(), curves);
         let values = base64::encode(&[7; 48]);
         let table = json!({ "kind": "color-lookup", "table": { "side": 2, "values": values } });
-        assert_eq!(read(&table).unwrap().to_json(), table);
+        assert_eq!(read_adjustment(&table).unwrap().to_json(), table);
+    }
+
+    #[test]
+    fn every_filter_is_read_as_it_was_written() {
+        let filter =
+            |value: &Value| PictureFilter::from_json(&JsonNode::root(Path::new("r.json"), value));
+        for own in PictureFilter::all() {
+            assert_eq!(filter(&own.to_json()).unwrap(), own);
+        }
+        let changed = json!({ "kind": "unsharp-mask", "radius": 1.5, "threshold": 3 });
+        assert_eq!(filter(&changed).unwrap().to_json(), changed);
+        let refused = filter(&json!({ "kind": "gaussian-blur", "radius": -1 })).unwrap_err();
+        assert!(refused.to_string().contains("radius: is -1"), "{refused}");
     }
 
     #[test]
@@ -210,7 +247,7 @@ mod tests {
             (json!({ "kind": "color-lookup", "table": { "side": 2, "values": "AAAA" } }), "values"),
             (json!({ "kind": "gradient-map", "stops": [] }), "at least one stop"),
         ] {
-            let refused = read(&value).unwrap_err().to_string();
+            let refused = read_adjustment(&value).unwrap_err().to_string();
             assert!(refused.contains(why), "{refused}");
         }
     }

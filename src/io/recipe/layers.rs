@@ -11,7 +11,7 @@ use crate::document::{
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
-use crate::paint::ColorAdjustment;
+use crate::paint::{ColorAdjustment, PictureFilter};
 use crate::raster::{BlendMode, TileGrid};
 use crate::{Error, Result};
 use serde_json::Value;
@@ -25,7 +25,7 @@ const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
 /// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
-const KINDS: [(ReadContent, &str); 13] = [
+const KINDS: [(ReadContent, &str); 14] = [
     (|_, fields, _| Ok(Content::Fill(fields.color("color", Color::BLACK)?)), "fill"),
     (|reader, fields, _| Ok(Content::Pixels(reader.pixels(fields)?)), "pixels"),
     (|reader, fields, _| Ok(Content::Image(Live::new(reader.image(fields)?))), "image"),
@@ -42,6 +42,7 @@ const KINDS: [(ReadContent, &str); 13] = [
         |_, fields, _| Ok(ColorAdjustment::from_json(&fields.required("adjust")?)?.into()),
         "adjustment",
     ),
+    (|_, fields, _| Ok(PictureFilter::from_json(&fields.required("filter")?)?.into()), "filter"),
     (|reader, fields, _| Ok(Content::Normals(reader.normals(fields)?)), "normals"),
     (|_, fields, _| Ok(Content::Ink(InkLayer::of(fields.required("of")?.text()?))), "ink"),
     (|reader, fields, depth| Ok(Content::Group(reader.group(fields, depth)?)), "group"),
@@ -197,6 +198,7 @@ fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
         Content::Shading(live) => shading::write(out, live.params()),
         Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
         Content::Adjustment(live) => out.set("adjust", live.params().to_json()),
+        Content::Filter(live) => out.set("filter", live.params().to_json()),
         Content::Normals(layer) => normals::write(out, layer, canvas),
         Content::Ink(lines) => out.set("of", lines.of.as_str().into()),
         Content::Group(group) => out.flag("pass_through", group.pass_through, false),

@@ -54,7 +54,10 @@ pub fn is_of_second_version(document: &Document) -> bool {
             || layer.label != LayerLabel::None
             || matches!(
                 layer.content,
-                Content::Adjustment(_) | Content::Ink(_) | Content::FormDrawing(_)
+                Content::Adjustment(_)
+                    | Content::Filter(_)
+                    | Content::Ink(_)
+                    | Content::FormDrawing(_)
             )
     };
     has_matrix

@@ -14,7 +14,7 @@ use crate::math::range::{STOPS, clamp_to_range};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
     Adjust, Brush, ColorAdjustment, DrawingHand, FormDrawing, FormPattern, Gradient, GradientStop,
-    ImageFilter, LiveAdjustment, PlacedImage, Placement, Text,
+    ImageFilter, LiveAdjustment, LiveFilter, PictureFilter, PlacedImage, Placement, Text,
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
@@ -111,6 +111,8 @@ actions! {
         "strength" Strength { to: f32 }
         /// What an adjustment layer does.
         "adjustment" Adjustment { to: ColorAdjustment }
+        /// What a filter layer does.
+        "filter layer" FilterLayer { to: PictureFilter }
     }
 }
 
@@ -174,6 +176,7 @@ impl Property {
             Property::ScalingLight { .. } => "Bring out form",
             Property::Strength { .. } => "Strength",
             Property::Adjustment { to } => to.label(),
+            Property::FilterLayer { to } => to.label(),
         }
     }
 
@@ -257,6 +260,11 @@ impl Property {
             Content::Adjustment(live) => {
                 if let Property::Adjustment { to } = self {
                     *live = LiveAdjustment::new(to.clone());
+                }
+            }
+            Content::Filter(live) => {
+                if let Property::FilterLayer { to } = self {
+                    *live = LiveFilter::new(to.clone());
                 }
             }
             Content::Pixels(_) | Content::Strokes(_) | Content::Ink(_) => {}

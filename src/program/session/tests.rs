@@ -183,6 +183,33 @@ fn an_adjustment_layer_changes_what_is_beneath_it_and_the_selection_masks_it() {
 }
 
 #[test]
+fn paint_is_filtered_for_good_or_by_a_layer_above_it() {
+    let pixelate = r#"{"kind":"pixelate","size":200}"#;
+    let mut session = replay(&format!(
+        r#"{PAPER}{STROKE}
+        {{"in":"layer","do":"bake","layer":"1"}}
+        {{"in":"layer","do":"filter","layer":"1","filter":{pixelate},"done":false}}"#
+    ));
+    let shown = pixel(&session, 190, 140);
+    assert_ne!(shown, [255; 4], "the mean of all of it");
+    session.replay(Path::new("story"), r#"{"in":"layer","do":"unadjust"}"#).unwrap();
+    assert_eq!(pixel(&session, 190, 140), [255; 4]);
+    let keep =
+        format!(r#"{{"in":"layer","do":"filter","layer":"1","filter":{pixelate},"done":true}}"#);
+    session.replay(Path::new("story"), &keep).unwrap();
+    assert_eq!(pixel(&session, 190, 140), shown);
+    session.replay(Path::new("story"), r#"{"in":"edit","do":"undo"}"#).unwrap();
+    let add = format!(r#"{{"in":"layer","do":"add filter","filter":{pixelate}}}"#);
+    session.replay(Path::new("story"), &add).unwrap();
+    let both = pixel(&session, 190, 140);
+    let off = shown.iter().zip(both).map(|(a, b)| a.abs_diff(b)).max();
+    assert!(off <= Some(1), "paper and paint, mixed: {both:?}, not {shown:?}");
+    let set = r#"{"in":"layer","do":"set","layer":"2","to":{"do":"filter layer","to":{"kind":"sharpen"}},"done":true}"#;
+    session.replay(Path::new("story"), set).unwrap();
+    assert_eq!(pixel(&session, 190, 140), [255; 4]);
+}
+
+#[test]
 fn a_layer_alone_hides_the_others_until_it_is_no_longer() {
     let mut session = replay(&format!("{PAPER}{STROKE}"));
     let solo = r#"{"in":"layer","do":"solo","layer":"1"}"#;

@@ -38,6 +38,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.request(WindowRequest::ImageSizeDialog),
     ),
     submenu("Adjust", super::adjustments::PAINT),
+    submenu("Filter", super::filters::PAINT),
     LINE,
     row(
         "Turn canvas left",

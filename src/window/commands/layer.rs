@@ -71,7 +71,10 @@ fn is_live(session: &Session) -> bool {
     is_so_of_layer(session, |layer| {
         !matches!(
             layer.content,
-            Content::Pixels(_) | Content::RadianceScaling(_) | Content::Adjustment(_)
+            Content::Pixels(_)
+                | Content::RadianceScaling(_)
+                | Content::Adjustment(_)
+                | Content::Filter(_)
         )
     })
 }
@@ -130,6 +133,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     submenu("New live layer", LIVE),
     submenu("New shading layer", super::shading::COMMANDS),
     submenu("New adjustment layer", super::adjustments::LAYERS),
+    submenu("New filter layer", super::filters::LAYERS),
     LINE,
     row(
         "Give it a shape…",

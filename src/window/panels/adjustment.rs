@@ -1,5 +1,5 @@
-//! What sets an adjustment: sliders, curves, levels and ramps, by the parameters that it shows.
-//! Floor 7. Used by the properties of adjustment layers and by the dialog that adjusts paint.
+//! What sets an adjustment or a filter: sliders, curves, levels and ramps, by the parameters that it
+//! shows. Floor 7. Used by the properties of layers and by the dialogs that change paint.
 
 use super::{colors, curve, ramp};
 use crate::document::Histogram;
@@ -9,7 +9,7 @@ use crate::paint::adjustment::{
     ColorTable, HueSaturation, Levels, LevelsRange, NumberParameter, ParameterName,
     ParameterVisitor, ToneCurve,
 };
-use crate::paint::{ColorAdjustment, GradientStop};
+use crate::paint::{ColorAdjustment, GradientStop, PictureFilter};
 use crate::theme::ACCENT;
 use crate::widgets::{NumberField, ValueChange, check, choice_row, set_accessible_name};
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2};
@@ -59,6 +59,25 @@ pub fn show(
         let ParameterRows { changed, asks_for_table, .. } = shown;
         let changed = changed.map(|done| ValueChange { to: next.clamp_to_ranges(), done });
         AdjustmentAnswer { changed, asks_for_table }
+    })
+    .inner
+}
+
+/// Shows the parameters of a filter.
+pub fn show_filter(ui: &mut Ui, filter: &PictureFilter) -> Option<ValueChange<PictureFilter>> {
+    let mut next = filter.clone();
+    ui.push_id(filter.name(), |ui| {
+        let mut shown = ParameterRows {
+            ui,
+            group: "",
+            depth: 0,
+            changed: None,
+            asks_for_table: false,
+            histogram: None,
+            hides_bare: false,
+        };
+        next.visit(&mut shown);
+        shown.changed.map(|done| ValueChange { to: next.clamp_to_ranges(), done })
     })
     .inner
 }

@@ -35,6 +35,7 @@ pub fn kind_icon(content: &Content) -> Icon {
         Content::Shading(_) => Icon::Shading,
         Content::RadianceScaling(_) => Icon::Scaling,
         Content::Adjustment(_) => Icon::Adjustment,
+        Content::Filter(_) => Icon::Filter,
         Content::Normals(_) => Icon::Normals,
         Content::Ink(_) => Icon::Ink,
         Content::Group(_) => Icon::Group,

@@ -75,6 +75,10 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
                 setter.requests.request(WindowRequest::Choose(FilePurpose::ColorTable));
             }
         }
+        Content::Filter(live) => {
+            let changed = adjustment::show_filter(ui, live.params());
+            setter.take(changed.map(|c| c.map(|to| Property::FilterLayer { to })));
+        }
         Content::Normals(normals) => normal_layer(ui, normals, &mut setter),
         Content::Group(group) => {
             let hint =

@@ -98,6 +98,8 @@ impl RenderPass {
         if batch.is_empty() {
             batch = self.dirty.iter().copied().take(most).collect();
         }
+        // What is not canceled always answers.
+        let _ = prepared.filter_tiles(&batch, &Progress::default());
         let tiles: Vec<_> = batch.par_iter().map(|&at| (at, prepared.flatten_tile(at))).collect();
         for at in &batch {
             self.dirty.remove(at);

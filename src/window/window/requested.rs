@@ -3,7 +3,7 @@
 
 use super::MainWindow;
 use crate::dialogs::{
-    Dialog, adjust, canvas, edge, import, looks, materials, new, palette, shortcuts,
+    Dialog, adjust, canvas, edge, filter, import, looks, materials, new, palette, shortcuts,
 };
 use crate::file_purpose::FilePurpose;
 use crate::panel_layout::PanelSide;
@@ -58,6 +58,10 @@ impl MainWindow {
             WindowRequest::AdjustDialog(adjustment) => {
                 let dialog = adjust::AdjustDialog::new(*adjustment, &self.session);
                 self.dialogs.push(Dialog::Adjust(Box::new(dialog)));
+            }
+            WindowRequest::FilterDialog(filter) => {
+                let dialog = filter::FilterDialog::new(*filter, &self.session);
+                self.dialogs.push(Dialog::Filter(Box::new(dialog)));
             }
             WindowRequest::EdgeDialog(change) => {
                 self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change)))

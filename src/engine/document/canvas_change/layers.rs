@@ -151,6 +151,7 @@ impl Carrier<'_> {
             Content::Fill(_) | Content::RadianceScaling(_) | Content::Adjustment(_) => {
                 content.clone()
             }
+            Content::Filter(_) => content.clone(),
             Content::Ink(lines) => Content::Ink(InkLayer::of(lines.of.clone())),
             Content::Pixels(pixels) => Content::Pixels(self.pixels(pixels, frame)),
             Content::Image(live) => Content::Image(Live::new(self.image(live.params(), frame))),

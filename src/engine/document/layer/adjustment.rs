@@ -1,7 +1,7 @@
 //! What a layer that adjusts the picture beneath it implements: composed pixels in, changed colors
 //! out. Floor 4. Not here: composing what lies beneath (`compose`), measuring it (`measure`).
 
-use crate::paint::Scene;
+use crate::paint::{LiveFilter, Scene};
 use crate::raster::{PlanarTile, TileAt};
 use crate::shading::RadianceScaling;
 use crate::shading::radiance::{BackdropStats, Exactness};
@@ -12,6 +12,11 @@ pub trait Adjustment {
     /// How much of the picture beneath a changed pixel depends on.
     fn reach(&self) -> Reach {
         Reach::Pixel
+    }
+
+    /// The filter that it is, if it reads what lies around a pixel.
+    fn filter(&self) -> Option<&LiveFilter> {
+        None
     }
 
     /// What must be known of the whole picture beneath before a part of it can be adjusted; `None`
@@ -45,6 +50,8 @@ pub trait BackdropMeter {
 pub enum Reach {
     /// On the pixel beneath it.
     Pixel,
+    /// On what its filter reads.
+    Around,
     /// On all of it.
     Picture,
 }

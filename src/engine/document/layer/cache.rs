@@ -1,7 +1,9 @@
 //! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles
 //! are cached in `live`.
 
-use super::{Layer, normals::Combination, on_canvas::CanvasCache, warp::WarpCache};
+use super::{Layer, LayerMap, normals::Combination, on_canvas::CanvasCache, warp::WarpCache};
+use crate::document::filter_stage::StoredTiles;
+use crate::document::memory_use::MemoryCount;
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::shading::RadianceScaling;
@@ -25,6 +27,17 @@ pub struct LayerCache {
     pub(in crate::document) brightest: Memo<()>,
     /// The factor that restores the mean luminance, for given parameters.
     pub(in crate::document) gain: Memo<RadianceScaling>,
+    /// For a filter: what is composed beneath it, if it is clipped or not, in a group's place.
+    pub(in crate::document) beneath: Memo<(bool, LayerMap), Arc<StoredTiles>>,
+}
+
+impl LayerCache {
+    /// Counts what it holds, or drops it.
+    pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        if let Some(tiles) = self.beneath.last() {
+            tiles.count(count, keeps);
+        }
+    }
 }
 
 /// What its preview includes of a layer.
@@ -103,6 +116,11 @@ impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
             value: value.clone(),
         });
         Some(value)
+    }
+
+    /// The last value.
+    fn last(&self) -> Option<V> {
+        self.lock().as_ref().map(|entry| entry.value.clone())
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<MemoEntry<K, V>>> {

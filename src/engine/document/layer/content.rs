@@ -4,6 +4,7 @@
 
 mod adjustment;
 mod fill;
+mod filter;
 mod form_drawing;
 mod from;
 mod gradient;
@@ -33,7 +34,7 @@ use crate::document::Progress;
 use crate::document::far_side::{FarScene, FarTile};
 use crate::document::memory_use::MemoryCount;
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::paint::{FormDrawing, Gradient, LiveAdjustment, PlacedImage, Scene};
+use crate::paint::{FormDrawing, Gradient, LiveAdjustment, LiveFilter, PlacedImage, Scene};
 use crate::raster::{Picture, TileAt};
 use crate::shading::{RadianceScaling, Shading};
 use crate::surface::Bend;
@@ -63,6 +64,8 @@ pub enum Content {
     RadianceScaling(RadianceScaling),
     /// What lies beneath, its colors adjusted.
     Adjustment(LiveAdjustment),
+    /// What lies beneath, filtered.
+    Filter(LiveFilter),
     /// Detail for the surface that layers above see.
     Normals(NormalLayer),
     /// The ink of a drawing beneath, unlit.
@@ -240,6 +243,7 @@ impl Content {
             Content::Shading(shading) => shading,
             Content::RadianceScaling(scaling) => scaling,
             Content::Adjustment(adjustment) => adjustment,
+            Content::Filter(filter) => filter,
             Content::Normals(normals) => normals,
             Content::Ink(lines) => lines,
             Content::Group(group) => group,
@@ -400,6 +404,7 @@ impl Content {
             (Content::Ink(a), Content::Ink(b)) => a.is_identical(b),
             (Content::RadianceScaling(a), Content::RadianceScaling(b)) => a == b,
             (Content::Adjustment(a), Content::Adjustment(b)) => a == b,
+            (Content::Filter(a), Content::Filter(b)) => a == b,
             _ => false,
         }
     }
@@ -414,6 +419,14 @@ impl Content {
 
     pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.kind().count(count, keeps);
+    }
+
+    /// The filter that it is, if it reads what lies around a pixel beneath it.
+    pub(in crate::document) fn filter(&self) -> Option<&LiveFilter> {
+        match self.role() {
+            Role::Adjusts(adjustment) => adjustment.filter(),
+            _ => None,
+        }
     }
 
     /// Its appearance depends on the whole picture beneath it.

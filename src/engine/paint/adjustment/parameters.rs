@@ -19,7 +19,7 @@ pub struct ParameterName {
 }
 
 /// The name of a parameter.
-pub(super) const fn named(
+pub(in crate::paint) const fn named(
     key: &'static str,
     label: &'static str,
     hint: &'static str,
@@ -40,22 +40,34 @@ pub struct NumberParameter {
     pub default: f32,
     /// Decimals that matter.
     pub decimals: usize,
+    /// It is a length on the canvas, px, and scales with it.
+    pub is_length: bool,
 }
 
 impl NumberParameter {
     /// A whole number around 0.
-    pub(super) const fn around(name: ParameterName, most: f32) -> Self {
-        Self { name, least: -most, most, default: 0.0, decimals: 0 }
+    pub(in crate::paint) const fn around(name: ParameterName, most: f32) -> Self {
+        Self { name, least: -most, most, default: 0.0, decimals: 0, is_length: false }
     }
 
     /// A whole number from `least` to `most`.
-    pub(super) const fn whole(name: ParameterName, least: f32, most: f32, default: f32) -> Self {
-        Self { name, least, most, default, decimals: 0 }
+    pub(in crate::paint) const fn whole(
+        name: ParameterName,
+        least: f32,
+        most: f32,
+        default: f32,
+    ) -> Self {
+        Self { name, least, most, default, decimals: 0, is_length: false }
     }
 
     /// The same with decimals.
-    pub(super) const fn decimals(self, decimals: usize) -> Self {
+    pub(in crate::paint) const fn decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
+    }
+
+    /// The same as a length on the canvas, px.
+    pub(in crate::paint) const fn px(self) -> Self {
+        Self { is_length: true, ..self }
     }
 
     /// What it may be.
@@ -88,13 +100,13 @@ pub trait ParameterVisitor {
 }
 
 /// An adjustment, by its parameters and what it does to colors.
-pub(super) trait Parameters {
+pub(in crate::paint) trait Parameters {
     /// Shows its parameters to a visitor, which may change them.
     fn visit(&mut self, visitor: &mut dyn ParameterVisitor);
 }
 
 /// Brings every number into its range.
-pub(super) struct Holder;
+pub(in crate::paint) struct Holder;
 
 impl ParameterVisitor for Holder {
     fn number(&mut self, parameter: NumberParameter, value: &mut f32) {
@@ -117,6 +129,32 @@ impl ParameterVisitor for Holder {
             *value = black_to_white();
         }
     }
+
+    fn table(&mut self, _: ParameterName, _: &mut Option<ColorTable>) {}
+
+    fn group(&mut self, _: ParameterName, inside: &mut dyn FnMut(&mut dyn ParameterVisitor)) {
+        inside(self);
+    }
+}
+
+/// Makes every length so many times as large. It may become larger than documents hold: a picture
+/// that is only rendered larger looks as it did.
+pub(in crate::paint) struct LengthScaler(pub f32);
+
+impl ParameterVisitor for LengthScaler {
+    fn number(&mut self, parameter: NumberParameter, value: &mut f32) {
+        if parameter.is_length {
+            *value *= self.0;
+        }
+    }
+
+    fn flag(&mut self, _: ParameterName, _: bool, _: &mut bool) {}
+
+    fn color(&mut self, _: ParameterName, _: Color, _: &mut Color) {}
+
+    fn curve(&mut self, _: ParameterName, _: &mut ToneCurve) {}
+
+    fn stops(&mut self, _: ParameterName, _: &mut Vec<GradientStop>) {}
 
     fn table(&mut self, _: ParameterName, _: &mut Option<ColorTable>) {}
 

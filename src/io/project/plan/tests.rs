@@ -120,6 +120,16 @@ fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {
 }
 
 #[test]
+fn a_filter_is_composed_with_all_beneath_it_in_photoshop_too() {
+    let blur = crate::paint::PictureFilter::all()[0].clone();
+    let layers = vec![fill("a"), Layer::new("blur", blur), fill("b")];
+    let layers = layers.into_iter().map(Arc::new).collect();
+    let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
+    let found = text(&plan(&document, FormatSupport::PHOTOSHOP));
+    assert_eq!(found, "-blur~[a blur0] blur*2 b");
+}
+
+#[test]
 fn what_openraster_cannot_blend_is_composed() {
     let exclusion = Layer { blend: BlendMode::Exclusion, ..fill("e") };
     assert_eq!(planned(vec![fill("a"), exclusion.clone()]), "-e~[a e] e*2");

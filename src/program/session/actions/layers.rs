@@ -16,7 +16,8 @@ use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live, Progre
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{
-    ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment, Text,
+    ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment, LiveFilter,
+    PictureFilter, Text,
 };
 use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
@@ -80,6 +81,11 @@ actions! {
         /// The paint of layers is adjusted for good, within the selection; shown only, until it is
         /// `done`.
         "adjust" Adjust { layer: LayerPaths, adjustment: ColorAdjustment, done: bool }
+        /// A layer that filters what lies beneath it.
+        "add filter" AddFilter { filter: PictureFilter }
+        /// The paint of layers is filtered for good, within the selection; shown only, until it is
+        /// `done`.
+        "filter" Filter { layer: LayerPaths, filter: PictureFilter, done: bool }
         /// Forgets what is only shown; what was typed is kept.
         "unadjust" Unadjust {}
         /// Adds a paintable mask that shows all of the layer, or hides it; an existing mask becomes
@@ -176,6 +182,9 @@ impl LayerAction {
         }
         if let LayerAction::Adjust { layer, adjustment, done } = self {
             return adjust(session, layer, adjustment, *done);
+        }
+        if let LayerAction::Filter { layer, filter, done } = self {
+            return filter_paint(session, layer, filter, *done);
         }
         if let LayerAction::TakeAlong { layer, by, done } = self {
             return take_along(session, layer, *by, *done);
@@ -298,6 +307,10 @@ impl LayerAction {
                 let name = document.free_layer_name(adjustment.label());
                 added(open, Layer::new(name, adjustment.clone()))?
             }
+            LayerAction::AddFilter { filter } => {
+                let name = document.free_layer_name(filter.label());
+                added(open, Layer::new(name, filter.clone()))?
+            }
             LayerAction::PaintMask { layer: path, hides } => {
                 let layer = layer(path)?;
                 paint_mask(document, &layer, *hides)?
@@ -356,6 +369,7 @@ impl LayerAction {
             | LayerAction::Solo { .. }
             | LayerAction::OnMask { .. }
             | LayerAction::Adjust { .. }
+            | LayerAction::Filter { .. }
             | LayerAction::Material { .. }
             | LayerAction::Unadjust {}
             | LayerAction::TakeAlong { .. }
@@ -413,21 +427,42 @@ fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) 
 /// The paint of layers adjusted: a step, or a preview of one. Layers that are no paint, or locked,
 /// stay as they are.
 fn adjust(session: &mut Session, layers: &LayerPaths, by: &ColorAdjustment, done: bool) {
+    let live = LiveAdjustment::new(by.clone());
+    let refused = "Select a paint layer that is not locked, or add an adjustment layer.";
+    let change = |document: &Document, id| document.with_paint_adjusted(id, &live);
+    change_paint(session, layers, (by.label(), refused), done, change);
+}
+
+/// The same, filtered.
+fn filter_paint(session: &mut Session, layers: &LayerPaths, by: &PictureFilter, done: bool) {
+    let live = LiveFilter::new(by.clone());
+    let refused = "Select a paint layer that is not locked, or add a filter layer.";
+    let change = |document: &Document, id| document.with_paint_filtered(id, &live);
+    change_paint(session, layers, (by.label(), refused), done, change);
+}
+
+/// `label`: the name of the step, and what is said where there is no paint.
+fn change_paint(
+    session: &mut Session,
+    layers: &LayerPaths,
+    (label, refused): (&'static str, &str),
+    done: bool,
+    change: impl Fn(&Document, LayerId) -> Option<Document>,
+) {
     let Some(open) = session.active_mut() else { return };
     let document = open.document();
     let (mut next, mut is_any) = (document.clone(), false);
-    let live = LiveAdjustment::new(by.clone());
     for id in layers.find(document).unwrap_or_default() {
-        if let Some(adjusted) = next.with_paint_adjusted(id, &live) {
-            (next, is_any) = (adjusted, true);
+        if let Some(changed) = change(&next, id) {
+            (next, is_any) = (changed, true);
         }
     }
     match (is_any, done) {
-        (true, true) => drop(open.commit(by.label(), next)),
-        (true, false) => open.show(by.label(), next),
+        (true, true) => drop(open.commit(label, next)),
+        (true, false) => open.show(label, next),
         (false, _) => {
             open.forget_preview();
-            session.say("Select a paint layer that is not locked, or add an adjustment layer.");
+            session.say(refused);
         }
     }
 }

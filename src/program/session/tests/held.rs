@@ -11,7 +11,7 @@ use crate::io::{Budget, project};
 use crate::math::{Size, vec2};
 use crate::paint::{
     Adjust, ColorAdjustment, FormDrawing, FormPattern, Gradient, GradientStop, ImageFilter,
-    PictureSource, PlacedImage, Placement,
+    PictureFilter, PictureSource, PlacedImage, Placement,
 };
 use crate::raster::{Outside, Picture, Plane};
 use crate::session::actions::Style;
@@ -86,6 +86,7 @@ pub(super) fn everything() -> Document {
         Content::FormDrawing(Live::new(FormDrawing::new(FormPattern::Hatching(
             HatchSettings::DEFAULT,
         )))),
+        PictureFilter::all()[0].clone().into(),
     ];
     let layers = contents
         .into_iter()
@@ -98,7 +99,7 @@ pub(super) fn everything() -> Document {
 fn edit() -> impl Strategy<Value = String> {
     let numbers = prop::collection::vec(prop::sample::select(NUMBERS.to_vec()), 8);
     let all: Vec<&str> = PROPERTIES.iter().chain(OTHERS).copied().collect();
-    (prop::sample::select(all), 0..13usize, numbers).prop_map(|(template, layer, numbers)| {
+    (prop::sample::select(all), 0..14usize, numbers).prop_map(|(template, layer, numbers)| {
         let mut numbers = numbers.into_iter().cycle();
         let template = match template.starts_with("{\"in\"") {
             true => template.to_owned(),

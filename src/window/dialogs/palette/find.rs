@@ -30,7 +30,7 @@ const BRUSH: [(&str, &str); 8] = [
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 63] = [
+const SYNONYMS: [(&str, &[&str]); 72] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
@@ -43,6 +43,15 @@ const SYNONYMS: [(&str, &[&str]); 63] = [
     ("warp", &["liquify", "transform"]),
     ("smudge", &["brushes", "liquify"]),
     ("blur", &["brushes", "feather"]),
+    ("bokeh", &["lens blur"]),
+    ("defocus", &["lens blur"]),
+    ("field", &["lens blur"]),
+    ("radial", &["spin blur", "zoom blur"]),
+    ("bloom", &["glow"]),
+    ("despeckle", &["median"]),
+    ("mosaic", &["pixelate"]),
+    ("sobel", &["edges"]),
+    ("film", &["grain"]),
     ("stabiliser", &["stabilizer"]),
     ("stabilisation", &["stabilizer"]),
     ("stabilization", &["stabilizer"]),

@@ -3,7 +3,9 @@
 use super::{Content, Group, NormalLayer, PixelLayer, StrokeList};
 use crate::document::Live;
 use crate::math::srgb::Color;
-use crate::paint::{ColorAdjustment, Gradient, LiveAdjustment, PlacedImage, Stroke};
+use crate::paint::{
+    ColorAdjustment, Gradient, LiveAdjustment, LiveFilter, PictureFilter, PlacedImage, Stroke,
+};
 use crate::raster::TileGrid;
 use crate::shading::{RadianceScaling, Shading};
 use std::sync::Arc;
@@ -70,6 +72,13 @@ impl From<RadianceScaling> for Content {
 impl From<ColorAdjustment> for Content {
     fn from(adjustment: ColorAdjustment) -> Self {
         Content::Adjustment(LiveAdjustment::new(adjustment))
+    }
+}
+
+/// What lies beneath, filtered.
+impl From<PictureFilter> for Content {
+    fn from(filter: PictureFilter) -> Self {
+        Content::Filter(LiveFilter::new(filter))
     }
 }
 

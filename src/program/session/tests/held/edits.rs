@@ -71,6 +71,8 @@ pub const PROPERTIES: &[&str] = &[
     r#"{"do":"strength","to":#}"#,
     r#"{"do":"adjustment","to":{"kind":"levels","red":{"black":#,"gamma":#,"out_white":#}}}"#,
     r#"{"do":"adjustment","to":{"kind":"channel-mixer","gray":{"red":#},"monochrome":true}}"#,
+    r#"{"do":"filter layer","to":{"kind":"unsharp-mask","amount":#,"radius":#,"threshold":#}}"#,
+    r#"{"do":"filter layer","to":{"kind":"zoom-blur","amount":#,"x":#,"y":#}}"#,
     r#"{"do":"sampling","filter":"nearest"}"#,
     r#"{"do":"without liquify"}"#,
     r#"{"do":"mask disabled","on":true}"#,

@@ -75,6 +75,7 @@ fn names_of(property: &Property) -> &'static [&'static str] {
             &["scaling"]
         }
         Adjustment { .. } => &["adjustment"],
+        FilterLayer { .. } => &["filter"],
         Surrounded { .. } | Without { .. } | Occlusion { .. } | Bounces { .. } => &["material"],
         ShadingModel { .. } | Lights { .. } | InMood { .. } | Shadowed { .. } => &["material"],
         Ambient { .. } | Diffuse { .. } | Specular { .. } | Painted { .. } => &["material"],

@@ -12,8 +12,8 @@ use crate::paint::adjustment::{
     ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
 };
 use crate::paint::{
-    Adjust, BrushMode, ColorAdjustment, DrawingHand, GradientStop, Placement, Text, TextAlign,
-    TextStyle,
+    Adjust, BrushMode, ColorAdjustment, DrawingHand, GradientStop, PictureFilter, Placement, Text,
+    TextAlign, TextStyle,
 };
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
@@ -131,6 +131,14 @@ impl Drawn for ColorAdjustment {
         let mut adjustment = dice.one_of(&ColorAdjustment::all());
         adjustment.visit(&mut ParameterDice(dice));
         adjustment
+    }
+}
+
+impl Drawn for PictureFilter {
+    fn drawn(dice: &mut Dice) -> Self {
+        let mut filter = dice.one_of(&PictureFilter::all());
+        filter.visit(&mut ParameterDice(dice));
+        filter
     }
 }
 

@@ -67,6 +67,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
     (&["lines", "hatching"], &["hand", "line size", "drawn with"]),
     (&["normals"], &["grain", "strength"]),
     (&["adjustment"], &["adjustment"]),
+    (&["filter"], &["filter layer"]),
     (&["shading", "radiance-scaling"], &["features"]),
     (&["radiance-scaling"], &["scaling", "scaling light", "reference", "keep mean"]),
     (

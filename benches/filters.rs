@@ -1,0 +1,175 @@
+//! Adjustments and filters while something beneath or of them changes: ms a frame, from the new
+//! document to its flattened tiles, as least, middle, and what nine of ten stay within.
+//! `cargo bench --bench filters`.
+
+mod timing;
+
+use rilievo::document::{Content, Layer, PixelLayer, PreparedDocument, diff};
+use rilievo::math::{Vec3, vec3};
+use rilievo::raster::{Plane, TileAt};
+use rilievo::{Color, Document, Maps, Progress, Size, Surface, TileGrid};
+use rilievo_engine::math::hash;
+use rilievo_engine::paint::adjustment::{
+    ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
+};
+use rilievo_engine::paint::filter::GaussianBlur;
+use rilievo_engine::paint::{ColorAdjustment, GradientStop, PictureFilter};
+use rilievo_program::tools::{ToolContext, ToolKind, ToolSettings};
+use std::sync::Arc;
+use std::time::Instant;
+
+const SCREEN: Size = Size::new(1920, 1080);
+const LARGE: Size = Size::new(4096, 4096);
+const FRAMES: usize = 9;
+
+/// Opaque paint in patches of noise.
+fn paint(size: Size) -> Layer {
+    let (w, h) = (size.width as usize, size.height as usize);
+    let byte = |x: usize, y: usize, c: u32| (hash::unit(c, x as u32, y as u32) * 255.0) as u8;
+    let pixel = |i: usize| {
+        let (x, y) = (i % w / 8, i / w / 8);
+        [byte(x, y, 0), byte(x, y, 1), byte(x, y, 2), 255]
+    };
+    let rgba: Vec<u8> = (0..w * h).flat_map(pixel).collect();
+    Layer::new("paint", TileGrid::from_straight_rgba(&rgba, w, h, 0, 0))
+}
+
+fn of(size: Size, layers: Vec<Layer>) -> Document {
+    Document { layers: layers.into_iter().map(Arc::new).collect(), ..Document::empty(size) }
+}
+
+/// A ball before a wall, over the whole canvas.
+fn shaped(document: Document) -> Document {
+    let size = document.size;
+    let (radius, middle) = (0.4 * size.height as f32, size.center());
+    let from = |x: usize, y: usize| (x as f32 - middle.x, y as f32 - middle.y);
+    let up = |x, y| {
+        let (dx, dy) = from(x, y);
+        (radius * radius - dx * dx - dy * dy).max(0.0).sqrt()
+    };
+    let normal = |x: usize, y: usize| -> Vec3 {
+        let (dx, dy) = from(x, y);
+        if up(x, y) > 0.0 { vec3(dx, -dy, up(x, y)) } else { Vec3::Z }
+    };
+    let maps = Maps {
+        normals: Plane::from_fn(size, normal),
+        depth: Plane::from_fn(size, |x, y| 0.9 - 0.5 * up(x, y) / radius),
+        coverage: Plane::filled(size, 255),
+    };
+    Document { surface: Surface::new(maps).ok().map(Arc::new), ..document }
+}
+
+/// ms of one frame: the tiles that differ.
+fn frame(old: &Document, new: &Document, picture: &mut TileGrid) -> Option<f64> {
+    let progress = Progress::default();
+    let start = Instant::now();
+    let tiles: Vec<TileAt> = diff(old, new).into_iter().collect();
+    *picture = PreparedDocument::new(new, &progress)?.flatten_tiles(picture, &tiles, &progress)?;
+    Some(start.elapsed().as_secs_f64() * 1e3)
+}
+
+/// The frames of a series of documents.
+fn series(first: &Document, next: impl Fn(&Document, usize) -> Document) -> Vec<f64> {
+    let mut picture = rilievo::flatten(first, &Progress::default()).unwrap_or_default();
+    let mut shown = first.clone();
+    let step = |i: usize| {
+        let new = next(&shown, i);
+        let ms = frame(&shown, &new, &mut picture)?;
+        shown = new;
+        Some(ms)
+    };
+    (1..=FRAMES).map_while(step).collect()
+}
+
+/// Moves every slider by a share of its range.
+struct Nudge(f32);
+
+impl ParameterVisitor for Nudge {
+    fn number(&mut self, parameter: NumberParameter, value: &mut f32) {
+        let by = self.0 * (parameter.most - parameter.least);
+        *value = (*value + by).max(parameter.least).min(parameter.most);
+    }
+
+    fn flag(&mut self, _: ParameterName, _: bool, _: &mut bool) {}
+
+    fn color(&mut self, _: ParameterName, _: Color, _: &mut Color) {}
+
+    fn curve(&mut self, _: ParameterName, _: &mut ToneCurve) {}
+
+    fn stops(&mut self, _: ParameterName, _: &mut Vec<GradientStop>) {}
+
+    fn table(&mut self, _: ParameterName, _: &mut Option<ColorTable>) {}
+
+    fn group(&mut self, _: ParameterName, inside: &mut dyn FnMut(&mut dyn ParameterVisitor)) {
+        inside(self);
+    }
+}
+
+/// A slider of a filter over the whole picture is dragged.
+fn dragged(filter: &PictureFilter) {
+    let layer = |filter: PictureFilter| Layer::new("filter", filter);
+    let document = shaped(of(SCREEN, vec![paint(SCREEN), layer(filter.clone())]));
+    let id = document.layers[1].id;
+    let next = |document: &Document, i: usize| {
+        let set = |layer: &mut Layer| {
+            let mut next = filter.clone();
+            next.visit(&mut Nudge(i as f32 * 1e-3));
+            layer.content = Content::from(next);
+        };
+        document.with_layer(id, set).unwrap_or_else(|| document.clone())
+    };
+    timing::row(&format!("{}, dragged, 1920 × 1080", filter.name()), series(&document, next));
+}
+
+/// A dab of 40 px beneath a filter.
+fn painted_beneath(filter: PictureFilter) {
+    let name = format!("{}, a dab beneath, 1920 × 1080", filter.name());
+    let document = shaped(of(SCREEN, vec![paint(SCREEN), Layer::new("filter", filter)]));
+    let id = document.layers[0].id;
+    let next = |document: &Document, i: usize| {
+        let rgba = [i as u8 * 20, 90, 200, 255].repeat(40 * 40);
+        let dab = TileGrid::from_straight_rgba(&rgba, 40, 40, 700 + 40 * i as i32, 500);
+        let set = |layer: &mut Layer| {
+            if let Content::Pixels(PixelLayer { tiles, .. }) = &mut layer.content {
+                dab.iter().for_each(|(at, tile)| tiles.set(at, Some(tile.clone())));
+            }
+        };
+        document.with_layer(id, set).unwrap_or_else(|| document.clone())
+    };
+    timing::row(&name, series(&document, next));
+}
+
+/// Twelve adjustments over 4096², a stroke beneath.
+fn twelve_adjustments() {
+    let names = [
+        "levels",
+        "curves",
+        "exposure",
+        "brightness-contrast",
+        "vibrance",
+        "hue-saturation",
+        "color-balance",
+        "photo-filter",
+        "channel-mixer",
+        "selective-color",
+        "black-white",
+        "gradient-map",
+    ];
+    let adjustments = names.into_iter().filter_map(ColorAdjustment::from_name);
+    let layers = std::iter::once(paint(LARGE)).chain(adjustments.map(|a| Layer::new("adjust", a)));
+    let document = of(LARGE, layers.collect());
+    let id = document.layers[0].id;
+    let tools = ToolSettings::default();
+    let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &tools) };
+    let frames = timing::frames(ToolKind::Brush, &context, timing::on_wave, 30);
+    timing::row("12 adjustments, a stroke beneath, 4096²", frames);
+}
+
+fn main() {
+    println!("{:56} {:>8} {:>8} {:>8}", "ms a frame", "least", "middle", "9 of 10");
+    PictureFilter::all().iter().for_each(dragged);
+    for radius in [4.0, 20.0, 100.0] {
+        painted_beneath(PictureFilter::GaussianBlur(GaussianBlur { radius }));
+    }
+    twelve_adjustments();
+}

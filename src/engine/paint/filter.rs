@@ -1,0 +1,258 @@
+//! Filters of pictures: a pixel depends on those around it, or on its place. Floor 3. Premultiplied
+//! encoded pixels in and out, so that color under transparent pixels does not spread. Not here: the
+//! layers that hold them, and composing what lies beneath (`document`).
+//!
+//! A picture is filtered in blocks, whose places do not depend on what changed, so that a part that
+//! is filtered again gets the same bytes.
+//!
+//! | file | |
+//! |---|---|
+//! | `window` | what a filter reads |
+//! | `blur`, `radial` | blurs: everywhere alike, around a point |
+//! | `sharpen`, `glow` | those that compare a picture with its blur |
+//! | `surface`, `lens` | blurs over the surface, and by its depth |
+//! | `noise` | noise and grain |
+//! | `cells` | median, squares, edges, shift |
+
+mod blur;
+mod cells;
+mod glow;
+mod lens;
+mod noise;
+mod radial;
+mod sharpen;
+mod surface;
+mod window;
+
+pub use blur::{BoxBlur, GaussianBlur, MotionBlur};
+pub use cells::{EdgeFilter, MedianFilter, Pixelate, WrappedOffset};
+pub use glow::BrightGlow;
+pub use lens::LensBlur;
+pub use noise::{FilmGrain, PixelNoise};
+pub use radial::{BlurCenter, SpinBlur, ZoomBlur};
+pub use sharpen::{HighPass, Sharpen, UnsharpMask};
+pub use surface::{FlowBlur, SurfaceBlur};
+pub use window::{FilterSource, FilterWindow};
+
+use crate::math::Rect;
+use crate::math::named::current_name;
+use crate::paint::adjustment::ParameterVisitor;
+use crate::paint::adjustment::parameters::{Holder, LengthScaler, Parameters};
+use crate::surface::Scene;
+use std::sync::Arc;
+
+/// Declares the enum of filters with the table of their names.
+macro_rules! filters {
+    ($($kind:ident = $name:literal => ($label:literal, $hint:literal),)+) => {
+        /// A filter with its parameters.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum PictureFilter {
+            $(
+                #[doc = concat!($hint, ".")]
+                $kind($kind),
+            )+
+        }
+
+        impl PictureFilter {
+            /// How many kinds there are.
+            pub const COUNT: usize = [$($name),+].len();
+
+            /// One of each kind as it begins, in the order in which they are offered.
+            pub fn all() -> [Self; Self::COUNT] {
+                [$(Self::$kind($kind::default())),+]
+            }
+
+            /// Its name in documents.
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $name),+ }
+            }
+
+            /// Its name in the window.
+            pub fn label(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $label),+ }
+            }
+
+            /// What it does, for tooltips.
+            pub fn hint(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $hint),+ }
+            }
+
+            fn parameters(&mut self) -> &mut dyn Parameters {
+                match self { $(Self::$kind(own) => own),+ }
+            }
+
+            fn kernel(&self) -> &dyn FilterKernel {
+                match self { $(Self::$kind(own) => own),+ }
+            }
+        }
+    };
+}
+
+filters! {
+    GaussianBlur = "gaussian-blur" => ("Gaussian blur", "Soft everywhere alike"),
+    BoxBlur = "box-blur" => ("Box blur", "The mean of a square"),
+    MotionBlur = "motion-blur" => ("Motion blur", "As if the camera had moved along a line"),
+    SpinBlur = "spin-blur" => ("Spin blur", "As if the picture turned about a point"),
+    ZoomBlur = "zoom-blur" => ("Zoom blur", "As if the camera came nearer"),
+    LensBlur = "lens-blur" => ("Lens blur", "Out of focus, by the depth of the surface"),
+    SurfaceBlur = "surface-blur"
+        => ("Blur over the surface", "Soft by the distance on the surface, up to its contours"),
+    FlowBlur = "flow-blur"
+        => ("Blur along the form", "Smeared along the lines in which the surface bends least"),
+    Sharpen = "sharpen" => ("Sharpen", "Crisper edges, by the nearest pixels"),
+    UnsharpMask = "unsharp-mask"
+        => ("Unsharp mask", "Crisper edges, by their width and from a threshold on"),
+    HighPass = "high-pass" => ("High pass", "Only details, around mid-gray: for Overlay"),
+    PixelNoise = "noise" => ("Noise", "Random steps of each pixel"),
+    FilmGrain = "grain" => ("Grain", "Of film or paper, on the canvas or on the surface"),
+    MedianFilter = "median" => ("Median", "Removes specks and keeps edges"),
+    BrightGlow = "glow" => ("Glow", "What is bright shines beyond its edge"),
+    Pixelate = "pixelate" => ("Pixelate", "Squares of one color"),
+    EdgeFilter = "edges" => ("Edges", "Light lines where colors differ, or dark ones"),
+    WrappedOffset = "offset"
+        => ("Offset", "Shifted; what leaves on one side enters on the other"),
+}
+
+impl PictureFilter {
+    /// As it begins, by its name in documents.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let name = current_name(name);
+        Self::all().into_iter().find(|filter| filter.name() == name)
+    }
+
+    /// Shows its parameters to a visitor, which may change them.
+    pub fn visit(&mut self, visitor: &mut dyn ParameterVisitor) {
+        self.parameters().visit(visitor);
+    }
+
+    /// With the nearest numbers that a document may hold.
+    pub fn clamp_to_ranges(mut self) -> Self {
+        self.visit(&mut Holder);
+        self
+    }
+}
+
+/// What a filter does to pixels.
+pub(super) trait FilterKernel: Send + Sync {
+    /// How far from the pixels of a rectangle it reads, px.
+    fn reach(&self, near: Rect, bounds: Rect) -> f32;
+
+    /// What it reads for the pixels of a rectangle.
+    fn reads(&self, out: Rect, bounds: Rect) -> Vec<Rect> {
+        vec![out.grown(self.reach(out, bounds).ceil() as i32)]
+    }
+
+    /// Computes now what many blocks would otherwise compute at the same time.
+    fn warm(&self, _scene: &Scene) {}
+
+    /// The filtered pixels of a rectangle, row by row.
+    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]>;
+}
+
+/// Which pixels are filtered.
+pub struct FilterPlace<'a> {
+    /// What they lie on.
+    pub scene: &'a Scene,
+    /// Which they are.
+    pub out: Rect,
+    /// The straight encoded color above which light is clipped; 1 is white.
+    pub brightest: f32,
+}
+
+impl FilterPlace<'_> {
+    /// A value for each pixel, row by row.
+    fn map(&self, value: impl Fn(i32, i32) -> [f32; 4]) -> Vec<[f32; 4]> {
+        let Rect { x0, y0, x1, y1 } = self.out;
+        let mut all = Vec::with_capacity(self.out.width() * self.out.height());
+        (y0..y1).for_each(|y| all.extend((x0..x1).map(|x| value(x, y))));
+        all
+    }
+
+    /// The pixel of the surface that is seen at a pixel, if any.
+    fn on_surface(&self, x: i32, y: i32) -> Option<(usize, usize)> {
+        let surface = self.scene.surface.as_ref()?;
+        surface.coverage_plane().get(x, y).filter(|coverage| *coverage > 0)?;
+        Some((x as usize, y as usize))
+    }
+}
+
+/// A filter as layers hold it.
+#[derive(Clone, Debug)]
+pub struct LiveFilter {
+    params: Arc<PictureFilter>,
+}
+
+impl PartialEq for LiveFilter {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.params, &other.params) || self.params == other.params
+    }
+}
+
+impl LiveFilter {
+    /// With the nearest numbers that a document may hold.
+    pub fn new(filter: PictureFilter) -> Self {
+        Self { params: Arc::new(filter.clamp_to_ranges()) }
+    }
+
+    /// What it was made of.
+    pub fn params(&self) -> &PictureFilter {
+        &self.params
+    }
+
+    /// With its lengths `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut params = PictureFilter::clone(&self.params);
+        params.visit(&mut LengthScaler(factor));
+        Self { params: Arc::new(params) }
+    }
+
+    /// The sides of the blocks in which a picture is filtered, px: whole tiles, and the larger the
+    /// farther it reads, so that what is read around them is not much more than they are.
+    fn block_px(&self, bounds: Rect) -> i32 {
+        match self.params.kernel().reach(bounds, bounds) {
+            reach if reach <= 24.0 => 128,
+            reach if reach <= 96.0 => 256,
+            _ => 512,
+        }
+    }
+
+    /// The blocks of a picture that hold some of its pixels.
+    pub fn blocks(&self, holding: Rect, bounds: Rect) -> Vec<Rect> {
+        let side = self.block_px(bounds);
+        let holding = holding.intersect(bounds);
+        let first = |v: i32| v.div_euclid(side);
+        let last = |v: i32| (v - 1).div_euclid(side) + 1;
+        let block = |i: i32, j: i32| {
+            Rect::new(i * side, j * side, (i + 1) * side, (j + 1) * side).intersect(bounds)
+        };
+        let rows = if holding.is_empty() { 0..0 } else { first(holding.y0)..last(holding.y1) };
+        rows.flat_map(|j| (first(holding.x0)..last(holding.x1)).map(move |i| block(i, j)))
+            .filter(|block| !block.is_empty())
+            .collect()
+    }
+
+    /// What it reads of a picture for one of its blocks.
+    pub fn reads(&self, block: Rect, bounds: Rect) -> Vec<Rect> {
+        let reads = self.params.kernel().reads(block, bounds);
+        reads.into_iter().map(|read| read.intersect(bounds)).collect()
+    }
+
+    /// Computes now what many blocks would otherwise wait for.
+    pub fn warm(&self, scene: &Scene) {
+        self.params.kernel().warm(scene);
+    }
+
+    /// The filtered pixels of one of its blocks.
+    pub fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> FilterWindow {
+        let mut pixels = self.params.kernel().apply(place, source);
+        for pixel in &mut pixels {
+            let a = pixel[3].max(0.0).min(1.0);
+            let most = a * place.brightest;
+            *pixel = [0, 1, 2, 3].map(|k| pixel[k].max(0.0).min(if k < 3 { most } else { a }));
+        }
+        FilterWindow::new(place.out, pixels)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,463 @@
+//! Blurs that are the same everywhere: Gaussian, box, and along a direction. Floor 3. On
+//! premultiplied encoded pixels, as other programs blur.
+
+use super::window::{FilterSource, FilterWindow, transposed};
+use super::{FilterKernel, FilterPlace};
+use crate::math::{Rect, Size};
+use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::raster::blur;
+
+/// The same softness everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaussianBlur {
+    /// Standard deviation, px.
+    pub radius: f32,
+}
+
+impl Default for GaussianBlur {
+    fn default() -> Self {
+        Self { radius: 4.0 }
+    }
+}
+
+/// The parameter that blurs share.
+pub(super) const fn radius(hint: &'static str, most: f32, default: f32) -> NumberParameter {
+    NumberParameter::whole(named("radius", "Radius", hint), 0.0, most, default).decimals(1).px()
+}
+
+impl Parameters for GaussianBlur {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        v.number(radius("Standard deviation", 500.0, 4.0), &mut self.radius);
+    }
+}
+
+impl FilterKernel for GaussianBlur {
+    fn reach(&self, _: Rect, _: Rect) -> f32 {
+        gaussian_reach(self.radius)
+    }
+
+    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
+        gaussian(source, place.out, self.radius)
+    }
+}
+
+/// How far a Gaussian reads, px.
+pub(super) fn gaussian_reach(sigma: f32) -> f32 {
+    if sigma > 0.0 { weighed(sigma) + 4.0 * (1 << coarseness(sigma)) as f32 } else { 0.0 }
+}
+
+/// How far its weights reach, px: 6e-5 of them lie beyond four standard deviations.
+fn weighed(sigma: f32) -> f32 {
+    4.0 * sigma
+}
+
+/// How often a picture is halved before it is blurred: below 5 px not at all, then so that the
+/// standard deviation is 2.5 to 5 coarse pixels.
+fn coarseness(sigma: f32) -> u32 {
+    let halvings = (sigma / 2.5).log2().floor();
+    if halvings >= 1.0 { (halvings as u32).min(12) } else { 0 }
+}
+
+/// A Gaussian blur of part of a picture, whose border is repeated.
+///
+/// A wide one is computed on coarse pixels: sums under tents, blurred, and read by a cubic B-spline.
+/// Variances add up, so that of the blur is what the two others leave.
+pub(super) fn gaussian(source: &dyn FilterSource, out: Rect, sigma: f32) -> Vec<[f32; 4]> {
+    if sigma.is_nan() || sigma <= 0.0 {
+        return source.window(out).cropped(out);
+    }
+    let level = coarseness(sigma);
+    let step = (1 << level) as f32;
+    // What is blurred repeats its border, as the picture does: of coarse pixels, one that lies
+    // beyond the picture.
+    let known = source.bounds().grown(if level > 0 { 2 << level } else { 0 });
+    let reads = out.grown((weighed(sigma) + 2.0 * step).ceil() as i32).intersect(known).union(out);
+    if level == 0 {
+        let window = source.window(reads);
+        let blurred = blur::gaussian_pixels(window.size(), window.pixels(), sigma);
+        return FilterWindow::new(reads, blurred).cropped(out);
+    }
+    let spent = (step * step + 0.5) / 6.0 + step * step / 3.0;
+    let left = ((sigma * sigma - spent) / (step * step)).max(0.0).sqrt();
+    CoarsePixels::of(source, reads, level).blurred(left).read(out)
+}
+
+/// A picture in pixels whose sides are powers of two; their grid begins at the origin, so that
+/// every part of a picture has the same.
+pub(super) struct CoarsePixels {
+    level: u32,
+    /// In coarse pixels.
+    rect: Rect,
+    pixels: Vec<[f32; 4]>,
+}
+
+impl CoarsePixels {
+    /// Of the pixels themselves; `rect` counts them.
+    pub fn new(level: u32, rect: Rect, pixels: Vec<[f32; 4]>) -> Self {
+        Self { level, rect, pixels }
+    }
+
+    /// As if they were pixels.
+    pub fn as_window(&self) -> FilterWindow {
+        FilterWindow::new(self.rect, self.pixels.clone())
+    }
+
+    /// Of those that a rectangle touches: each is the mean under a tent twice as wide as it, since
+    /// a mean over it alone would let the finest detail through as coarse.
+    pub fn of(source: &dyn FilterSource, rect: Rect, level: u32) -> Self {
+        let rect = coarse_rect(rect, level);
+        let side = 1usize << level;
+        let half = side as i32 / 2;
+        let (left, right) = ((rect.x0 << level) - half, (rect.x1 << level) + half);
+        let width = rect.width();
+        // A pixel more at each end, for what tents leave there.
+        let mut line = vec![[0.0; 4]; width + 2];
+        let mut sums = vec![[0.0; 4]; width * (rect.height() + 2)];
+        let share = 1.0 / (side * side) as f32;
+        for (row, j) in (rect.y0 - 1..rect.y1).enumerate() {
+            let top = (j << level) + half;
+            let window = source.window(Rect::new(left, top, right, top + side as i32));
+            for (k, pixels) in window.pixels().chunks_exact((right - left) as usize).enumerate() {
+                line.fill([0.0; 4]);
+                add_tents(pixels, side, &mut line);
+                let t = (k as f32 + 0.5) / side as f32;
+                for (to, weight) in [(row, (1.0 - t) * share), (row + 1, t * share)] {
+                    let to = &mut sums[to * width..(to + 1) * width];
+                    add_weighed(line[1..=width].as_flattened(), weight, to.as_flattened_mut());
+                }
+            }
+        }
+        let pixels = sums[width..width * (rect.height() + 1)].to_vec();
+        Self { level, rect, pixels }
+    }
+
+    fn blurred(self, sigma: f32) -> Self {
+        let size = Size::new(self.rect.width() as u32, self.rect.height() as u32);
+        Self { pixels: blur::gaussian_pixels(size, &self.pixels, sigma), ..self }
+    }
+
+    /// The pixels of a rectangle, read by a cubic B-spline.
+    pub fn read(&self, out: Rect) -> Vec<[f32; 4]> {
+        let across: Vec<SplineTap> = (out.x0..out.x1)
+            .map(|x| SplineTap::new(x, self.level, self.rect.x0, self.rect.width()))
+            .collect();
+        let width = self.rect.width();
+        let mut line = vec![[0.0; 4]; width];
+        let mut all = Vec::with_capacity(out.width() * out.height());
+        for y in out.y0..out.y1 {
+            let down = SplineTap::new(y, self.level, self.rect.y0, self.rect.height());
+            let row = |i: usize| &self.pixels[down.at[i] * width..(down.at[i] + 1) * width];
+            let rows = [row(0), row(1), row(2), row(3)];
+            weigh_rows(rows.map(|row| row.as_flattened()), &down.weights, line.as_flattened_mut());
+            weigh_columns(&line, &across, &mut all);
+        }
+        all
+    }
+}
+
+/// The coarse pixels that a rectangle touches.
+fn coarse_rect(rect: Rect, level: u32) -> Rect {
+    let up = |v: i32| (v + (1 << level) - 1) >> level;
+    Rect::new(rect.x0 >> level, rect.y0 >> level, up(rect.x1), up(rect.y1))
+}
+
+/// The four coarse pixels around a fine one along an axis, and their weights.
+struct SplineTap {
+    at: [usize; 4],
+    weights: [f32; 4],
+}
+
+impl SplineTap {
+    fn new(fine: i32, level: u32, first: i32, count: usize) -> Self {
+        let place = (fine as f32 + 0.5) / (1 << level) as f32 - 0.5 - first as f32;
+        let whole = place.floor();
+        let t = place - whole;
+        let (t2, t3) = (t * t, t * t * t);
+        let s = 1.0 - t;
+        let weights = [
+            s * s * s / 6.0,
+            (3.0 * t3 - 6.0 * t2 + 4.0) / 6.0,
+            (-3.0 * t3 + 3.0 * t2 + 3.0 * t + 1.0) / 6.0,
+            t3 / 6.0,
+        ];
+        let last = count.saturating_sub(1) as i32;
+        let at = [-1, 0, 1, 2].map(|d| (whole as i32 + d).max(0).min(last) as usize);
+        Self { at, weights }
+    }
+}
+
+crate::widest! {
+    /// Adds each pixel of a row to the two coarse ones between whose middles it lies.
+    fn add_tents(line: &[[f32; 4]], side: usize, sums: &mut [[f32; 4]]) {
+        for (i, between) in line.chunks_exact(side).enumerate() {
+            let (mut left, mut right) = ([0.0; 4], [0.0; 4]);
+            for (k, pixel) in between.iter().enumerate() {
+                let t = (k as f32 + 0.5) / side as f32;
+                for c in 0..4 {
+                    left[c] += (1.0 - t) * pixel[c];
+                    right[c] += t * pixel[c];
+                }
+            }
+            for c in 0..4 {
+                sums[i][c] += left[c];
+                sums[i + 1][c] += right[c];
+            }
+        }
+    }
+
+    fn add_weighed(row: &[f32], weight: f32, sums: &mut [f32]) {
+        for (sum, v) in sums.iter_mut().zip(row) {
+            *sum += weight * v;
+        }
+    }
+
+    fn weigh_rows(rows: [&[f32]; 4], weights: &[f32; 4], out: &mut [f32]) {
+        let [a, b, c, d] = rows;
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] + weights[3] * d[i];
+        }
+    }
+
+    fn weigh_columns(line: &[[f32; 4]], across: &[SplineTap], out: &mut Vec<[f32; 4]>) {
+        for tap in across {
+            let mut sum = [0.0; 4];
+            for (at, weight) in tap.at.iter().zip(&tap.weights) {
+                let pixel = line[*at];
+                for k in 0..4 {
+                    sum[k] += weight * pixel[k];
+                }
+            }
+            out.push(sum);
+        }
+    }
+}
+
+/// The mean of a square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxBlur {
+    /// From the middle of the square to its side, px: it is 2 r + 1 pixels wide.
+    pub radius: f32,
+}
+
+impl Default for BoxBlur {
+    fn default() -> Self {
+        Self { radius: 4.0 }
+    }
+}
+
+impl Parameters for BoxBlur {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        let hint = "From the middle of the square to its side: it is 2 r + 1 pixels wide";
+        v.number(radius(hint, 500.0, 4.0), &mut self.radius);
+    }
+}
+
+impl FilterKernel for BoxBlur {
+    fn reach(&self, _: Rect, _: Rect) -> f32 {
+        if self.radius > 0.0 { self.radius.floor() + 1.0 } else { 0.0 }
+    }
+
+    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
+        let out = place.out;
+        if self.radius <= 0.0 {
+            return source.window(out).cropped(out);
+        }
+        let line = BoxLine::new(self.radius);
+        let window = source.window(out.grown(line.margin() as i32));
+        let width = out.width();
+        let mut rows = vec![[0.0; 4]; width * window.rect().height()];
+        let lines = window.pixels().chunks_exact(window.rect().width().max(1));
+        for (row, means) in lines.zip(rows.chunks_exact_mut(width.max(1))) {
+            line.means(row, means);
+        }
+        line.means_down(&rows, width, out.height())
+    }
+}
+
+/// A running mean of 2 r + 1 pixels; those at its ends count in part if r is not whole.
+pub(super) struct BoxLine {
+    whole: usize,
+    part: f32,
+    share: f32,
+}
+
+impl BoxLine {
+    pub fn new(radius: f32) -> Self {
+        let radius = radius.max(0.0).min(100_000.0);
+        let whole = radius.floor();
+        Self { whole: whole as usize, part: radius - whole, share: 1.0 / (2.0 * radius + 1.0) }
+    }
+
+    /// Pixels that are read before the first and behind the last.
+    pub fn margin(&self) -> usize {
+        self.whole + 1
+    }
+
+    /// The means of a row that has margins.
+    pub fn means(&self, row: &[[f32; 4]], means: &mut [[f32; 4]]) {
+        running_means(row, (self.whole, self.part, self.share), means);
+    }
+
+    /// The means down columns: `rows` have margins above and beneath.
+    fn means_down(&self, rows: &[[f32; 4]], width: usize, height: usize) -> Vec<[f32; 4]> {
+        let row = |y: usize| rows[y * width..(y + 1) * width].as_flattened();
+        let mut sums = vec![0.0; width * 4];
+        (1..2 * self.whole + 2).for_each(|y| add_row(&mut sums, row(y)));
+        let mut out = vec![[0.0; 4]; width * height];
+        for (y, means) in out.chunks_exact_mut(width.max(1)).enumerate() {
+            let (before, behind) = (row(y), row(y + 2 * self.whole + 2));
+            let ends = [before, behind];
+            put_means(&sums, ends, (self.part, self.share), means.as_flattened_mut());
+            add_row(&mut sums, behind);
+            take_row(&mut sums, row(y + 1));
+        }
+        out
+    }
+}
+
+crate::widest! {
+    /// `size`: whole pixels to a side, the part of the next one, and one by the width.
+    fn running_means(row: &[[f32; 4]], size: (usize, f32, f32), means: &mut [[f32; 4]]) {
+        let (whole, part, share) = size;
+        let mut sum = [0.0; 4];
+        for pixel in &row[1..2 * whole + 2] {
+            for k in 0..4 {
+                sum[k] += pixel[k];
+            }
+        }
+        for (x, mean) in means.iter_mut().enumerate() {
+            let (before, behind, first) = (row[x], row[x + 2 * whole + 2], row[x + 1]);
+            for k in 0..4 {
+                mean[k] = (sum[k] + part * (before[k] + behind[k])) * share;
+                sum[k] += behind[k] - first[k];
+            }
+        }
+    }
+
+    fn add_row(sums: &mut [f32], row: &[f32]) {
+        for (sum, v) in sums.iter_mut().zip(row) {
+            *sum += v;
+        }
+    }
+
+    fn take_row(sums: &mut [f32], row: &[f32]) {
+        for (sum, v) in sums.iter_mut().zip(row) {
+            *sum -= v;
+        }
+    }
+
+    fn put_means(sums: &[f32], ends: [&[f32]; 2], size: (f32, f32), means: &mut [f32]) {
+        let (part, share) = size;
+        for (i, mean) in means.iter_mut().enumerate() {
+            *mean = (sums[i] + part * (ends[0][i] + ends[1][i])) * share;
+        }
+    }
+}
+
+/// As if the picture or the camera had moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionBlur {
+    /// Of the way, degrees counter-clockwise from the right.
+    pub angle: f32,
+    /// Of the way, px.
+    pub length: f32,
+}
+
+impl Default for MotionBlur {
+    fn default() -> Self {
+        Self { angle: 0.0, length: 20.0 }
+    }
+}
+
+impl Parameters for MotionBlur {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        let angle = named("angle", "Angle", "Degrees counter-clockwise from the right");
+        v.number(NumberParameter::around(angle, 180.0).decimals(1), &mut self.angle);
+        let length = named("length", "Length", "How far it moves");
+        let length = NumberParameter::whole(length, 0.0, 1000.0, 20.0).decimals(1).px();
+        v.number(length, &mut self.length);
+    }
+}
+
+impl FilterKernel for MotionBlur {
+    fn reach(&self, _: Rect, _: Rect) -> f32 {
+        0.5 * self.length.max(0.0) + 3.0
+    }
+
+    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
+        let out = place.out;
+        if self.length <= 1.0 {
+            return source.window(out).cropped(out);
+        }
+        let (sin, cos) = f64::from(self.angle).to_radians().sin_cos();
+        let window = source.window(out.grown(self.reach(out, out).ceil() as i32));
+        let length = f64::from(self.length);
+        // Image axes: y down.
+        if cos.abs() >= sin.abs() {
+            return means_along(&window, out, -sin / cos, length * cos.abs());
+        }
+        let turned =
+            means_along(&window.transposed(), transposed(out), -cos / sin, length * sin.abs());
+        FilterWindow::new(transposed(out), turned).transposed().cropped(out)
+    }
+}
+
+/// Means along lines y = t + slope · x, |slope| ≤ 1, over `extent` columns.
+///
+/// A line is read between rows, its running means are kept, and a pixel is read between two lines.
+fn means_along(window: &FilterWindow, out: Rect, slope: f64, extent: f64) -> Vec<[f32; 4]> {
+    let line = BoxLine::new(((extent.max(1.0) - 1.0) * 0.5) as f32);
+    let margin = line.margin() as i32;
+    let offset = |x: i32, y: i32| f64::from(y) - f64::from(x) * slope;
+    let corners = [
+        offset(out.x0, out.y0),
+        offset(out.x1 - 1, out.y0),
+        offset(out.x0, out.y1 - 1),
+        offset(out.x1 - 1, out.y1 - 1),
+    ];
+    let first = corners.iter().copied().fold(f64::MAX, f64::min).floor() as i32;
+    let last = corners.iter().copied().fold(f64::MIN, f64::max).floor() as i32 + 1;
+    let width = out.width();
+    let mut lines = vec![[0.0; 4]; width * (last - first + 1).max(0) as usize];
+    let mut read = Vec::new();
+    for (t, means) in (first..=last).zip(lines.chunks_exact_mut(width.max(1))) {
+        let Some((from, to)) = columns_met(out, slope, t) else { continue };
+        read.clear();
+        read.extend((from - margin..to + margin).map(|x| {
+            let y = f64::from(t) + f64::from(x) * slope;
+            let part = (y - y.floor()) as f32;
+            mixed(window.at(x, y.floor() as i32), window.at(x, y.floor() as i32 + 1), part)
+        }));
+        line.means(&read, &mut means[(from - out.x0) as usize..(to - out.x0) as usize]);
+    }
+    let mut all = Vec::with_capacity(width * out.height());
+    for y in out.y0..out.y1 {
+        for x in out.x0..out.x1 {
+            let t = offset(x, y);
+            let (whole, column) = (t.floor(), (x - out.x0) as usize);
+            let above = (whole as i32 - first) as usize * width + column;
+            let beneath = (above + width).min(lines.len() - 1);
+            all.push(mixed(lines[above], lines[beneath], (t - whole) as f32));
+        }
+    }
+    all
+}
+
+/// The columns in which a line is read by pixels of a rectangle: those it passes within a row.
+fn columns_met(out: Rect, slope: f64, t: i32) -> Option<(i32, i32)> {
+    let (low, high) = (f64::from(out.y0 - 2 - t), f64::from(out.y1 + 2 - t));
+    let (from, to) = if slope.abs() < 1e-9 {
+        (out.x0, out.x1)
+    } else {
+        let (a, b) = (low / slope, high / slope);
+        let within = |v: f64| v.max(f64::from(out.x0)).min(f64::from(out.x1));
+        (within(a.min(b)).floor() as i32, within(a.max(b)).ceil() as i32)
+    };
+    (from < to).then_some((from, to))
+}
+
+/// A share of the way from one pixel to another.
+#[inline(always)]
+pub(super) fn mixed(a: [f32; 4], b: [f32; 4], share: f32) -> [f32; 4] {
+    std::array::from_fn(|k| a[k] + share * (b[k] - a[k]))
+}

@@ -1,0 +1,293 @@
+//! Out of focus: each point becomes a disk, as large as its depth says. Floor 3. In linear light,
+//! premultiplied, as in a camera.
+//!
+//! The picture is divided into layers by the size of their disks; each is blurred with its own, and
+//! they are laid over each other, the farthest first. So what is sharp keeps its edge before a
+//! soft background, and a soft foreground spreads over what is behind it.
+
+use super::blur::CoarsePixels;
+use super::sharpen::straight;
+use super::window::{FilterSource, FilterWindow};
+use super::{FilterKernel, FilterPlace};
+use crate::math::{Rect, srgb};
+use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+
+/// The blur of a lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LensBlur {
+    /// Of the largest disk, px.
+    pub radius: f32,
+    /// The depth that is sharp, percent from near to far.
+    pub focus: f32,
+    /// How much of the depth is sharp, percent.
+    pub range: f32,
+    /// Disks as large as the depth says; else all are the largest.
+    pub by_depth: bool,
+    /// How much brighter what is bright becomes before it spreads, percent.
+    pub highlights: f32,
+    /// What counts as bright, levels of 255.
+    pub threshold: f32,
+}
+
+impl Default for LensBlur {
+    fn default() -> Self {
+        Self {
+            radius: 12.0,
+            focus: 0.0,
+            range: 10.0,
+            by_depth: true,
+            highlights: 0.0,
+            threshold: 230.0,
+        }
+    }
+}
+
+impl Parameters for LensBlur {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        let radius = named("radius", "Aperture", "Radius of the largest disk");
+        let radius = NumberParameter::whole(radius, 0.0, 200.0, 12.0).decimals(1).px();
+        v.number(radius, &mut self.radius);
+        let hint = "As large as the depth of the surface says; without it all is out of focus";
+        v.flag(named("by_depth", "By depth", hint), true, &mut self.by_depth);
+        let percent = |name, default| NumberParameter::whole(name, 0.0, 100.0, default).decimals(1);
+        let focus = named("focus", "Focus", "The depth that is sharp: 0 near, 100 far");
+        v.number(percent(focus, 0.0), &mut self.focus);
+        let range = named("range", "Range", "How much of the depth is sharp");
+        v.number(percent(range, 10.0), &mut self.range);
+        let bright = named("highlights", "Highlights", "How bright the disks of lights are");
+        v.number(NumberParameter::whole(bright, 0.0, 1000.0, 0.0), &mut self.highlights);
+        let threshold = named("threshold", "Threshold", "What counts as a light");
+        v.number(NumberParameter::whole(threshold, 0.0, 255.0, 230.0), &mut self.threshold);
+    }
+}
+
+impl LensBlur {
+    /// The radius of a disk, px: below 0 it is nearer than the focus. `depth`: 0 near … 1 far.
+    fn disk(&self, depth: f32) -> f32 {
+        let (focus, range) = (self.focus / 100.0, self.range / 100.0);
+        let off = depth - focus;
+        let beyond = (off.abs() - 0.5 * range).max(0.0);
+        let most = focus.max(1.0 - focus).max(1e-3);
+        (self.radius * beyond / most).min(self.radius).copysign(off)
+    }
+
+    fn depth_of(&self, place: &FilterPlace, x: i32, y: i32) -> f32 {
+        let Some(surface) = place.scene.surface.as_deref() else { return 1.0 };
+        // Off the surface all is as far as can be.
+        match surface.coverage_plane().get(x, y) {
+            Some(coverage) if coverage > 0 => surface.depth_plane().clamped(x, y),
+            _ => 1.0,
+        }
+    }
+
+    /// A pixel in linear light, lights brighter.
+    fn lit(&self, pixel: [f32; 4]) -> [f32; 4] {
+        let color = straight(pixel);
+        let luma = 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2];
+        let dark = (self.threshold / 255.0).min(0.999);
+        let t = ((luma - dark) / (1.0 - dark)).max(0.0).min(1.0);
+        let share = pixel[3] * (1.0 + self.highlights / 100.0 * t * t * (3.0 - 2.0 * t));
+        let [r, g, b] = color.map(|v| srgb::decode_fast(v.max(0.0)) * share);
+        [r, g, b, pixel[3]]
+    }
+}
+
+/// Encoded again; light beyond white stays.
+fn encoded(pixel: [f32; 4]) -> [f32; 4] {
+    let [r, g, b] = straight(pixel).map(|v| srgb::encode(v.max(0.0)) * pixel[3]);
+    [r, g, b, pixel[3]]
+}
+
+impl FilterKernel for LensBlur {
+    fn reach(&self, _: Rect, _: Rect) -> f32 {
+        let level = coarseness(self.radius.max(0.0));
+        self.radius.max(0.0).ceil() + 2.0 + 4.0 * (1 << level) as f32
+    }
+
+    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
+        let out = place.out;
+        if self.radius < 0.5 {
+            return source.window(out).cropped(out);
+        }
+        let reach = self.reach(out, out).ceil() as i32;
+        let mut window = source.window(out.grown(reach));
+        window.pixels_mut().iter_mut().for_each(|pixel| *pixel = self.lit(*pixel));
+        let is_flat = !self.by_depth || place.scene.surface.is_none();
+        if is_flat {
+            let blurred = blurred(&window, out, self.radius);
+            return blurred.into_iter().map(encoded).collect();
+        }
+        let bounds = source.bounds();
+        let disks: Vec<f32> = (window.rect().y0..window.rect().y1)
+            .flat_map(|y| (window.rect().x0..window.rect().x1).map(move |x| (x, y)))
+            .map(|(x, y)| {
+                let inside =
+                    (x.max(bounds.x0).min(bounds.x1 - 1), y.max(bounds.y0).min(bounds.y1 - 1));
+                self.disk(self.depth_of(place, inside.0, inside.1))
+            })
+            .collect();
+        layered(&window, &disks, self.radius, out).into_iter().map(encoded).collect()
+    }
+}
+
+/// The radii of the disks of layers, the farthest first: close together where they are small.
+fn radii(most: f32) -> Vec<f32> {
+    let mut far = vec![0.0];
+    let mut next: f32 = 1.0;
+    while next < most {
+        far.push(next);
+        next = (next * 1.35).max(next + 1.0);
+    }
+    far.push(most);
+    let near = far[1..].iter().map(|v| -v);
+    far.iter().rev().copied().chain(near).collect()
+}
+
+/// Layers blurred by their own disks, over each other.
+fn layered(window: &FilterWindow, disks: &[f32], most: f32, out: Rect) -> Vec<[f32; 4]> {
+    let radii = radii(most);
+    let mut sums = vec![[0.0f32; 4]; out.width() * out.height()];
+    let mut covered = vec![0.0f32; sums.len()];
+    for (i, &radius) in radii.iter().enumerate() {
+        let (farther, nearer) = (i.checked_sub(1).map(|i| radii[i]), radii.get(i + 1).copied());
+        let Some((colors, shares)) = layer(window, disks, [farther, Some(radius), nearer]) else {
+            continue;
+        };
+        let colors = blurred(&colors, out, radius.abs());
+        let shares = blurred(&shares, out, radius.abs());
+        let both = colors.into_iter().zip(shares);
+        for ((sum, covered), (color, share)) in sums.iter_mut().zip(&mut covered).zip(both) {
+            // Of what is farther, this layer covers its share.
+            let left = 1.0 - share[0].max(0.0).min(1.0);
+            (0..4).for_each(|k| sum[k] = color[k] + left * sum[k]);
+            *covered = share[0] + left * *covered;
+        }
+    }
+    let whole = |(sum, covered): ([f32; 4], f32)| sum.map(|v| v / covered.max(1e-4));
+    sums.into_iter().zip(covered).map(whole).collect()
+}
+
+/// The pixels of a layer, and how much each belongs to it: those between two layers to both. `None`
+/// if there are none.
+fn layer(
+    window: &FilterWindow,
+    disks: &[f32],
+    [farther, own, nearer]: [Option<f32>; 3],
+) -> Option<(FilterWindow, FilterWindow)> {
+    let own = own?;
+    let share = |disk: f32| {
+        let between = |next: f32| 1.0 - (disk - own) / (next - own);
+        let share = match disk >= own {
+            true => farther.map_or(1.0, between),
+            false => nearer.map_or(1.0, between),
+        };
+        share.max(0.0).min(1.0)
+    };
+    let shares: Vec<f32> = disks.iter().map(|disk| share(*disk)).collect();
+    if shares.iter().all(|share| *share == 0.0) {
+        return None;
+    }
+    let colors = window.pixels().iter().zip(&shares).map(|(p, share)| p.map(|v| v * share));
+    let colors = FilterWindow::new(window.rect(), colors.collect());
+    let shares = shares.into_iter().map(|share| [share, 0.0, 0.0, 0.0]).collect();
+    Some((colors, FilterWindow::new(window.rect(), shares)))
+}
+
+/// How often a picture is halved before a disk is laid on it: so that it is 3 to 6 coarse pixels.
+fn coarseness(radius: f32) -> u32 {
+    if radius > 6.0 { (radius / 3.0).log2().floor() as u32 } else { 0 }
+}
+
+/// The means of disks.
+fn blurred(window: &FilterWindow, out: Rect, radius: f32) -> Vec<[f32; 4]> {
+    if radius < 0.5 {
+        return window.cropped(out);
+    }
+    let level = coarseness(radius);
+    if level == 0 {
+        return disk_means(window, out, radius);
+    }
+    let side = 1 << level;
+    let around = out.grown(3 * side);
+    let coarse = CoarsePixels::of(window, window.rect(), level);
+    let squares = coarse.as_window();
+    let down = |v: i32| v.div_euclid(side);
+    let wanted =
+        Rect::new(down(around.x0), down(around.y0), down(around.x1) + 1, down(around.y1) + 1)
+            .intersect(squares.rect());
+    let means = disk_means(&squares, wanted, radius / side as f32);
+    CoarsePixels::new(level, wanted, means).read(out)
+}
+
+/// The means of disks, row by row of each: a row of a disk is a difference of running sums.
+fn disk_means(window: &FilterWindow, out: Rect, radius: f32) -> Vec<[f32; 4]> {
+    let rows = (radius.ceil() as i32).max(0);
+    // Half the width of a row, in the mean over its height.
+    let half = |dy: i32| {
+        let at = |part: f32| (radius * radius - (dy as f32 + part).powi(2)).max(0.0).sqrt();
+        [-0.375, -0.125, 0.125, 0.375].map(at).iter().sum::<f32>() / 4.0
+    };
+    let halves: Vec<f32> = (-rows..=rows).map(half).collect();
+    let area: f32 = halves.iter().map(|half| 2.0 * half).sum();
+    let margin = rows + 1;
+    let sums = RowSums::of(window, out, margin);
+    let mut all = vec![[0.0; 4]; out.width() * out.height()];
+    for (y, line) in (out.y0..out.y1).zip(all.chunks_exact_mut(out.width().max(1))) {
+        for (dy, half) in (-rows..=rows).zip(&halves).filter(|(_, half)| **half > 0.0) {
+            let row = sums.row(y + dy);
+            add_spans(row, (margin as f32, *half, 1.0 / area), line);
+        }
+    }
+    all
+}
+
+/// Sums of the pixels of each row up to each.
+struct RowSums {
+    top: i32,
+    width: usize,
+    sums: Vec<[f32; 4]>,
+}
+
+impl RowSums {
+    /// Of the rows of a rectangle and so many around it.
+    fn of(window: &FilterWindow, out: Rect, margin: i32) -> Self {
+        let rect = out.grown(margin);
+        let width = rect.width() + 1;
+        let mut sums = Vec::with_capacity(width * rect.height());
+        for y in rect.y0..rect.y1 {
+            let mut sum = [0.0; 4];
+            sums.push(sum);
+            for x in rect.x0..rect.x1 {
+                let pixel = window.at(x, y);
+                (0..4).for_each(|k| sum[k] += pixel[k]);
+                sums.push(sum);
+            }
+        }
+        Self { top: rect.y0, width, sums }
+    }
+
+    fn row(&self, y: i32) -> &[[f32; 4]] {
+        let at = (y - self.top) as usize * self.width;
+        &self.sums[at..at + self.width]
+    }
+}
+
+crate::widest! {
+    /// Adds to each pixel a span of a row around it.
+    ///
+    /// * `span`: sums before the first pixel's own, half of the span's width, and its weight.
+    fn add_spans(sums: &[[f32; 4]], span: (f32, f32, f32), line: &mut [[f32; 4]]) {
+        let (margin, half, weight) = span;
+        let (low, high) = (margin + 0.5 - half, margin + 0.5 + half);
+        let (i, j) = (low as usize, high as usize);
+        let (s, t) = (low - i as f32, high - j as f32);
+        let below = sums[i..].iter().zip(&sums[i + 1..]);
+        let above = sums[j..].iter().zip(&sums[j + 1..]);
+        for ((pixel, (a, b)), (c, d)) in line.iter_mut().zip(below).zip(above) {
+            for k in 0..4 {
+                let (from, to) = (a[k] + s * (b[k] - a[k]), c[k] + t * (d[k] - c[k]));
+                pixel[k] += weight * (to - from);
+            }
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Noise and grain. Floor 3. A pure function of the place in the document and a seed: the same on
+//! every machine and run. On straight encoded colors; alpha stays.
+
+use super::sharpen::{amount, straight, under};
+use super::window::FilterSource;
+use super::{FilterKernel, FilterPlace};
+use crate::math::{Rect, Vec2, hash, noise, vec2};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterName, ParameterVisitor, Parameters, named,
+};
+use crate::surface::operator::UnwrapSettings;
+use crate::surface::{Scene, unwrap::Unwrapping};
+use std::sync::Arc;
+
+const SEED: NumberParameter =
+    NumberParameter::whole(named("seed", "Seed", "Other seeds give other noise"), 0.0, 9999.0, 0.0);
+const MONOCHROME: ParameterName =
+    named("monochrome", "Monochrome", "The same for red, green and blue");
+
+/// Random steps of each pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelNoise {
+    /// The largest step of even noise, or the standard deviation of a Gaussian, percent.
+    pub amount: f32,
+    /// The side of what has one value, px.
+    pub size: f32,
+    /// Small steps are more likely than large ones.
+    pub gaussian: bool,
+    /// Red, green and blue step together.
+    pub monochrome: bool,
+    /// Other seeds give other noise.
+    pub seed: f32,
+}
+
+impl Default for PixelNoise {
+    fn default() -> Self {
+        Self { amount: 10.0, size: 1.0, gaussian: false, monochrome: false, seed: 0.0 }
+    }
+}
+
+impl Parameters for PixelNoise {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        v.number(amount("How large the steps are, percent", 100.0, 10.0), &mut self.amount);
+        let size = named("size", "Size", "The side of what has one value");
+        v.number(NumberParameter::whole(size, 1.0, 64.0, 1.0).decimals(1).px(), &mut self.size);
+        let gaussian = named("gaussian", "Gaussian", "Small steps are more likely than large ones");
+        v.flag(gaussian, false, &mut self.gaussian);
+        v.flag(MONOCHROME, false, &mut self.monochrome);
+        v.number(SEED, &mut self.seed);
+    }
+}
+
+impl PixelNoise {
+    /// A step, of mean 0: even in `[−1, 1]`, or a Gaussian of standard deviation 1.
+    fn step(&self, channel: u32, i: i32, j: i32) -> f32 {
+        let seed = hash::mix(self.seed as u32 ^ hash::mix(channel));
+        let even = |seed: u32| hash::unit(seed, i as u32, j as u32);
+        if !self.gaussian {
+            return 2.0 * even(seed) - 1.0;
+        }
+        // Box and Muller 1958.
+        let (u, v) = (even(seed), even(hash::mix(seed)));
+        (-2.0 * (1.0 - u).ln()).max(0.0).sqrt() * (std::f32::consts::TAU * v).cos()
+    }
+}
+
+impl FilterKernel for PixelNoise {
+    fn reach(&self, _: Rect, _: Rect) -> f32 {
+        0.0
+    }
+
+    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
+        let window = source.window(place.out);
+        let (share, size) = (self.amount / 100.0, self.size.max(0.01));
+        place.map(|x, y| {
+            let cell = |v: i32| (v as f32 / size).floor() as i32;
+            let (i, j) = (cell(x), cell(y));
+            let steps = match self.monochrome {
+                true => [self.step(0, i, j); 3],
+                false => [0, 1, 2].map(|channel| self.step(channel, i, j)),
+            };
+            stepped(window.at(x, y), steps.map(|step| share * step))
+        })
+    }
+}
+
+/// A pixel whose straight color is moved, within black and white.
+fn stepped(pixel: [f32; 4], by: [f32; 3]) -> [f32; 4] {
+    let color = straight(pixel);
+    // Light beyond white stays beyond it.
+    under(std::array::from_fn(|k| (color[k] + by[k]).min(color[k].max(1.0))), pixel[3])
+}
+
+/// The grain of film or paper: soft, strongest in mid-tones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmGrain {
+    /// Percent.
+    pub amount: f32,
+    /// Of the grains, px.
+    pub size: f32,
+    /// Share of finer grains: 0 soft, 100 rough.
+    pub roughness: f32,
+    /// Red, green and blue are grained together.
+    pub monochrome: bool,
+    /// It lies on the shape, as if that were grained, and not on the canvas.
+    pub on_surface: bool,
+    /// Other seeds give other grain.
+    pub seed: f32,
+}
+
+impl Default for FilmGrain {
+    fn default() -> Self {
+        Self {
+            amount: 25.0,
+            size: 4.0,
+            roughness: 50.0,
+            monochrome: true,
+            on_surface: false,
+            seed: 0.0,
+        }
+    }
+}
+
+impl Parameters for FilmGrain {
+    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
+        v.number(amount("How much lighter and darker, percent", 100.0, 25.0), &mut self.amount);
+        let size = named("size", "Size", "Of the grains");
+        v.number(NumberParameter::whole(size, 1.0, 500.0, 4.0).decimals(1).px(), &mut self.size);
+        let rough = named("roughness", "Roughness", "How much finer grains show, percent");
+        v.number(NumberParameter::whole(rough, 0.0, 100.0, 50.0), &mut self.roughness);
+        v.flag(MONOCHROME, true, &mut self.monochrome);
+        let hint = "The grain lies on the shape and is bent and foreshortened with it";
+        v.flag(named("on_surface", "On the surface", hint), false, &mut self.on_surface);
+        v.number(SEED, &mut self.seed);
+    }
+}
+
+/// Octaves of the grain: each half as large as the one before.
+const OCTAVES: u32 = 3;
+/// Cells after which the noise repeats.
+const PERIOD: u32 = 1 << 15;
+
+impl FilmGrain {
+    /// Of mean 0, around `[−1, 1]`.
+    fn grain(&self, channel: u32, at: Vec2) -> f32 {
+        let seed = hash::mix(self.seed as u32 ^ hash::mix(channel ^ 0x6772_6169));
+        let rough = self.roughness / 100.0;
+        let (mut sum, mut share, mut cell) = (0.0, 1.0, at / self.size.max(0.01));
+        for octave in 0..OCTAVES {
+            sum += share * noise::gradient(cell, PERIOD, hash::mix(seed ^ octave));
+            (share, cell) = (share * rough, cell * 2.0);
+        }
+        // The standard deviation of gradient noise is about 0.35.
+        sum * 1.4 / (1.0 + rough * rough).sqrt()
+    }
+
+    fn unwrapping(&self, scene: &Scene) -> Option<Arc<Unwrapping>> {
+        let surface = scene.surface.as_ref().filter(|_| self.on_surface)?;
+        Some(surface.unwrapping(UnwrapSettings { amount: 1.0, smooth_px: 0.0 }))
+    }
+}
+
+impl FilterKernel for FilmGrain {
+    fn reach(&self, _: Rect, _: Rect) -> f32 {
+        0.0
+    }
+
+    fn warm(&self, scene: &Scene) {
+        let _ = self.unwrapping(scene);
+    }
+
+    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
+        let window = source.window(place.out);
+        let (share, unwrapped) = (self.amount / 100.0, self.unwrapping(place.scene));
+        place.map(|x, y| {
+            let on_surface = || {
+                let (column, row) = place.on_surface(x, y)?;
+                unwrapped.as_ref().map(|unwrapped| unwrapped.at(column, row))
+            };
+            let at = on_surface().unwrap_or(vec2(x as f32 + 0.5, y as f32 + 0.5));
+            let grain = match self.monochrome {
+                true => [self.grain(0, at); 3],
+                false => [0, 1, 2].map(|channel| self.grain(channel, at)),
+            };
+            let pixel = window.at(x, y);
+            let [r, g, b] = straight(pixel);
+            let luma = (0.3 * r + 0.59 * g + 0.11 * b).max(0.0).min(1.0);
+            // Half as strong in black and white as in mid-gray.
+            let strength = share * (0.5 + 2.0 * luma * (1.0 - luma));
+            stepped(pixel, grain.map(|v| v * strength))
+        })
+    }
+}
