@@ -5,6 +5,7 @@ mod brushes;
 mod busy;
 mod canvas;
 mod documents;
+mod goldens;
 mod layers;
 mod light;
 mod marks;
