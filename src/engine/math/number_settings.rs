@@ -13,6 +13,8 @@ pub struct NumberSetting<T> {
     pub hint: &'static str,
     /// Its range.
     pub range: Range,
+    /// Whether it is a length on the canvas, px, which is scaled with it.
+    pub is_length: bool,
     /// Reads it.
     pub get: fn(&T) -> f32,
     /// Sets it; the caller keeps to the range.
@@ -36,12 +38,15 @@ impl<T> NumberSetting<T> {
 }
 
 /// Declares a struct of numbers with their table, `SETTINGS`, and their defaults; after `and`,
-/// fields of other types.
+/// fields of other types. A default followed by `px` is that of a length on the canvas.
 macro_rules! number_settings {
     (
         $(#[$meta:meta])*
         $vis:vis struct $type:ident {
-            $($(#[doc = $doc:literal])+ $name:ident: $label:literal, $hint:literal, $range:expr, $default:expr;)+
+            $(
+                $(#[doc = $doc:literal])+
+                $name:ident: $label:literal, $hint:literal, $range:expr, $default:expr $(, $px:ident)?;
+            )+
             and $($(#[doc = $other_doc:literal])+ $other:ident: $other_type:ty = $other_default:expr;)*
         }
     ) => {
@@ -59,9 +64,15 @@ macro_rules! number_settings {
                 label: $label,
                 hint: $hint,
                 range: $range,
+                is_length: [false $(, stringify!($px).is_empty())?].len() == 2,
                 get: |all| all.$name,
                 set: |all, to| all.$name = to,
             },)+];
+            /// Those of its numbers that are lengths on the canvas.
+            pub fn lengths() -> impl Iterator<Item = &'static $crate::math::NumberSetting<$type>> {
+                Self::SETTINGS.iter().filter(|setting| setting.is_length)
+            }
+
             /// As it begins.
             pub const DEFAULT: Self = Self { $($name: $default,)+ $($other: $other_default,)* };
         }

@@ -3,7 +3,7 @@
 //! (`brush_options`).
 
 use super::brush::Brush;
-use crate::math::{Range, TURNS, UNIT, range::clamp_to_range};
+use crate::math::{NumberSetting, Range, TURNS, UNIT, range::clamp_to_range};
 
 /// A number of a brush that a user sets, for new strokes or for existing ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,30 +58,22 @@ impl BrushNumber {
 }
 
 /// One number of a brush's options.
-pub struct Setting {
+pub struct BrushSetting {
     /// The object of a brush that holds it in documents; empty: the brush itself.
     pub group: &'static str,
-    /// Its name in documents.
-    pub name: &'static str,
-    /// What it may be.
-    pub range: Range,
-    /// Its name in the window, and its meaning there.
-    pub label: &'static str,
-    /// What it does, for tooltips.
-    pub hint: &'static str,
-    get: fn(&Brush) -> f32,
-    set: fn(&mut Brush, f32),
+    /// Its names, its range, and how it is read and set.
+    pub number: NumberSetting<Brush>,
 }
 
-impl Setting {
+impl BrushSetting {
     /// What it is for a brush.
     pub fn of(&self, brush: &Brush) -> f32 {
-        (self.get)(brush)
+        (self.number.get)(brush)
     }
 
     /// Within its range.
     pub fn set(&self, brush: &mut Brush, to: f32) {
-        (self.set)(brush, clamp_to_range(to, &self.range));
+        (self.number.set)(brush, clamp_to_range(to, &self.number.range));
     }
 
     /// What it is for a new brush.
@@ -96,14 +88,17 @@ pub const GROUPS: [&str; 6] = ["", "rate", "offset", "hand", "cycle", "pickup"];
 macro_rules! settings {
     ($($group:literal $name:literal $($field:ident).+ in $range:expr, $label:literal, $hint:literal;)*) => {
         /// Every number of these options.
-        pub const SETTINGS: [Setting; [$($name),*].len()] = [$(Setting {
+        pub const SETTINGS: [BrushSetting; [$($name),*].len()] = [$(BrushSetting {
             group: $group,
-            name: $name,
-            range: $range,
-            label: $label,
-            hint: $hint,
-            get: |brush| brush.$($field).+,
-            set: |brush, to| brush.$($field).+ = to,
+            number: NumberSetting {
+                name: $name,
+                label: $label,
+                hint: $hint,
+                range: $range,
+                is_length: false,
+                get: |brush| brush.$($field).+,
+                set: |brush, to| brush.$($field).+ = to,
+            },
         }),*];
     };
 }
@@ -160,9 +155,9 @@ mod tests {
     fn every_setting_sets_what_it_gets_and_no_other() {
         for (i, setting) in SETTINGS.iter().enumerate() {
             let mut brush = Brush::default();
-            let to = 0.5 * (setting.range.start() + setting.range.end()) + 0.25;
+            let to = 0.5 * (setting.number.range.start() + setting.number.range.end()) + 0.25;
             setting.set(&mut brush, to);
-            assert_eq!(setting.of(&brush), to, "{}.{}", setting.group, setting.name);
+            assert_eq!(setting.of(&brush), to, "{}.{}", setting.group, setting.number.name);
             let others = SETTINGS.iter().enumerate().filter(|(j, _)| *j != i);
             assert!(
                 others.map(|(_, other)| other).all(|other| other.of(&brush) == other.default())
@@ -172,11 +167,11 @@ mod tests {
 
     #[test]
     fn defaults_lie_within_their_ranges_and_names_are_of_one_thing() {
-        assert!(SETTINGS.iter().all(|setting| setting.range.contains(&setting.default())));
+        assert!(SETTINGS.iter().all(|setting| setting.number.range.contains(&setting.default())));
         assert!(SETTINGS.iter().all(|setting| GROUPS.contains(&setting.group)));
         let names: BTreeSet<_> =
-            SETTINGS.iter().map(|setting| (setting.group, setting.name)).collect();
-        let labels: BTreeSet<_> = SETTINGS.iter().map(|setting| setting.label).collect();
+            SETTINGS.iter().map(|setting| (setting.group, setting.number.name)).collect();
+        let labels: BTreeSet<_> = SETTINGS.iter().map(|setting| setting.number.label).collect();
         assert_eq!((names.len(), labels.len()), (SETTINGS.len(), SETTINGS.len()));
     }
 
@@ -184,7 +179,7 @@ mod tests {
     fn what_cannot_be_becomes_what_can() {
         let mut brush = Brush::default();
         for (to, is) in [(f32::NAN, 0.0), (-3.0, 0.0), (7.0, 1.0)] {
-            let setting = SETTINGS.iter().find(|setting| setting.label == "Pickup").unwrap();
+            let setting = SETTINGS.iter().find(|setting| setting.number.label == "Pickup").unwrap();
             setting.set(&mut brush, to);
             assert_eq!(brush.pickup.amount, is);
         }

@@ -24,7 +24,7 @@ number_settings! {
         /// Shade where the surroundings stand higher.
         contact: "Contact shade", "Shade where parts touch", 0.0..=5.0, 1.0;
         /// The size of the largest surroundings that shade, px.
-        contact_size: "Contact size", "How far contact shade reaches, px", 4.0..=1000.0, 45.0;
+        contact_size: "Contact size", "How far contact shade reaches, px", 4.0..=1000.0, 45.0, px;
         /// What contact shade leaves of the light at least.
         contact_floor: "Contact floor", "The least light that contact shade leaves", 0.0..=1.0, 0.35;
         /// Factor of all light.
@@ -60,8 +60,7 @@ impl Painter {
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = *self;
-        let lengths = Self::SETTINGS.iter().filter(|setting| setting.name == "contact_size");
-        lengths.for_each(|setting| setting.scale(&mut next, factor));
+        Self::lengths().for_each(|setting| setting.scale(&mut next, factor));
         next
     }
 

@@ -16,7 +16,7 @@ number_settings! {
         /// The radius of a lamp as a share of its distance.
         softness: "Shadow softness", "How large the lamp is: shadows become softer with distance", 0.0..=1.0, 0.13;
         /// How far shadows are thrown in the picture, px; they fade from half of that on.
-        reach: "Shadow length", "How far shadows reach, px; they fade in the second half", 1.0..=2000.0, 220.0;
+        reach: "Shadow length", "How far shadows reach, px; they fade in the second half", 1.0..=2000.0, 220.0, px;
         /// Opacity of the shadow on the page beneath the surface.
         ground: "Ground shadow", "Shadow on the page around the figure", 0.0..=1.0, 0.0;
         and
@@ -55,8 +55,7 @@ impl Shadows {
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = *self;
-        let lengths = Self::SETTINGS.iter().filter(|setting| setting.name == "reach");
-        lengths.for_each(|setting| setting.scale(&mut next, factor));
+        Self::lengths().for_each(|setting| setting.scale(&mut next, factor));
         next
     }
 

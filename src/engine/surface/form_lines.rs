@@ -72,17 +72,17 @@ number_settings! {
     /// What is asked of lines. Lengths are canvas px.
     pub struct LineSettings {
         /// σ: forms smaller than this get no line, px.
-        smooth: "Smallest form", "Forms smaller than this get no line, px", 0.5..=50.0, 2.0;
+        smooth: "Smallest form", "Forms smaller than this get no line, px", 0.5..=50.0, 2.0, px;
         /// How faint a line may be.
         detail: "Detail", "How faint a fold may be and still get a line", 0.0..=1.0, 0.6;
         /// The length of the shortest line, px.
-        shortest: "Shortest line", "Shorter lines are left out, px", 0.0..=1000.0, 12.0;
+        shortest: "Shortest line", "Shorter lines are left out, px", 0.0..=1000.0, 12.0, px;
         /// How far lines stand back behind what passes in front of them, px.
-        gap: "Gap behind", "How far lines stand back behind what passes in front of them, px", 0.0..=100.0, 0.0;
+        gap: "Gap behind", "How far lines stand back behind what passes in front of them, px", 0.0..=100.0, 0.0, px;
         /// How much light the edge of light has.
         lit: "Light at its edge", "How much light there is where the edge of light is drawn", 0.0..=1.0, 0.5;
         /// The distance between wires, px on the surface.
-        wires: "Wires apart", "The distance between wires, px on the surface", 4.0..=2000.0, 40.0;
+        wires: "Wires apart", "The distance between wires, px on the surface", 4.0..=2000.0, 40.0, px;
         and
         /// Which there are.
         kinds: LineKinds = LineKinds::PEN;
@@ -95,7 +95,7 @@ impl LineSettings {
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = *self;
-        for setting in Self::SETTINGS.iter().filter(|s| !["detail", "lit"].contains(&s.name)) {
+        for setting in Self::lengths() {
             setting.put(&mut next, (setting.get)(self) * factor);
         }
         next

@@ -53,13 +53,13 @@ number_settings! {
     /// What is asked of hatching. Lengths are canvas px.
     pub struct HatchSettings {
         /// The distance between the lines of the widest level, px on the surface.
-        spacing: "Lines apart", "The distance between the first lines, px on the surface", 2.0..=200.0, 9.0;
+        spacing: "Lines apart", "The distance between the first lines, px on the surface", 2.0..=200.0, 9.0, px;
         /// The angle of the first family, degrees counter-clockwise; on the form, from its way.
         angle: "Angle", "How far lines are turned, degrees", -180.0..=180.0, 0.0;
         /// σ: forms smaller than this turn no line, px.
-        smooth: "Smallest form", "Forms smaller than this turn no line, px", 0.5..=50.0, 3.0;
+        smooth: "Smallest form", "Forms smaller than this turn no line, px", 0.5..=50.0, 3.0, px;
         /// How far directions spread over what has none, px.
-        spread: "Even out", "How far directions spread over what has none, px", 0.0..=200.0, 25.0;
+        spread: "Even out", "How far directions spread over what has none, px", 0.0..=200.0, 25.0, px;
         /// How dark the tone is.
         darkness: "Darkness", "How dark the darkest tone is", 0.0..=1.0, 0.9;
         /// Tones lighter than this stay paper.
@@ -82,8 +82,7 @@ impl HatchSettings {
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = *self;
-        let lengths = ["spacing", "smooth", "spread"];
-        for setting in Self::SETTINGS.iter().filter(|s| lengths.contains(&s.name)) {
+        for setting in Self::lengths() {
             setting.put(&mut next, (setting.get)(self) * factor);
         }
         next

@@ -278,8 +278,9 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
                 read(Path::new(file), &bytes, &small).into_iter().flatten()
             {
                 assert!(!name.is_empty());
-                let are_in_range =
-                    SETTINGS.iter().all(|setting| setting.range.contains(&setting.of(&brush)));
+                let are_in_range = SETTINGS
+                    .iter()
+                    .all(|setting| setting.number.range.contains(&setting.of(&brush)));
                 assert!(are_in_range, "{file}, round {round}");
                 let numbers = [
                     brush.size,

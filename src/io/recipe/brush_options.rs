@@ -33,7 +33,8 @@ pub fn read(fields: &mut Fields, base: Brush) -> Result<Brush> {
 
 fn numbers(fields: &mut Fields, group: &str, brush: &mut Brush) -> Result<()> {
     for setting in SETTINGS.iter().filter(|setting| setting.group == group) {
-        let value = fields.number(setting.name, setting.of(brush), setting.range.clone())?;
+        let value =
+            fields.number(setting.number.name, setting.of(brush), setting.number.range.clone())?;
         setting.set(brush, value);
     }
     Ok(())
@@ -48,7 +49,7 @@ pub fn write(out: &mut JsonObject, brush: &Brush) {
         let mut own = JsonObject::default();
         let numbers = if group.is_empty() { &mut *out } else { &mut own };
         for setting in SETTINGS.iter().filter(|setting| setting.group == group) {
-            numbers.number(setting.name, setting.of(brush), setting.default());
+            numbers.number(setting.number.name, setting.of(brush), setting.default());
         }
         if group == "offset" {
             let plain = Offset::default();
@@ -84,12 +85,12 @@ mod tests {
     #[test]
     fn every_number_of_a_brush_is_written_and_read_at_both_ends_of_its_range() {
         for setting in &SETTINGS {
-            for end in [*setting.range.start(), *setting.range.end()] {
+            for end in [*setting.number.range.start(), *setting.number.range.end()] {
                 let mut brush = Brush::default();
                 setting.set(&mut brush, end);
                 let text = written(&brush);
-                let back =
-                    read_text(&text).unwrap_or_else(|error| panic!("{}: {error}", setting.label));
+                let back = read_text(&text)
+                    .unwrap_or_else(|error| panic!("{}: {error}", setting.number.label));
                 assert_eq!(setting.of(&back), end, "{text}");
             }
         }

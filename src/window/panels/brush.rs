@@ -3,6 +3,7 @@
 
 use super::curve;
 use crate::io::recipe::written_brush;
+use crate::math::NumberSetting;
 use crate::paint::brush_options::{Bearing, DistanceMetric, Falloff, Spread};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
 use crate::paint::pattern::Pattern;
@@ -295,8 +296,8 @@ fn mixing_and_stylus(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut changed = false;
     let mut took = |is_chosen: bool| changed |= is_chosen;
     for setting in &SETTINGS {
-        let number = NumberField::new(setting.label, setting.range.clone(), setting.hint);
-        let change = number.row(ui, setting.of(brush));
+        let NumberSetting { label, hint, range, .. } = &setting.number;
+        let change = NumberField::new(label, range.clone(), hint).row(ui, setting.of(brush));
         took(change.is_some());
         if let Some(change) = change {
             setting.set(&mut to, change.to);

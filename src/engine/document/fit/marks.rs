@@ -152,9 +152,9 @@ pub fn brush(brush: &Brush) -> Fit {
     }?;
     for setting in &SETTINGS {
         check_range(
-            &format!("“{}” of the brush", setting.label),
+            &format!("“{}” of the brush", setting.number.label),
             setting.of(brush),
-            &setting.range,
+            &setting.number.range,
         )?;
     }
     tip(&brush.tip)?;

@@ -14,11 +14,11 @@ number_settings! {
     /// How a hand follows lines. Lengths are canvas px.
     pub struct DrawingHand {
         /// The length over which ends grow thin, px.
-        taper: "Taper", "The length over which ends grow thin, px", 0.0..=500.0, 24.0;
+        taper: "Taper", "The length over which ends grow thin, px", 0.0..=500.0, 24.0, px;
         /// How far ends go on beyond the line, px.
-        overshoot: "Overshoot", "How far ends go on beyond the line, px", 0.0..=100.0, 0.0;
+        overshoot: "Overshoot", "How far ends go on beyond the line, px", 0.0..=100.0, 0.0, px;
         /// How far the hand strays, px.
-        wobble: "Wobble", "How far the hand strays, px", 0.0..=50.0, 0.0;
+        wobble: "Wobble", "How far the hand strays, px", 0.0..=50.0, 0.0, px;
         /// How much lighter the pressure is where a line is faint.
         by_strength: "Weight by strength", "How much thinner faint lines are", 0.0..=1.0, 0.6;
         /// How much lighter it is in the light.
@@ -63,9 +63,9 @@ impl LightOnLines<'_> {
 impl DrawingHand {
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
-        let Self { taper, overshoot, wobble, .. } = *self;
-        let [taper, overshoot, wobble] = [taper, overshoot, wobble].map(|v| v * factor);
-        Self { taper, overshoot, wobble, ..*self }
+        let mut next = *self;
+        Self::lengths().for_each(|setting| (setting.set)(&mut next, (setting.get)(self) * factor));
+        next
     }
 
     /// The stroke along a line of the form.

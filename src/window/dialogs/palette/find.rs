@@ -108,7 +108,7 @@ const SYNONYMS: [(&str, &[&str]); 72] = [
 impl PaletteEntry {
     /// Everything there is, in the order of the menus.
     pub fn all() -> impl Iterator<Item = Self> {
-        let settings = SETTINGS.iter().map(|setting| (setting.label, setting.hint));
+        let settings = SETTINGS.iter().map(|setting| (setting.number.label, setting.number.hint));
         commands::all()
             .map(Self::Command)
             .chain(ToolKind::ALL.into_iter().map(|(tool, _)| Self::Tool(tool)))
