@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use image::RgbaImage;
 
 use crate::noise::{fbm2, hash};
-use crate::pictures::{painted, srgb};
+use crate::painting::{painted, srgb};
 use crate::sdf::{segment2, smooth_step};
 
 /// An enameled star in a gold ring, on a transparent ground.

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use image::RgbaImage;
 
 use crate::noise::{cells, fbm2, hash, noise2};
-use crate::pictures::{painted, rolled_off, srgb};
+use crate::painting::{painted, rolled_off, srgb};
 use crate::sdf::{smooth_step, v};
 
 /// A sky: what varies between the two pictures.

@@ -9,6 +9,7 @@ mod medal;
 mod muse;
 mod noise;
 mod output;
+mod painting;
 mod patterns;
 mod pictures;
 mod render;

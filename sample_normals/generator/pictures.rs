@@ -1,18 +1,16 @@
 //! The sample pictures that are not landscapes: all of them listed, and a studio, a weave and lit
-//! spheres. Not here: textures (`textures`, `patterns`), decals (`decals`). Colors are linear
-//! light until [`encoded`]; textures whose doc says seamless repeat without a seam.
+//! spheres. Not here: textures (`textures`, `patterns`), decals (`decals`), how pixels are computed
+//! (`painting`). Textures whose doc says seamless repeat without a seam.
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 use image::{Rgb, Rgba, RgbaImage};
 use rayon::prelude::*;
 
+use crate::painting::{TEXTURE, painted, rolled_off, srgb};
 use crate::sdf::{smooth_step, v};
 use crate::{decals, patterns, textures};
-
-/// Side of the square textures, in pixels.
-pub const TEXTURE: u32 = 512;
 
 /// A picture and the file name it goes by.
 pub type Picture = (&'static str, fn() -> RgbaImage);
@@ -34,58 +32,6 @@ pub const PICTURES: [Picture; 14] = [
     ("sphere_wax.png", sphere_wax),
     ("sphere_ink.png", sphere_ink),
 ];
-
-/// Linear light in `[0, 1]` as an sRGB byte.
-fn encoded(linear: f64) -> u8 {
-    let c = linear.clamp(0.0, 1.0);
-    let srgb = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-    (srgb * 255.0).round() as u8
-}
-
-/// The linear color of an sRGB one written as `0xRRGGBB`.
-pub fn srgb(hex: u32) -> DVec3 {
-    let channel = |shift: u32| {
-        let c = f64::from(hex >> shift & 255) / 255.0;
-        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-    };
-    v(channel(16), channel(8), channel(0))
-}
-
-/// Highlights roll off to white instead of clipping.
-pub fn rolled_off(c: DVec3) -> DVec3 {
-    DVec3::ONE - (-c).exp()
-}
-
-/// A picture from straight (not premultiplied) linear color and alpha, averaged over `fine` ×
-/// `fine` points per pixel.
-pub fn painted(
-    (width, height): (u32, u32),
-    fine: u32,
-    color: impl Fn(DVec2) -> DVec4 + Sync,
-) -> RgbaImage {
-    let pixel = |i: usize| {
-        let corner = DVec2::new((i % width as usize) as f64, (i / width as usize) as f64);
-        let mut sum = DVec4::ZERO;
-        for k in 0..fine * fine {
-            let c = color(
-                corner
-                    + DVec2::new(f64::from(k % fine) + 0.5, f64::from(k / fine) + 0.5)
-                        / f64::from(fine),
-            );
-            sum += (c.truncate() * c.w).extend(c.w);
-        }
-        let rgb = sum.truncate() / sum.w.max(1e-9);
-        [
-            encoded(rgb.x),
-            encoded(rgb.y),
-            encoded(rgb.z),
-            (sum.w / f64::from(fine * fine) * 255.0).round() as u8,
-        ]
-    };
-    let pixels: Vec<[u8; 4]> =
-        (0..(width * height) as usize).into_par_iter().with_min_len(256).map(pixel).collect();
-    RgbaImage::from_fn(width, height, |x, y| Rgba(pixels[(y * width + x) as usize]))
-}
 
 /// A rectangular light with soft edges, seen from the origin.
 struct SoftBox {

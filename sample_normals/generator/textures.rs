@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use image::RgbaImage;
 
 use crate::noise::{fbm2, hash, noise2};
-use crate::pictures::{TEXTURE, painted, srgb};
+use crate::painting::{TEXTURE, painted, srgb};
 use crate::sdf::smooth_step;
 
 /// A 2/2 twill in a tartan sett. Seamless.

@@ -36,6 +36,8 @@ mod stamp;
 pub mod stroke;
 mod stroke_tile;
 mod surface_metric;
+#[cfg(test)]
+mod test_scenes;
 pub mod text;
 mod tint;
 pub mod tip;

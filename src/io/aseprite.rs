@@ -56,7 +56,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         sprite.notes.push(format!("only the first of its {frames} frames is shown"));
     }
     let mut rows = sprite.layers.into_iter().peekable();
-    let layers = nested(&mut rows, 0, budget.group_depth);
+    let layers = nest(&mut rows, 0, budget.group_depth);
     let document = Document { layers, ..Document::empty(size) };
     Ok(ProjectContents { document, notes: sprite.notes, is_whole: true, picture: None })
 }
@@ -302,7 +302,7 @@ fn empty() -> Content {
 
 /// The rows at a depth and what lies in their groups, the lowest first. What is deeper than
 /// `deepest` lies in the last group that may be.
-fn nested(
+fn nest(
     rows: &mut std::iter::Peekable<impl Iterator<Item = SpriteLayer>>,
     depth: u16,
     deepest: usize,
@@ -312,7 +312,7 @@ fn nested(
         if let Content::Group(group) = &mut row.layer.content
             && usize::from(depth) < deepest
         {
-            group.layers = nested(rows, depth + 1, deepest);
+            group.layers = nest(rows, depth + 1, deepest);
         }
         layers.push(Arc::new(row.layer));
     }

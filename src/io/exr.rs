@@ -55,12 +55,12 @@ impl<'a> ExrFile<'a> {
     /// budget, and files that end before their last chunk.
     pub fn open(file: &'a Path, bytes: &'a [u8], budget: &Budget) -> Result<Self> {
         let mut cursor = Cursor::new(bytes);
-        let meta = guarded(file, "header", || MetaData::read_from_buffered(&mut cursor, false))?;
+        let meta = guard(file, "header", || MetaData::read_from_buffered(&mut cursor, false))?;
         let size = window(file, &meta, budget)?;
         for header in &meta.headers {
             check_part(file, header, budget)?;
         }
-        guarded(file, "header", || MetaData::validate(&meta.headers, false))?;
+        guard(file, "header", || MetaData::validate(&meta.headers, false))?;
         let chunks = chunks::walk(file, bytes, cursor.position() as usize, &meta)?;
         let channels = names::channels(&meta);
         let passes = passes(&channels);
@@ -235,7 +235,7 @@ fn sample(kind: SampleType, samples: &[u8], at: usize) -> f32 {
 }
 
 /// Runs a step of the decoder; its errors and its panics become sentences.
-fn guarded<T>(file: &Path, what: &str, step: impl FnOnce() -> exr::error::Result<T>) -> Result<T> {
+fn guard<T>(file: &Path, what: &str, step: impl FnOnce() -> exr::error::Result<T>) -> Result<T> {
     match catch_unwind(AssertUnwindSafe(step)) {
         Ok(Ok(value)) => Ok(value),
         Ok(Err(exr::error::Error::NotSupported(reason))) => {

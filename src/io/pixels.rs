@@ -29,7 +29,7 @@ pub struct Painted {
 ///
 /// Premultiplied values come back exactly from straight ones, so nothing is lost.
 pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<EncodedPixels> {
-    let bounds = painted(tiles, within);
+    let bounds = painted_rect(tiles, within);
     let rect = if bounds.is_empty() { Rect::new(0, 0, 1, 1) } else { bounds };
     Ok(EncodedPixels {
         file: encode_rect(file, tiles, rect)?,
@@ -52,7 +52,7 @@ pub fn encode_rect(file: &Path, tiles: &TileGrid, rect: Rect) -> Result<Asset> {
         false => tiles.to_straight_rgba(strip),
     };
     let kind = if is_16_bit { PngKind::RGBA16 } else { PngKind::RGBA8 };
-    checked(file, || strips(rect).map(|strip| Cow::Owned(values(strip))), size_of(rect), kind)
+    check(file, || strips(rect).map(|strip| Cow::Owned(values(strip))), size_of(rect), kind)
 }
 
 fn size_of(rect: Rect) -> Size {
@@ -90,12 +90,12 @@ pub fn strips(rect: Rect) -> impl Iterator<Item = Rect> {
 
 /// A mask as a gray PNG.
 pub fn encode_coverage(file: &Path, plane: &Plane<u8>) -> Result<Asset> {
-    checked(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), PngKind::GRAY8)
+    check(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), PngKind::GRAY8)
 }
 
 /// Straight RGBA texels as a PNG, the colors of transparent ones kept.
 pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asset> {
-    checked(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, PngKind::RGBA8)
+    check(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, PngKind::RGBA8)
 }
 
 /// The same with 16 bits a channel.
@@ -104,7 +104,7 @@ pub fn encode16(file: &Path, texels: &[[u16; 4]], size: Size) -> Result<Asset> {
         rows.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect()
     };
     let rows = || texels.chunks(size.width as usize).map(bytes);
-    checked(file, rows, size, PngKind::RGBA16)
+    check(file, rows, size, PngKind::RGBA16)
 }
 
 /// Of a chunk of packed pixels.
@@ -115,13 +115,14 @@ const STORED_BYTES: usize = 1 << 10;
 /// Encodes, decodes the result, and compares: encoders have written files that nobody could read.
 ///
 /// * `strips`: the values, a few whole rows at a time. Read twice.
-fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
+fn check<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
     file: &Path,
     strips: impl Fn() -> S,
     size: Size,
     kind: PngKind,
 ) -> Result<Asset> {
-    let encode = |how| encoded(strips(), size, kind, how).map_err(|e| Error::unsupported(file, e));
+    let encode =
+        |how| encode_strips(strips(), size, kind, how).map_err(|e| Error::unsupported(file, e));
     let mut bytes = encode(png::Compression::Fast)?;
     // The quick compressor makes noise larger than it is.
     if bytes.len() > STORED_BYTES + size.area() * kind.bytes() * 1001 / 1000 {
@@ -136,7 +137,7 @@ fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
     Ok(bytes.into())
 }
 
-fn encoded<'v>(
+fn encode_strips<'v>(
     strips: impl Iterator<Item = Cow<'v, [u8]>>,
     size: Size,
     kind: PngKind,
@@ -292,14 +293,14 @@ fn to_rgba<T: Copy>(
 }
 
 /// The smallest rectangle that holds every pixel that is not transparent.
-fn painted(tiles: &TileGrid, within: Option<Rect>) -> Rect {
+fn painted_rect(tiles: &TileGrid, within: Option<Rect>) -> Rect {
     tiles.iter().fold(Rect::EMPTY, |bounds, (at, tile)| {
-        let rect = painted_of(at, tile);
+        let rect = painted_rect_of(at, tile);
         bounds.union(within.map_or(rect, |within| rect.intersect(within)))
     })
 }
 
-fn painted_of(at: TileAt, tile: &Tile) -> Rect {
+fn painted_rect_of(at: TileAt, tile: &Tile) -> Rect {
     let tile_rect = at.rect();
     if tile.is_opaque() {
         return tile_rect;

@@ -74,7 +74,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
         .enumerate()
         .map(|(i, preview)| (format!("data/{i:03}.png"), preview))
         .collect();
-    let shown = shown_alone(&items, &pictures);
+    let shown = pictures_alone(&items, &pictures);
     let xml = stack::write(document.size, &items, &pictures);
     let mut entries = vec![ZipEntry::text(MIMETYPE, MIME.as_bytes().to_vec())];
     let stack = crc32fast::hash(xml.as_bytes());
@@ -159,7 +159,7 @@ pub fn packed(file: &Path, entries: &[ZipEntry]) -> Result<Vec<u8>> {
 }
 
 /// The pictures that show one layer alone, with their names.
-fn shown_alone<'a>(
+fn pictures_alone<'a>(
     items: &[PlanItem],
     pictures: &'a [(String, EncodedPixels)],
 ) -> BTreeMap<LayerId, &'a (String, EncodedPixels)> {

@@ -20,12 +20,12 @@ pub fn thumbnail(file: &Path, side_px: u32, budget: &Budget) -> Result<SmallPict
     let bytes = read_file(file, budget.file_bytes)?;
     match project::stored_thumbnail(file, &bytes, side_px, budget) {
         Some(stored) => Ok(stored),
-        None => painted(file, side_px, budget),
+        None => paint(file, side_px, budget),
     }
 }
 
 /// The whole document, painted and made smaller.
-fn painted(file: &Path, side_px: u32, budget: &Budget) -> Result<SmallPicture> {
+fn paint(file: &Path, side_px: u32, budget: &Budget) -> Result<SmallPicture> {
     let document = open(file, budget)?.document;
     let size = document.size;
     // Nothing here cancels, so it is always painted.

@@ -89,7 +89,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
     } else {
         0
     });
-    let done = crash::catch_panic(|| force::naming_the_flag(dispatched(parsed.command, window)));
+    let done = crash::catch_panic(|| force::naming_the_flag(dispatch(parsed.command, window)));
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(sentence) => {
@@ -99,7 +99,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
     }
 }
 
-fn dispatched(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result<()> {
+fn dispatch(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result<()> {
     match command {
         Some(CliCommand::Brush(args)) => brush::run(&args),
         Some(CliCommand::Convert(args)) => convert::run(&args),

@@ -32,7 +32,7 @@ fn open() -> Result<Clipboard> {
 /// The picture or the files in the clipboard; fails if there are none. It takes as long as the
 /// program that owns them needs.
 pub fn read_clipboard() -> Result<PastedContent> {
-    if let Some((name, bytes)) = offered(Budget::of_this_machine().file_bytes)? {
+    if let Some((name, bytes)) = read_offer(Budget::of_this_machine().file_bytes)? {
         let picture = picture::decode(Path::new(&name), &bytes, &Budget::of_this_machine())?;
         return Ok(PastedContent::Picture(PastedPicture { name, picture }));
     }
@@ -53,12 +53,12 @@ pub fn read_clipboard() -> Result<PastedContent> {
 /// A picture as the file that another program offers, with a name for it, where the system has
 /// such.
 #[cfg(all(unix, not(target_os = "macos")))]
-fn offered(most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
+fn read_offer(most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
     Ok(x11::picture(most_bytes)?.map(|(ending, bytes)| (format!("Pasted.{ending}"), bytes)))
 }
 
 #[cfg(not(all(unix, not(target_os = "macos"))))]
-fn offered(_most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
+fn read_offer(_most_bytes: u64) -> Result<Option<(String, Vec<u8>)>> {
     Ok(None)
 }
 

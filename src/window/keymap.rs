@@ -103,7 +103,7 @@ impl Keymap {
 
     pub fn to_json(&self) -> Value {
         let text = |keys: &Vec<KeyboardShortcut>| {
-            keys.iter().map(|&keys| Value::from(written(keys))).collect()
+            keys.iter().map(|&keys| Value::from(write_keys(keys))).collect()
         };
         Value::Object(
             self.custom
@@ -137,7 +137,7 @@ pub fn key_text(ctx: &Context, keys: KeyboardShortcut) -> String {
 }
 
 /// “Ctrl+Shift+Z”, the same on every system.
-fn written(keys: KeyboardShortcut) -> String {
+fn write_keys(keys: KeyboardShortcut) -> String {
     let Modifiers { alt, shift, command, .. } = keys.modifiers;
     let mut text = String::new();
     for (is_held, word) in [(command, "Ctrl+"), (alt, "Alt+"), (shift, "Shift+")] {
@@ -170,7 +170,7 @@ mod tests {
     fn every_key_survives_being_written_and_read() {
         for keyed in KeyTarget::all() {
             for keys in keyed.default_keys() {
-                assert_eq!(read(&written(keys)), Some(keys), "{}", written(keys));
+                assert_eq!(read(&write_keys(keys)), Some(keys), "{}", write_keys(keys));
             }
         }
         assert_eq!(read("Ctrl+Nothing"), None);

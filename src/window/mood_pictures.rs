@@ -83,7 +83,7 @@ impl MoodThread {
             while let Ok(order) = orders.recv() {
                 // Only the last one counts.
                 let (document, layer) = orders.try_iter().last().unwrap_or(order);
-                for (mood, image) in painted(&document, layer) {
+                for (mood, image) in paint_moods(&document, layer) {
                     if sender.send((mood, image)).is_err() {
                         return;
                     }
@@ -97,7 +97,7 @@ impl MoodThread {
 }
 
 /// A document in each mood, small.
-fn painted(document: &Document, layer: LayerId) -> Vec<(Mood, ColorImage)> {
+fn paint_moods(document: &Document, layer: LayerId) -> Vec<(Mood, ColorImage)> {
     let factor = (SIDE / document.size.longer_side()).min(1.0);
     let Ok(small) = DocumentReducer::new(factor).of(document) else { return Vec::new() };
     let in_mood = |mood: Mood| {

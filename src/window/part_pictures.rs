@@ -36,7 +36,7 @@ impl PartPictures {
             if !is_known && let Some(form) = document.form_of(&part.id) {
                 let texture = ctx.load_texture(
                     format!("part {}", part.id),
-                    lit(&form),
+                    draw_lit(&form),
                     TextureOptions::LINEAR,
                 );
                 self.painted.insert(part.id.clone(), (area.clone(), texture));
@@ -82,7 +82,7 @@ impl PartPictures {
 }
 
 /// A form under a lamp from above left, transparent around it.
-fn lit(form: &Form) -> ColorImage {
+fn draw_lit(form: &Form) -> ColorImage {
     let light = vec3(-0.5, 0.6, 0.62).normalize_or(Vec3::Z);
     let size = form.coverage.size();
     let scale = (SIDE as f32 / size.longer_side()).min(1.0);

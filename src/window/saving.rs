@@ -40,7 +40,7 @@ impl ExportingMaps {
     fn run(self) -> WriteResult {
         match export_maps(&self.document, &self.file, &self.maps, self.options, &self.terms) {
             Ok(files) => WriteResult::ExportedMaps(files),
-            Err(error) => refused(error, || Pending::Maps(Box::new(self))),
+            Err(error) => refuse(error, || Pending::Maps(Box::new(self))),
         }
     }
 }
@@ -59,7 +59,7 @@ impl Saving {
             Ok(SaveStep::Saved(stamp)) => WriteResult::Saved(Box::new(self), stamp),
             Ok(SaveStep::Loses) => WriteResult::Loses(Box::new(self)),
             Ok(SaveStep::Canceled) => WriteResult::Canceled,
-            Err(error) => refused(error, || Pending::Save(Box::new(self))),
+            Err(error) => refuse(error, || Pending::Save(Box::new(self))),
         }
     }
 
@@ -93,13 +93,13 @@ impl Exporting {
         match written {
             Ok(_) if progress.is_canceled() => WriteResult::Canceled,
             Ok(notes) => WriteResult::Exported(self.file, notes),
-            Err(error) => refused(error, || Pending::Export(Box::new(self))),
+            Err(error) => refuse(error, || Pending::Export(Box::new(self))),
         }
     }
 }
 
 /// What the user may overrule is asked; all else is an error.
-fn refused(error: Error, pending: impl FnOnce() -> Pending) -> WriteResult {
+fn refuse(error: Error, pending: impl FnOnce() -> Pending) -> WriteResult {
     match error {
         Error::Changed { reason, .. } => WriteResult::Refused(pending(), reason),
         error => WriteResult::Failed(error),

@@ -52,7 +52,7 @@ impl SwatchThread {
         let ((wanted, orders), (sender, coming)) = (channel::<BrushPreset>(), channel());
         let work = move || {
             for preset in orders {
-                if let Some(image) = painted(&preset) {
+                if let Some(image) = paint_swatch(&preset) {
                     if sender.send((preset.key, image)).is_err() {
                         return;
                     }
@@ -65,7 +65,7 @@ impl SwatchThread {
     }
 }
 
-fn painted(preset: &BrushPreset) -> Option<ColorImage> {
+fn paint_swatch(preset: &BrushPreset) -> Option<ColorImage> {
     let pixels = swatch::render_swatch(preset, SIDE)?;
     Some(ColorImage::from_rgba_unmultiplied([SIDE as usize; 2], &pixels))
 }

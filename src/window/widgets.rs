@@ -205,7 +205,7 @@ pub fn check(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Option<bool> {
 
 /// A box to tick, whose outline is seen while it is empty.
 pub fn check_box(ui: &mut Ui, on: &mut bool, label: impl Into<String>) -> Response {
-    outlined(ui, |ui| ui.checkbox(on, label.into()))
+    show_outlined(ui, |ui| ui.checkbox(on, label.into()))
 }
 
 /// One of several choices, as a ring to fill.
@@ -215,10 +215,10 @@ pub fn radio<T: PartialEq>(
     choice: T,
     label: impl Into<String>,
 ) -> Response {
-    outlined(ui, |ui| ui.radio_value(current, choice, label.into()))
+    show_outlined(ui, |ui| ui.radio_value(current, choice, label.into()))
 }
 
-fn outlined(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Response) -> Response {
+fn show_outlined(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Response) -> Response {
     let before = ui.visuals().widgets.inactive.bg_stroke;
     outline(ui);
     let response = show(ui);

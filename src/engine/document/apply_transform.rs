@@ -23,7 +23,7 @@ impl Document {
         if is_in_place(self.layer(id)?, &self.map_of(id)?) {
             return Some(self.clone());
         }
-        let layers = applied(&self.layers, id, &LayerMap::none(self.size))?;
+        let layers = apply_in_list(&self.layers, id, &LayerMap::none(self.size))?;
         Some(Document { layers, ..self.clone() })
     }
 
@@ -54,7 +54,7 @@ fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
 
 /// A list of layers in which the transforms of the groups around a layer are handed down; `None` if
 /// it is not among them.
-fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<Arc<Layer>>> {
+fn apply_in_list(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<Arc<Layer>>> {
     let index = layers.iter().position(|layer| layer.id == id || layer.has_layer_within(id))?;
     let mut next = layers.to_vec();
     next[index] = if layers[index].id == id {
@@ -63,7 +63,7 @@ fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<
         let mut outer = handed_down(&layers[index], around)?;
         let within = around.within(&outer);
         if let Content::Group(group) = &mut outer.content {
-            group.layers = applied(&group.layers, id, &within)?;
+            group.layers = apply_in_list(&group.layers, id, &within)?;
         }
         Arc::new(outer)
     };

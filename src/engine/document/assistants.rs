@@ -212,13 +212,13 @@ impl EllipseFrame {
         let (px, py) = if a >= b {
             quarter(a, b, x.abs(), y.abs())
         } else {
-            swapped(quarter(b, a, y.abs(), x.abs()))
+            swap(quarter(b, a, y.abs(), x.abs()))
         };
         self.center + along * px.copysign(x) as f32 + across * py.copysign(y) as f32
     }
 }
 
-fn swapped((x, y): (f64, f64)) -> (f64, f64) {
+fn swap((x, y): (f64, f64)) -> (f64, f64) {
     (y, x)
 }
 

@@ -121,7 +121,7 @@ impl Document {
 
     /// With every attachment where its part is now; itself if nothing moved.
     pub(in crate::document) fn with_attachments_placed(&self) -> Document {
-        match placed(&self.layers, &self.parts) {
+        match place_attachments(&self.layers, &self.parts) {
             Some(layers) => Document { layers, ..self.clone() },
             None => self.clone(),
         }
@@ -198,7 +198,7 @@ fn bare(layer: &Arc<Layer>, replace: &ReplaceAttachment) -> Arc<Layer> {
 }
 
 /// Layers with their attachments where the parts are; `None` if all are there already.
-fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
+fn place_attachments(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
     let next = |attachment: &Attachment| {
         parts.attachment(&attachment.part).filter(|next| next != attachment)
     };
@@ -214,7 +214,7 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
     for (i, layer) in layers.iter().enumerate() {
         let on = layer.on.as_ref().and_then(next);
         let content = match &layer.content {
-            Content::Group(group) => placed(&group.layers, parts)
+            Content::Group(group) => place_attachments(&group.layers, parts)
                 .map(|layers| Content::Group(Group { layers, ..group.clone() })),
             Content::Strokes(live) if layer.content.has_attachments() => {
                 let strokes = &live.params().strokes;

@@ -274,7 +274,7 @@ impl Diff<'_> {
         if layer.is_warped() && !matches!(layer.content, Content::Pixels(_)) {
             let bare = Arc::new(Layer {
                 liquify: None,
-                transform: unmeshed(layer),
+                transform: transform_without_mesh(layer),
                 ..Layer::clone(layer)
             });
             return self.report_displaced(layer, version, |diff| diff.report_whole(&bare, version));
@@ -309,7 +309,7 @@ impl Diff<'_> {
 }
 
 /// The transform of a layer without its mesh.
-fn unmeshed(layer: &Layer) -> Option<LayerTransform> {
+fn transform_without_mesh(layer: &Layer) -> Option<LayerTransform> {
     layer.transform.clone().filter(|own| own.mesh().is_none_or(|mesh| mesh.as_affine().is_some()))
 }
 

@@ -50,7 +50,7 @@ impl Document {
             if fit.is_ok() && !known.contains(&Arc::as_ptr(layer)) {
                 let was = before.and_then(|before| before.layer(layer.id));
                 fit = layer_fits(layer, was.map(|was| &**was), self.size)
-                    .map_err(|why| named(layer, &why));
+                    .map_err(|why| name_layer(layer, &why));
             }
         });
         self.parts.list.iter().for_each(|part| total.add_part(part));
@@ -107,7 +107,7 @@ impl Document {
         };
         self.walk().into_iter().try_for_each(|(_, layer)| {
             let fit = layer.on.as_ref().map_or(Ok(()), known).and_then(|()| of_strokes(layer));
-            fit.map_err(|why| named(layer, &why))
+            fit.map_err(|why| name_layer(layer, &why))
         })
     }
 }
@@ -122,7 +122,7 @@ fn each<'d>(layers: &'d [Arc<Layer>], depth: usize, visit: &mut dyn FnMut(&'d Ar
     }
 }
 
-fn named(layer: &Layer, why: &str) -> String {
+fn name_layer(layer: &Layer, why: &str) -> String {
     const SHOWN: usize = 60;
     let name: String = layer.name.chars().take(SHOWN).collect();
     format!("“{name}”: {why}.")

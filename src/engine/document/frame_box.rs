@@ -65,9 +65,9 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
         FrameBox { low, high: corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) }
     };
     match &layer.content {
-        Content::Pixels(pixels) => FrameBox::of(painted(&pixels.tiles)),
+        Content::Pixels(pixels) => FrameBox::of(painted_rect(&pixels.tiles)),
         Content::Strokes(live) if !layer.content.has_attachments() => {
-            FrameBox::of(live.painted_box(scene, || painted_by_strokes(live, scene)))
+            FrameBox::of(live.painted_box(scene, || strokes_rect(live, scene)))
         }
         // Content with an attachment of its own takes whole tiles.
         Content::Strokes(live) => {
@@ -93,7 +93,7 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
 
 /// The pixels of a grid that are not wholly transparent. Called for every window frame that shows
 /// handles: a tile within the known box is not looked at.
-fn painted(tiles: &TileGrid) -> Rect {
+fn painted_rect(tiles: &TileGrid) -> Rect {
     let with = |known: Rect, (at, tile): (TileAt, &Arc<Tile>)| match is_within(known, at) {
         true => known,
         false => with_tile(known, at, tile),
@@ -102,7 +102,7 @@ fn painted(tiles: &TileGrid) -> Rect {
 }
 
 /// The pixels of strokes that are not wholly transparent.
-fn painted_by_strokes(live: &Live<StrokeList>, scene: &Scene) -> Rect {
+fn strokes_rect(live: &Live<StrokeList>, scene: &Scene) -> Rect {
     let strokes = &live.params().strokes;
     let all = strokes.iter().map(|stroke| stroke.bounds(scene)).fold(Rect::EMPTY, Rect::union);
     let mut tiles: Vec<(TileAt, Rect)> = TileAt::covering(all).map(|at| (at, at.rect())).collect();
@@ -161,7 +161,10 @@ mod tests {
                 expected =
                     expected.union(Rect::new(x as i32, y as i32, x as i32 + 1, y as i32 + 1));
             }
-            assert_eq!(painted(&TileGrid::from_straight_rgba(&rgba, 300, 200, 0, 0)), expected);
+            assert_eq!(
+                painted_rect(&TileGrid::from_straight_rgba(&rgba, 300, 200, 0, 0)),
+                expected
+            );
         }
     }
 
@@ -181,7 +184,7 @@ mod tests {
         let document = Document { layers: vec![Arc::new(layer)], ..document };
         let FrameBox { low, high } = document.frame_box(document.layers[0].id).unwrap();
         let painted = flatten(&document, &Progress::default()).unwrap();
-        let Rect { x0, y0, x1, y1 } = super::painted(&painted);
+        let Rect { x0, y0, x1, y1 } = super::painted_rect(&painted);
         assert_eq!((low, high), (vec2(x0 as f32, y0 as f32), vec2(x1 as f32, y1 as f32)));
         assert!(x0.abs_diff(135) <= 3 && x1.abs_diff(315) <= 3, "{x0} {x1}");
         assert!(y0.abs_diff(75) <= 3 && y1.abs_diff(325) <= 3, "{y0} {y1}");

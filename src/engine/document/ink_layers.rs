@@ -180,7 +180,7 @@ impl Document {
             let whole = on_canvas(&ink.source);
             let both: Vec<TileAt> = whole.iter().map(|(at, _)| at).collect();
             for at in both {
-                let over = hidden_beneath(all.tile(at), whole.tile(at), lines.tile(at));
+                let over = hide_beneath(all.tile(at), whole.tile(at), lines.tile(at));
                 all.set(at, over);
             }
         }
@@ -189,7 +189,7 @@ impl Document {
 }
 
 /// Lines where something lies over them: what is left of them, with the lines of that.
-fn hidden_beneath(
+fn hide_beneath(
     lines: Option<&Arc<Tile>>,
     over: Option<&Arc<Tile>>,
     its_lines: Option<&Arc<Tile>>,

@@ -109,7 +109,7 @@ impl<'s> PlacedDab<'s> {
         let Some(blocks) = self.far_blocks else {
             let tile = at.rect();
             let Some(judged) = self.support.judged(at) else { return TouchedBlocks::none(tile) };
-            let area = touched(&judged.touched, tile).intersect(self.scene.size.rect());
+            let area = touched_rect(&judged.touched, tile).intersect(self.scene.size.rect());
             // Near its border a dab is pushed away, and pixels are longer.
             let pixel =
                 if self.deformation.is_limited(area.grown(1)) { ANY_LENGTH } else { judged.pixel };
@@ -117,7 +117,7 @@ impl<'s> PlacedDab<'s> {
         };
         let whole = self.scene.area(at);
         let tile = Rect::new(0, whole.y0, TILE as i32, whole.y0 + TILE as i32);
-        let area = touched(&blocks, tile).intersect(whole);
+        let area = touched_rect(&blocks, tile).intersect(whole);
         TouchedBlocks { tile, blocks, area, step: self.scene.row_step(), pixel: ANY_LENGTH }
     }
 
@@ -300,7 +300,7 @@ impl TouchedBlocks {
 }
 
 /// The smallest rectangle that holds the touched blocks of a tile.
-fn touched(blocks: &TileBlocks, tile: Rect) -> Rect {
+fn touched_rect(blocks: &TileBlocks, tile: Rect) -> Rect {
     let side = BLOCK as i32;
     let rows = blocks.iter().enumerate().filter(|(_, bits)| **bits != 0);
     rows.fold(Rect::EMPTY, |r, (row, bits)| {

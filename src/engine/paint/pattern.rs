@@ -58,7 +58,7 @@ impl Pattern {
                 1.0 - ((at(x, y) * cells).fract_gl() - 0.5).length() * std::f32::consts::SQRT_2
             }
         });
-        if self == Pattern::Paper { equalized(&raw) } else { raw.map(|v| v.max(0.0).min(1.0)) }
+        if self == Pattern::Paper { equalize(&raw) } else { raw.map(|v| v.max(0.0).min(1.0)) }
     }
 }
 
@@ -110,7 +110,7 @@ fn smoothstep(from: f32, to: f32, v: f32) -> f32 {
 }
 
 /// Each value by its rank: all grays take the same area.
-fn equalized(plane: &Plane<f32>) -> Plane<f32> {
+fn equalize(plane: &Plane<f32>) -> Plane<f32> {
     let mut order: Vec<u32> = (0..plane.values().len() as u32).collect();
     order.sort_by(|&a, &b| plane.values()[a as usize].total_cmp(&plane.values()[b as usize]));
     let per_rank = 1.0 / order.len().max(1) as f32;
@@ -172,7 +172,7 @@ pub fn specks(cells: u32, density: f32, seed: u32, side: u32) -> Plane<f32> {
         noise::octaves((vec2(x as f32, y as f32) + 0.5) * per_side, cells.max(1), 3, 0.5, seed)
     });
     let bare = 1.0 - density;
-    equalized(&raw).map(|v| smoothstep(bare - 0.08, bare + 0.08, v))
+    equalize(&raw).map(|v| smoothstep(bare - 0.08, bare + 0.08, v))
 }
 
 #[cfg(test)]

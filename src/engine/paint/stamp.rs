@@ -78,7 +78,7 @@ impl TipStamp {
         }
         let texels_per_radius = 0.5 * level.size.longer_side();
         Self {
-            texture: Texture::new(&softened(level, is_colored, sigma)),
+            texture: Texture::new(&soften(level, is_colored, sigma)),
             is_colored,
             texels_per_radius,
         }
@@ -95,7 +95,7 @@ fn is_gray(level: &MipLevel) -> bool {
 }
 
 /// The tip's picture with a transparent border as wide as its blur; coverage becomes alpha.
-fn softened(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
+fn soften(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
     let margin = (3.0 * sigma).ceil() as u32;
     let size = Size::new(level.size.width + 2 * margin, level.size.height + 2 * margin);
     let mut texels = vec![[0.0f32; 4]; size.area()];

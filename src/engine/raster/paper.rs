@@ -65,8 +65,9 @@ impl PaperLight {
         }
         let seen = Plane::from_fn(size, |i, j| lightest(tiles, rect, i, j));
         let known = seen.map(|seen| seen.unwrap_or([0.0; 3]));
-        let mut light = Plane::from_fn(size, |i, j| filled(&known, i as i32, j as i32));
-        light = Plane::from_fn(size, |i, j| smoothed(&light, i as i32, j as i32));
+        let mut light =
+            Plane::from_fn(size, |i, j| fill_from_neighbors(&known, i as i32, j as i32));
+        light = Plane::from_fn(size, |i, j| smooth(&light, i as i32, j as i32));
         let lightness = median(light.values().iter().map(|light| luma(*light)).collect())?;
         if lightness < LEAST_LIGHT {
             return None;
@@ -152,7 +153,7 @@ fn lightest(tiles: &TileGrid, rect: Rect, i: usize, j: usize) -> Option<PaperCol
 }
 
 /// A square's color, or that of the lightest around it if it is drawn on all over.
-fn filled(light: &Plane<PaperColor>, i: i32, j: i32) -> PaperColor {
+fn fill_from_neighbors(light: &Plane<PaperColor>, i: i32, j: i32) -> PaperColor {
     let own = light.get(i, j).unwrap_or_default();
     let around = (-AROUND..=AROUND).flat_map(|dj| (-AROUND..=AROUND).map(move |di| (di, dj)));
     let best = around
@@ -163,7 +164,7 @@ fn filled(light: &Plane<PaperColor>, i: i32, j: i32) -> PaperColor {
 }
 
 /// The mean of a square and those beside it.
-fn smoothed(light: &Plane<PaperColor>, i: i32, j: i32) -> PaperColor {
+fn smooth(light: &Plane<PaperColor>, i: i32, j: i32) -> PaperColor {
     let around = (-1..=1).flat_map(|dj| (-1..=1).map(move |di| (di, dj)));
     let all: Vec<PaperColor> = around.filter_map(|(di, dj)| light.get(i + di, j + dj)).collect();
     std::array::from_fn(|c| all.iter().map(|light| light[c]).sum::<f32>() / all.len() as f32)

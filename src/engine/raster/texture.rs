@@ -124,7 +124,7 @@ impl FloatTexture {
 impl<T: Texel> Texture<T> {
     fn of_texels(size: Size, texels: Vec<T>) -> Self {
         let mut levels = vec![MipLevel { size, texels }];
-        while let Some(next) = levels.last().and_then(halved) {
+        while let Some(next) = levels.last().and_then(halve) {
             levels.push(next);
         }
         Self { levels: levels.into(), first: 0 }
@@ -161,13 +161,13 @@ fn premultiplied_u8(straight: [u8; 4]) -> [u8; 4] {
 
 /// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side
 /// is odd, weighted by area).
-fn halved<T: Texel>(level: &MipLevel<T>) -> Option<MipLevel<T>> {
+fn halve<T: Texel>(level: &MipLevel<T>) -> Option<MipLevel<T>> {
     let Size { width: w, height: h } = level.size;
     if w == 1 && h == 1 {
         return None;
     }
     let size = Size::new((w / 2).max(1), (h / 2).max(1));
-    let (xs, ys) = (covered(w, size.width), covered(h, size.height));
+    let (xs, ys) = (coverage_weights(w, size.width), coverage_weights(h, size.height));
     let mut texels = Vec::with_capacity(size.area());
     for y in &ys {
         for x in &xs {
@@ -187,7 +187,7 @@ fn halved<T: Texel>(level: &MipLevel<T>) -> Option<MipLevel<T>> {
 }
 
 /// For each of `to` cells, the cells of `from ≥ to` it covers and their weights, which add up to 1.
-fn covered(from: u32, to: u32) -> Vec<Vec<(u32, f32)>> {
+fn coverage_weights(from: u32, to: u32) -> Vec<Vec<(u32, f32)>> {
     let ratio = from as f32 / to as f32;
     (0..to)
         .map(|i| {

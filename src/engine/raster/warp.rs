@@ -100,7 +100,7 @@ pub fn warped_tile_within(
     at: TileAt,
 ) -> Option<Arc<Tile>> {
     if let Some(by) = map.pixel_move() {
-        return moved_tile(grid, by, at);
+        return move_tile(grid, by, at);
     }
     let mut pixels = transparent_f32();
     let source = GridSource {
@@ -143,7 +143,7 @@ crate::widest! {
     }
 }
 
-fn moved_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
+fn move_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
     if by == PixelMove::NONE {
         return grid.tile(at).cloned();
     }

@@ -172,11 +172,11 @@ impl Form {
         let size = self.height.size();
         let middle = vec2(size.width as f32, size.height as f32) * 0.5;
         let coverage = &self.coverage;
-        self.height = updated(self.height, |x, y, z| {
+        self.height = update(self.height, |x, y, z| {
             let from = vec2(x as f32 + 0.5, y as f32 + 0.5) - middle;
             if coverage.at(x, y) > 0 { z + slope.dot(from) } else { z }
         });
-        self.normals = updated(self.normals, |x, y, n| match coverage.at(x, y) {
+        self.normals = update(self.normals, |x, y, n| match coverage.at(x, y) {
             0 => n,
             _ => vec3(n.x - slope.x * n.z, n.y + slope.y * n.z, n.z).normalize_or(Vec3::Z),
         });
@@ -188,7 +188,7 @@ impl Form {
         let coverage = &self.coverage;
         if by_px != 0.0 && by_px.is_finite() {
             self.height =
-                updated(self.height, |x, y, z| if coverage.at(x, y) > 0 { z + by_px } else { z });
+                update(self.height, |x, y, z| if coverage.at(x, y) > 0 { z + by_px } else { z });
         }
         self
     }
@@ -199,7 +199,7 @@ impl Form {
             return self;
         }
         let coverage = &self.coverage;
-        self.normals = updated(self.normals, |x, y, n| {
+        self.normals = update(self.normals, |x, y, n| {
             let covered = |x: i32, y: i32| coverage.get(x, y).unwrap_or(0) > 0;
             if !covered(x as i32, y as i32) {
                 return n;
@@ -208,7 +208,7 @@ impl Form {
             vec3(n.x - slope.x * n.z, n.y + slope.y * n.z, n.z).normalize_or(Vec3::Z)
         });
         self.height =
-            updated(
+            update(
                 self.height,
                 |x, y, z| if coverage.at(x, y) > 0 { z + added.at(x, y) } else { z },
             );
@@ -217,7 +217,7 @@ impl Form {
 }
 
 /// A plane computed again pixel by pixel, in the same memory if nobody else holds it.
-fn updated<T: Copy + Send + Sync>(
+fn update<T: Copy + Send + Sync>(
     plane: Arc<Plane<T>>,
     value: impl Fn(usize, usize, T) -> T + Sync,
 ) -> Arc<Plane<T>> {

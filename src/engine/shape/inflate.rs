@@ -27,7 +27,7 @@ pub fn inflate(
     start: Option<&Plane<f32>>,
 ) -> Plane<f32> {
     if outline.size().area() > MOST_UNKNOWNS && joined.is_none() {
-        return doubled(&inflate_halved(outline), outline);
+        return double(&inflate_halved(outline), outline);
     }
     let rim = OutlineRim::of(outline, joined);
     let inside = outline.inside();
@@ -54,7 +54,7 @@ fn inflate_halved(outline: &Outline) -> Plane<f32> {
 
 /// A field of half the resolution over the inside of an outline, read between its pixels; px²
 /// become four.
-fn doubled(half: &Plane<f32>, outline: &Outline) -> Plane<f32> {
+fn double(half: &Plane<f32>, outline: &Outline) -> Plane<f32> {
     Plane::from_fn(outline.size(), |x, y| {
         if !outline.inside().at(x, y) {
             return 0.0;

@@ -18,7 +18,7 @@ impl RimDistance {
     /// Exact to where the rim crosses the links between pixels, and near it to the line between
     /// those crossings.
     pub fn of(outline: &Outline) -> Self {
-        let both = measured(outline, None, |distance, inward| (distance, inward));
+        let both = measure(outline, None, |distance, inward| (distance, inward));
         Self { distance: both.map(|v| v.0), inward: both.map(|v| v.1) }
     }
 }
@@ -27,11 +27,11 @@ impl RimDistance {
 /// in `OutlineRim::joined`). If there is no such rim, no pixel is farther from it than the plane is
 /// long.
 pub fn silhouette_distance(outline: &Outline, joined: Option<&Plane<bool>>) -> Plane<f32> {
-    measured(outline, joined, |distance, _| distance)
+    measure(outline, joined, |distance, _| distance)
 }
 
 /// What is made of each pixel's distance and direction.
-fn measured<T: Copy + Default + Send + Sync>(
+fn measure<T: Copy + Default + Send + Sync>(
     outline: &Outline,
     joined: Option<&Plane<bool>>,
     of: impl Fn(f32, Vec2) -> T + Sync,

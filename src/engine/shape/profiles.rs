@@ -43,7 +43,7 @@ pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormal
     if !fits {
         return None;
     }
-    let all = Plane::from_fn(size, |x, y| solved(profiles, x, y));
+    let all = Plane::from_fn(size, |x, y| solve(profiles, x, y));
     Some(ProfileNormals {
         normals: all.map(|v| v.0.normalize_or(Vec3::ZERO)),
         albedo: all.map(|v| v.0.length()),
@@ -52,7 +52,7 @@ pub fn normals_from_profiles(profiles: &[ShadedDrawing]) -> Option<ProfileNormal
 }
 
 /// ρn and the residual at a pixel; zero where they are unknown.
-fn solved(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
+fn solve(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
     let is_exposed = |p: &&ShadedDrawing| {
         let gray = p.gray.at(x, y);
         gray > CLIPPED.0 && gray < CLIPPED.1

@@ -99,7 +99,7 @@ impl SeedGrid {
         let middle = vec2(pixel.0 as f32 + 0.5, pixel.1 as f32 + 0.5);
         let (mut best, mut least) = ((0, 0), f32::MAX);
         for cell in around((self.cell(pixel.0), self.cell(pixel.1))) {
-            let away = squared(self.seed_of(cell) - middle);
+            let away = square(self.seed_of(cell) - middle);
             if away < least {
                 (best, least) = (cell, away);
             }
@@ -115,7 +115,7 @@ impl SeedGrid {
 
 /// |v|².
 #[inline(always)]
-fn squared(v: Vec2) -> f32 {
+fn square(v: Vec2) -> f32 {
     v.x * v.x + v.y * v.y
 }
 

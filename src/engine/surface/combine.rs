@@ -50,7 +50,7 @@ impl DetailMap {
     pub fn new(normals: Plane<Vec3>) -> Self {
         let unit = |n: Vec3| if n.is_finite() { n.normalize_or(Vec3::Z) } else { Vec3::Z };
         let mut levels = vec![normals.map(unit)];
-        while let Some(next) = levels.last().and_then(halved) {
+        while let Some(next) = levels.last().and_then(halve) {
             levels.push(next);
         }
         Self { levels }
@@ -117,7 +117,7 @@ impl DetailMap {
     }
 }
 
-fn halved(plane: &Plane<Vec3>) -> Option<Plane<Vec3>> {
+fn halve(plane: &Plane<Vec3>) -> Option<Plane<Vec3>> {
     let Size { width, height } = plane.size();
     if width == 1 && height == 1 {
         return None;

@@ -18,10 +18,10 @@ struct Nearest {
 
 impl Nearest {
     fn of(at: Place, place: Place) -> Self {
-        Self { at, place, squared: Self::squared(at, place) }
+        Self { at, place, squared: Self::square_distance(at, place) }
     }
 
-    fn squared(at: Place, place: Place) -> i64 {
+    fn square_distance(at: Place, place: Place) -> i64 {
         let (dx, dy) =
             (i64::from(at[0]) - i64::from(place[0]), i64::from(at[1]) - i64::from(place[1]));
         if place == NONE { i64::MAX } else { dx * dx + dy * dy }
@@ -29,7 +29,7 @@ impl Nearest {
 
     /// The nearer of the two; if equal, the one that was known first.
     fn or(self, place: Place) -> Self {
-        let squared = Self::squared(self.at, place);
+        let squared = Self::square_distance(self.at, place);
         if squared < self.squared { Self { place, squared, ..self } } else { self }
     }
 }

@@ -78,7 +78,7 @@ impl<T: Join> Pyramid<T> {
         while let Some(last) = levels.last()
             && (levels.len() <= TILE_LEVEL || last.size().area() > 1)
         {
-            levels.push(joined(last, level_size(size, levels.len())));
+            levels.push(join_level(last, level_size(size, levels.len())));
         }
         levels.drain(..TILE_LEVEL.min(levels.len()));
         Self { levels, tiles, tile_columns: level_size(size, TILE_LEVEL).width as usize }
@@ -126,7 +126,7 @@ fn by_tiles<T: Join>(leaves: &Plane<T>) -> Vec<BlockFigures> {
     tiles
 }
 
-fn joined<T: Join>(below: &Plane<T>, size: Size) -> Plane<T> {
+fn join_level<T: Join>(below: &Plane<T>, size: Size) -> Plane<T> {
     let mut values = Vec::with_capacity(size.area());
     for row in 0..size.height as usize {
         for col in 0..size.width as usize {

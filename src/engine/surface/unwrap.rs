@@ -73,7 +73,7 @@ impl Unwrapping {
             Plane::from_fn(size, |x, _| x as f32 + 0.5),
             Plane::from_fn(size, |_, y| y as f32 + 0.5),
         ];
-        let rect = covered(surface);
+        let rect = covered_rect(surface);
         if settings.amount > 0.0 && !rect.is_empty() {
             let moved = solved(surface, rect, settings, go_on)?;
             for (plane, moved) in planes.iter_mut().zip(&moved) {
@@ -131,7 +131,7 @@ impl Unwrapping {
 }
 
 /// The smallest rectangle that holds the surface.
-fn covered(surface: &Surface) -> Rect {
+fn covered_rect(surface: &Surface) -> Rect {
     let coverage = surface.coverage_plane();
     let row = |y: usize| {
         let row = coverage.row(y);

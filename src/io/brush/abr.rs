@@ -156,7 +156,7 @@ impl AbrReader<'_> {
 
     fn samples(&mut self, mut block: ByteCursor, before: usize) -> Result<()> {
         while !block.rest().is_empty() && self.brushes.len() < MOST {
-            let Some(mut record) = padded_section(&mut block) else {
+            let Some(mut record) = read_padded_section(&mut block) else {
                 self.damaged += 1;
                 break;
             };
@@ -224,7 +224,7 @@ impl AbrReader<'_> {
         }
         let size = self.budget.size(self.file, width, height)?;
         spend(self.file, self.budget, &mut self.used_px, size.area() as u64)?;
-        match sampled(record, size, bits, compression) {
+        match read_sampled_tip(record, size, bits, compression) {
             Some(picture) => {
                 let name = name.filter(|n| !n.is_empty()).unwrap_or_else(|| self.next_name());
                 let tip = self.tips.add(self.file, picture, &name);
@@ -271,14 +271,19 @@ fn next_block<'a>(cursor: &mut ByteCursor<'a>) -> Option<([u8; 4], ByteCursor<'a
 }
 
 /// A section filled up to four bytes; the filling of the last may be missing.
-fn padded_section<'a>(block: &mut ByteCursor<'a>) -> Option<ByteCursor<'a>> {
+fn read_padded_section<'a>(block: &mut ByteCursor<'a>) -> Option<ByteCursor<'a>> {
     let section = block.section(false)?;
     let filling = section.rest().len().next_multiple_of(4) - section.rest().len();
     block.take(filling.min(block.rest().len()))?;
     Some(section)
 }
 
-fn sampled(record: &mut ByteCursor, size: Size, bits: u16, compression: u8) -> Option<Picture> {
+fn read_sampled_tip(
+    record: &mut ByteCursor,
+    size: Size,
+    bits: u16,
+    compression: u8,
+) -> Option<Picture> {
     let shape = ChannelLayout {
         width: size.width as usize,
         height: size.height as usize,

@@ -57,7 +57,7 @@ pub fn encode(
         let depth = pixels().map(|(x, y)| surface.depth(x, y)).collect();
         channels.push(AnyChannel::new("depth.Z", FlatSamples::F32(depth)));
     }
-    written(size, channels).map(Some).map_err(|e| Error::unsupported(file, e))
+    write_exr(size, channels).map(Some).map_err(|e| Error::unsupported(file, e))
 }
 
 fn push_picture(
@@ -87,7 +87,7 @@ fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
     free.unwrap_or(plain)
 }
 
-fn written(
+fn write_exr(
     size: Size,
     channels: Vec<AnyChannel<FlatSamples>>,
 ) -> Result<Vec<u8>, exr::error::Error> {

@@ -2,7 +2,7 @@
 //! walk does not trust the file's numbers: it finds every chunk and verifies that none is missing
 //! before any pixel is allocated.
 
-use super::guarded;
+use super::guard;
 use crate::{Error, Result};
 use exr::block::{
     UncompressedBlock,
@@ -209,7 +209,7 @@ pub fn decode(
             .par_iter()
             .map(|chunk| {
                 let chunk = crate_chunk(chunk, bytes.get(chunk.bytes.clone()).unwrap_or_default());
-                guarded(file, "pixel data", || {
+                guard(file, "pixel data", || {
                     UncompressedBlock::decompress_chunk(chunk, meta, false)
                 })
             })

@@ -9,7 +9,7 @@ use std::{collections::HashSet, path::Path};
 /// Parses a whole text. The sentence of a failure names line and column, or the path of a key given
 /// twice.
 pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
-    let (text, value) = parsed(file, bytes, budget)?;
+    let (text, value) = parse_text(file, bytes, budget)?;
     if let Some(path) = first_key_given_twice(text) {
         return Err(Error::invalid(file, path, "is given twice"));
     }
@@ -18,10 +18,10 @@ pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
 
 /// Parses a text of other programs: of a key given twice the last counts, as it does there.
 pub fn parse_foreign(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
-    parsed(file, bytes, budget).map(|(_, value)| value)
+    parse_text(file, bytes, budget).map(|(_, value)| value)
 }
 
-fn parsed<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<(&'a str, Value)> {
+fn parse_text<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<(&'a str, Value)> {
     if bytes.len() as u64 > budget.json_bytes {
         let reason =
             format!("the text has {} bytes; it may have {}", bytes.len(), budget.json_bytes);

@@ -34,7 +34,9 @@ pub fn choose(
 ) -> Result<ChannelChoice> {
     let alpha = coverage(exr);
     let (channels, name) = match (wanted, role) {
-        (Some(wanted), _) => named(exr, wanted, role).ok_or_else(|| missing(file, exr, wanted))?,
+        (Some(wanted), _) => {
+            find_named(exr, wanted, role).ok_or_else(|| missing(file, exr, wanted))?
+        }
         (None, MapRole::Normals) => {
             let rank = |pass: &ExrPass| normal_rank(pass).filter(|_| can_be_normals(exr, pass));
             best(exr, rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?
@@ -184,7 +186,7 @@ fn coverage(exr: &ExrFile) -> Option<usize> {
 }
 
 /// A layer or a channel by name, letter case aside.
-fn named(exr: &ExrFile, wanted: &str, role: MapRole) -> Option<(Vec<usize>, String)> {
+fn find_named(exr: &ExrFile, wanted: &str, role: MapRole) -> Option<(Vec<usize>, String)> {
     if let Some(channel) = exr.channels().iter().position(|c| c.name.eq_ignore_ascii_case(wanted))
         && role != MapRole::Normals
     {

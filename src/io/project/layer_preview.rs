@@ -32,7 +32,7 @@ pub fn render(
                 render_preview(file, &seen, layer, kind, progress)?
             }
             ItemContent::Composed { document, layers } => {
-                flattened(document, layers, item.whole_rim, progress)
+                flatten_preview(document, layers, item.whole_rim, progress)
                     .map(|tiles| pixels::encode(file, &tiles, None))
                     .transpose()?
             }
@@ -122,7 +122,7 @@ fn render_preview(
             layer.mask = layer.mask.take().filter(|_| kind.masked);
         });
         let tiles =
-            plain.and_then(|plain| flattened(&plain, &[layer.id], kind.whole_rim, progress));
+            plain.and_then(|plain| flatten_preview(&plain, &[layer.id], kind.whole_rim, progress));
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
@@ -136,7 +136,7 @@ fn render_preview(
 }
 
 /// Some layers composed with each other.
-fn flattened(
+fn flatten_preview(
     document: &Document,
     layers: &[LayerId],
     whole_rim: bool,

@@ -45,7 +45,7 @@ fn write_item(
     let visibility = if item.visible { "visible" } else { "hidden" };
     let mut common = format!(
         "name=\"{}\" opacity=\"{}\" visibility=\"{visibility}\" composite-op=\"{op}\"",
-        escaped(&item.name),
+        escape(&item.name),
         item.opacity
     );
     if item.lock == LayerLock::All {
@@ -80,7 +80,7 @@ fn kind(content: &Content) -> &'static str {
 }
 
 /// For an attribute; what XML cannot hold becomes U+FFFD.
-fn escaped(text: &str) -> String {
+fn escape(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {
@@ -103,6 +103,6 @@ mod tests {
     #[test]
     fn names_that_xml_cannot_hold_are_escaped() {
         let name = "a\"<b>&\n\u{1}ü";
-        assert_eq!(escaped(name), "a&quot;&lt;b&gt;&amp;&#10;\u{fffd}ü");
+        assert_eq!(escape(name), "a&quot;&lt;b&gt;&amp;&#10;\u{fffd}ü");
     }
 }

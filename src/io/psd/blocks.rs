@@ -66,7 +66,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
             record.note_conversion("its smart object became pixels")
         }
         b"lfx2" | b"lmfx" | b"lrFX" => effects(record, key, data),
-        b"vstk" => stroked(record, &mut data),
+        b"vstk" => read_stroke(record, &mut data),
         &adjustments::NEWER => {
             // Only brightness and contrast have newer numbers.
             let is_other = record
@@ -120,7 +120,7 @@ fn effects(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
 }
 
 /// The line around a shape, and whether it is filled.
-fn stroked(record: &mut LayerRecord, data: &mut ByteCursor) {
+fn read_stroke(record: &mut LayerRecord, data: &mut ByteCursor) {
     record.is_shape = true;
     let Some(stroke) = descriptor::read(data) else { return };
     record.stroked = stroke.is_set("strokeEnabled");

@@ -21,13 +21,13 @@ pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource
             }
             own_pixels(record)
         }
-        Some(fill) if record.rgba.is_empty() => drawn(record, fill, size, patterns),
-        Some(fill) => shown(record, fill, size),
+        Some(fill) if record.rgba.is_empty() => draw_fill(record, fill, size, patterns),
+        Some(fill) => show_fill(record, fill, size),
     }
 }
 
 /// A fill whose pixels the file does not hold.
-fn drawn(
+fn draw_fill(
     record: &mut LayerRecord,
     fill: LayerFill,
     size: Size,
@@ -65,7 +65,7 @@ fn drawn(
 }
 
 /// A fill and its pixels, which show its shape: if their colors differ, the pixels win.
-fn shown(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
+fn show_fill(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     let is_plain = !record.stroked && !record.unfilled;
     let live = match fill {
         LayerFill::Solid(color) if is_plain && is_of(record, |_| Some(color)) => {

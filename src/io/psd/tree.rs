@@ -71,7 +71,7 @@ pub(super) fn build_document(
         parsed.merged.as_mut().map(|merged| (std::mem::take(&mut merged.selections), merged.inks));
     let kept = kept.unwrap_or_default();
     if parsed.records.is_empty() {
-        flattened(parsed);
+        use_merged(parsed);
     }
     // One level is kept for the group that the layers may be hidden in.
     let deepest = budget.group_depth.saturating_sub(1);
@@ -136,7 +136,7 @@ fn color_notes(parsed: &ParsedPsd) -> Option<String> {
 }
 
 /// The picture of a file without layers becomes one.
-fn flattened(parsed: &mut ParsedPsd) {
+fn use_merged(parsed: &mut ParsedPsd) {
     let rect = parsed.header.size.rect();
     let StraightPixels { rgba, rgba16 } =
         parsed.merged.take().map(|merged| merged.pixels).unwrap_or_default();

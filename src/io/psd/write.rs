@@ -41,7 +41,7 @@ pub fn encode_file(
         |kept: &NamedSelection| kept.selection.coverage.to_plane(size.rect()).into_values();
     let planes: Vec<Vec<u8>> =
         (0..4).map(|c| plane(merged, c)).chain(selections.iter().map(coverage)).collect();
-    packed(&mut out, &planes, size.width as usize);
+    pack_planes(&mut out, &planes, size.width as usize);
     out
 }
 
@@ -140,7 +140,7 @@ fn layer_info(records: &[LayerRecord]) -> Vec<u8> {
 fn channels(record: &LayerRecord) -> Vec<(i16, Vec<u8>)> {
     let one = |values: Vec<u8>, width: usize| {
         let mut out = Vec::new();
-        packed(&mut out, &[values], width);
+        pack_planes(&mut out, &[values], width);
         out
     };
     let width = record.rect.width();
@@ -160,7 +160,7 @@ fn plane(rgba: &[u8], channel: usize) -> Vec<u8> {
 
 /// Planes in run lengths: the lengths of all rows, then the rows. An empty plane is stored
 /// uncompressed.
-fn packed(out: &mut Vec<u8>, planes: &[Vec<u8>], width: usize) {
+fn pack_planes(out: &mut Vec<u8>, planes: &[Vec<u8>], width: usize) {
     if planes.iter().all(Vec::is_empty) || width == 0 {
         return short(out, 0);
     }

@@ -202,14 +202,14 @@ impl RecipeValue for GradientStop {
 /// The placement alone; a document omits one that covers the canvas.
 impl RecipeValue for Placement {
     fn to_json(&self) -> Value {
-        let mut out = write_placement_beside(self, &unscaled(self.center));
+        let mut out = write_placement_beside(self, &place_unscaled(self.center));
         out.set("center", object::point(self.center));
         out.into_value()
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let center = node.fields()?.required("center")?.point()?;
-        placement(node, unscaled(center))
+        placement(node, place_unscaled(center))
     }
 }
 
@@ -252,7 +252,7 @@ fn placement(node: &JsonNode, base: Placement) -> Result<Placement> {
     Ok(placement)
 }
 
-fn unscaled(center: Vec2) -> Placement {
+fn place_unscaled(center: Vec2) -> Placement {
     Placement { center, scale: 1.0, rotation: 0.0 }
 }
 

@@ -79,7 +79,7 @@ impl LiveLook {
     /// All of them, in the order of the list.
     pub fn all() -> impl Iterator<Item = LiveLook> {
         LOOKS.iter().filter_map(|(key, text)| {
-            let file = parsed(key, text).ok()?;
+            let file = parse_look(key, text).ok()?;
             let word = |field: &str| file.get(field).and_then(Value::as_str).unwrap_or(key);
             Some(LiveLook { key, name: word("name").into(), about: word("about").into() })
         })
@@ -112,7 +112,7 @@ impl LiveLook {
     /// Its layers, at the lengths of a canvas.
     fn group(&self, canvas: Size, is_painted: bool) -> Result<Layer> {
         let (_, text) = LOOKS.iter().find(|(key, _)| *key == self.key).copied().unwrap_or_default();
-        let file = parsed(self.key, text)?;
+        let file = parse_look(self.key, text)?;
         let painted = file.get("painted").filter(|_| is_painted);
         let layers = painted.or(file.get("layers")).cloned().unwrap_or_default();
         let layers = live_layers(&path(self.key), layers, canvas)?;
@@ -152,7 +152,7 @@ fn path(key: &str) -> PathBuf {
     format!("brushes/looks/{key}.json").into()
 }
 
-fn parsed(key: &str, text: &str) -> Result<Value> {
+fn parse_look(key: &str, text: &str) -> Result<Value> {
     parsed_file(&path(key), text)
 }
 

@@ -38,7 +38,7 @@ impl RecipeValue for DerivedMask {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
-        let mask = derived(&mut fields)?.ok_or_else(|| node.refusal("has no “kind”"))?;
+        let mask = read_derived(&mut fields)?.ok_or_else(|| node.refusal("has no “kind”"))?;
         fields.finish()?;
         Ok(mask)
     }
@@ -49,7 +49,7 @@ impl LayerReader<'_> {
         let mut fields = node.fields()?;
         let (invert, disabled) =
             (fields.boolean("invert", false)?, fields.boolean("disabled", false)?);
-        let kind = match derived(&mut fields)? {
+        let kind = match read_derived(&mut fields)? {
             Some(derived) => derived.into(),
             None => {
                 let (file, coverage) = self.pictures.coverage(
@@ -66,7 +66,7 @@ impl LayerReader<'_> {
 }
 
 /// The mask that the field `kind` names; none without one.
-fn derived(fields: &mut Fields) -> Result<Option<DerivedMask>> {
+fn read_derived(fields: &mut Fields) -> Result<Option<DerivedMask>> {
     let Some(kind) = fields.get("kind") else { return Ok(None) };
     let has_point = fields.get("at").is_some();
     Ok(Some(match kind.one_of(&DERIVED)? {

@@ -121,7 +121,7 @@ impl PictureCache {
         let read = detail::read(&source.files.path(file), &bytes, convention, source.budget);
         let normals = read.map_err(|e| name.name_in_error(e))?;
         self.spend(source, normals.size(), normals.size().area() * 2 * size_of::<Vec3>())?;
-        let map = Arc::new(DetailMap::new(blurred(normals, blur_px)));
+        let map = Arc::new(DetailMap::new(blur_normals(normals, blur_px)));
         let (file, convention) = (file.to_owned(), convention.clone());
         self.details.push(CachedDetail { file, convention, blur_px, map: map.clone() });
         Ok(map)
@@ -257,7 +257,7 @@ impl PictureCache {
 }
 
 /// Normals averaged with their neighbors; their lengths do not matter.
-fn blurred(normals: Plane<Vec3>, blur_px: f32) -> Plane<Vec3> {
+fn blur_normals(normals: Plane<Vec3>, blur_px: f32) -> Plane<Vec3> {
     let pixels: Vec<[f32; 3]> = normals.values().iter().map(|n| n.to_array()).collect();
     let blurred = blur::gaussian_pixels(normals.size(), &pixels, blur_px);
     Plane::from_values(normals.size(), blurred.into_iter().map(Vec3::from).collect())

@@ -78,12 +78,12 @@ fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<LostSession> {
         let _ = handle.take(1 << 16).read_to_end(&mut start);
     }
     let head = LastState::of(&start).head.unwrap_or_default();
-    let (title, file) = named(&head);
+    let (title, file) = name_and_file(&head);
     Some(LostSession { fs: fs.clone(), path, title, file, has_failed, _lock: lock })
 }
 
 /// The title and the file of a drawing.
-fn named(head: &Value) -> (String, Option<PathBuf>) {
+fn name_and_file(head: &Value) -> (String, Option<PathBuf>) {
     let title = head["title"].as_str().unwrap_or_default().chars().take(200).collect();
     (title, head["file"].as_str().map(PathBuf::from))
 }
@@ -101,7 +101,7 @@ pub fn read(
     let version = version
         .ok_or_else(|| Error::decode(file, "it holds no complete version of the drawing"))?;
     let Some(document) = version.document.reshaped_with_progress(progress) else { return Ok(None) };
-    let (title, _) = named(&last.head.unwrap_or_default());
+    let (title, _) = name_and_file(&last.head.unwrap_or_default());
     Ok(Some(RecoveredDocument {
         version: DrawingVersion { document, ..version },
         title,
@@ -142,7 +142,7 @@ impl LostSession {
         let end = self.fs.open(&self.path).ok().and_then(|mut handle| log::end(&mut handle));
         let Some((last, Some(saved))) = end else { return false };
         let Ok(saved) = serde_json::from_slice::<Value>(&saved) else { return false };
-        (self.title, self.file) = named(&saved);
+        (self.title, self.file) = name_and_file(&saved);
         let Some(file) = &self.file else { return last == RecordKind::Saved };
         let number = |i: usize| saved["stamp"][i].as_u64();
         let held = number(0).zip(number(1).and_then(|crc| u32::try_from(crc).ok()));

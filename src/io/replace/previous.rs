@@ -21,7 +21,7 @@ impl Previous {
         name.push("~");
         match Self::keep_as(fs, part, target, name.into()) {
             Err(e) if e.kind() == ErrorKind::InvalidFilename => {
-                Self::keep_as(fs, part, target, shortened(target))
+                Self::keep_as(fs, part, target, shorten(target))
             }
             kept => kept,
         }
@@ -95,7 +95,7 @@ fn take(fs: &dyn Fs, part: &PartFile, file: &Path, spare: &Path) -> io::Result<(
 
 /// A name for the previous version that is no longer than the file's own, used if `name~` does not
 /// fit. Its checksum distinguishes files whose names begin alike.
-fn shortened(target: &Path) -> PathBuf {
+fn shorten(target: &Path) -> PathBuf {
     let name = target.file_name().unwrap_or_default();
     let extension = format!("-{:08x}~", crc32fast::hash(name.as_encoded_bytes()));
     let text = name.to_string_lossy();
@@ -109,8 +109,7 @@ mod tests {
 
     #[test]
     fn a_shortened_name_fits_and_tells_files_apart() {
-        let of =
-            |name: &str| shortened(&Path::new("/d").join(name)).file_name().unwrap().to_owned();
+        let of = |name: &str| shorten(&Path::new("/d").join(name)).file_name().unwrap().to_owned();
         let (a, b) = (format!("{}a.ora", "ü".repeat(125)), format!("{}b.ora", "ü".repeat(125)));
         assert_eq!(a.len(), 255);
         assert!(of(&a).len() <= 255 && of(&a).to_string_lossy().ends_with('~'));

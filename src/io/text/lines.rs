@@ -243,7 +243,7 @@ pub(super) fn carets(text: &Text, lines: &[Line]) -> Vec<Caret> {
         let string = line.string();
         let ends = string.char_indices().map(|(byte, _)| byte).chain([string.len()]);
         for byte in ends {
-            let along = interpolated(&measured, byte);
+            let along = interpolate(&measured, byte);
             let at =
                 if text.vertical { line.at + vec2(0.0, along) } else { line.at + vec2(along, 0.0) };
             let height = text.style_at(line.start + byte).size;
@@ -254,7 +254,7 @@ pub(super) fn carets(text: &Text, lines: &[Line]) -> Vec<Caret> {
 }
 
 /// Where a byte lies between the letters that were measured: within a ligature at its share.
-fn interpolated(measured: &[(usize, f32)], byte: usize) -> f32 {
+fn interpolate(measured: &[(usize, f32)], byte: usize) -> f32 {
     let after = measured.iter().rposition(|(at, _)| *at <= byte).unwrap_or(0);
     let (from, x) = measured[after];
     match measured[after..].iter().find(|(at, _)| *at > byte) {

@@ -66,7 +66,7 @@ fn push_run(out: &mut String, run: &TextRun) {
     let family = if family.is_empty() {
         "sans-serif".to_owned()
     } else {
-        format!("'{}', sans-serif", escaped(&family.replace('\'', "")))
+        format!("'{}', sans-serif", escape(&family.replace('\'', "")))
     };
     let slant = if *italic { r#" font-style="italic""# } else { "" };
     let kern = if *kerning { "" } else { r#" font-kerning="none""# };
@@ -90,7 +90,7 @@ stroke-linejoin="round" paint-order="stroke""#,
             2.0 * run.style.outline
         );
     }
-    let _ = write!(out, ">{}</tspan>", escaped(&run.string));
+    let _ = write!(out, ">{}</tspan>", escape(&run.string));
 }
 
 fn hex(Color { r, g, b, .. }: Color) -> String {
@@ -98,7 +98,7 @@ fn hex(Color { r, g, b, .. }: Color) -> String {
 }
 
 /// Text within XML; what XML cannot hold is left out.
-fn escaped(text: &str) -> String {
+fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -52,7 +52,7 @@ pub fn run(args: &BrushArgs) -> Result<()> {
         let mut made = Vec::new();
         for (i, (preset, notes)) in brushes.into_iter().enumerate() {
             notes.iter().for_each(|note| messages::print_line(&format!("{}: {note}", preset.name)));
-            let to = if count == 1 { args.to.clone() } else { numbered(&args.to, i + 1) };
+            let to = if count == 1 { args.to.clone() } else { numbered_path(&args.to, i + 1) };
             made.push(ConvertedBrush::of(&to, &preset, args.side, &terms)?);
         }
         // Either all may be written, or none is.
@@ -61,7 +61,7 @@ pub fn run(args: &BrushArgs) -> Result<()> {
 }
 
 /// `set.json` as `set-3.json`.
-fn numbered(file: &Path, number: usize) -> PathBuf {
+fn numbered_path(file: &Path, number: usize) -> PathBuf {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     file.with_file_name(format!("{stem}-{number}.{extension}"))

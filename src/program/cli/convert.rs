@@ -109,7 +109,7 @@ fn picture(
     format: ExportFormat,
     terms: Terms,
 ) -> Result<()> {
-    let crop = args.crop_to_surface.then(|| covered(document)).flatten();
+    let crop = args.crop_to_surface.then(|| covered_rect(document)).flatten();
     let options = ExportOptions {
         background: args.background,
         quality: args.quality,
@@ -166,7 +166,7 @@ fn each_layer(
 }
 
 /// The smallest rectangle that holds the surface; `None` if there is none.
-fn covered(document: &Document) -> Option<Rect> {
+fn covered_rect(document: &Document) -> Option<Rect> {
     let coverage = document.surface.as_deref()?.coverage_plane();
     let mut rect = Rect::EMPTY;
     for y in 0..document.size.height as usize {

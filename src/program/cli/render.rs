@@ -86,10 +86,11 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             loaded(args.document.as_deref(), &args.onto, &args.limits)?;
         refuse_incomplete(named_file, &document)?;
         let target = OutputFile::new(&args.output, args.force.export(reads))?;
-        let document = dressed(args, document)?;
+        let document = apply_arguments(args, document)?;
         let document = scaled(named_file, args.scale, &args.limits, document)?;
         args.limits.room_to_paint(named_file, &document)?;
-        let alone = args.layer.as_ref().map(|name| named(args, &document, name)).transpose()?;
+        let alone =
+            args.layer.as_ref().map(|name| find_layer(args, &document, name)).transpose()?;
         let shown = alone.and_then(|layer| document.with_only(&[layer])).unwrap_or(document);
         let options = ExportOptions {
             background: args.background,
@@ -114,7 +115,7 @@ impl RenderArgs {
 }
 
 /// In the look and the materials that were asked for.
-fn dressed(args: &RenderArgs, document: Document) -> Result<Document> {
+fn apply_arguments(args: &RenderArgs, document: Document) -> Result<Document> {
     if args.look.is_none() && args.material.is_empty() {
         return Ok(document);
     }
@@ -129,7 +130,11 @@ fn dressed(args: &RenderArgs, document: Document) -> Result<Document> {
     args.look.as_ref().map_or(Ok(document.clone()), |look| look.on(&document))
 }
 
-fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {
+fn find_layer(
+    args: &RenderArgs,
+    document: &Document,
+    name: &str,
+) -> Result<crate::document::LayerId> {
     document.layer_named(name).map(|layer| layer.id).ok_or_else(|| {
         let names: Vec<_> =
             document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();

@@ -100,7 +100,7 @@ fn rim(text: &str) -> std::result::Result<f32, String> {
 
 pub fn run(args: &ShapeArgs) -> Result<()> {
     args.limits.install(|| {
-        let (document, note) = shaped(args)?;
+        let (document, note) = shape_drawing(args)?;
         let nothing =
             || Error::unsupported(&args.drawing, "nothing in it is opaque enough to have a shape");
         let surface = document.surface.as_ref().ok_or_else(nothing)?;
@@ -152,7 +152,7 @@ impl InkFiles {
 }
 
 /// The drawing as a document with parts, and what is told about colors without one.
-fn shaped(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
+fn shape_drawing(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     let budget = args.limits.budget();
     let inflation = Inflation {
         puff: args.puff.unwrap_or(args.preset.puff),

@@ -28,7 +28,7 @@ pub struct ViewArgs {
     #[arg(value_name = "FILES")]
     files: Vec<PathBuf>,
     /// What to show; “sheet” shows all views side by side
-    #[arg(long, value_name = "VIEW", default_value = "sheet", value_parser = shown())]
+    #[arg(long, value_name = "VIEW", default_value = "sheet", value_parser = parse_show())]
     show: ShowArg,
     /// The picture to write; a folder gets one picture for each view
     #[arg(short, long, value_name = "FILE")]
@@ -72,7 +72,7 @@ enum ShowArg {
     Sheet,
 }
 
-fn shown() -> impl TypedValueParser<Value = ShowArg> {
+fn parse_show() -> impl TypedValueParser<Value = ShowArg> {
     let names = SurfaceView::ALL
         .iter()
         .map(|(_, name)| PossibleValue::new(*name).aliases(former_name(name)))
@@ -95,9 +95,10 @@ pub fn run(args: &ViewArgs) -> Result<()> {
             ShowArg::One(view) if view.is_of_nothing() => {
                 (Document::empty(Size::new(1, 1)), Vec::new())
             }
-            _ => opened(args)?,
+            _ => open(args)?,
         };
-        let layer = args.layer.as_deref().map(|name| named(args, &document, name)).transpose()?;
+        let layer =
+            args.layer.as_deref().map(|name| find_layer(args, &document, name)).transpose()?;
         let options = ViewOptions { curvature_scale_px: args.curvature_scale, blur_px: args.blur };
         let draw = |view: SurfaceView| {
             view::draw(&document, layer, view, &options).map_err(|why| {
@@ -187,7 +188,7 @@ fn write(target: &OutputFile, picture: &Picture, background: Option<Color>) -> R
 }
 
 /// The document, and every file that was read for it.
-fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
+fn open(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
     let budget = args.limits.budget();
     let loose = args.normal.is_some() || args.depth.is_some() || args.mask.is_some();
     match args.files.as_slice() {
@@ -279,7 +280,7 @@ fn source(parts: [Option<PathBuf>; 3], files: &mut UserFiles) -> SurfaceSource {
     }
 }
 
-fn named<'a>(args: &ViewArgs, document: &'a Document, name: &str) -> Result<&'a Layer> {
+fn find_layer<'a>(args: &ViewArgs, document: &'a Document, name: &str) -> Result<&'a Layer> {
     document.layer_named(name).map(|layer| &**layer).ok_or_else(|| {
         let names: Vec<_> =
             document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();

@@ -46,14 +46,17 @@ fn ball_document(sphere: &LitSphere) -> Option<Document> {
     let bare = read_value(&recipe, source).ok()?;
     let mut paint = Layer::new(
         "Ball",
-        Content::Pixels(PixelLayer { tiles: painted(sphere, bare.size), ..PixelLayer::default() }),
+        Content::Pixels(PixelLayer {
+            tiles: paint_ball_tiles(sphere, bare.size),
+            ..PixelLayer::default()
+        }),
     );
     paint.clip_to_surface = false;
     Some(bare.with_top(paint))
 }
 
 /// The paint of a sphere; around it the paint of its rim goes on.
-fn painted(sphere: &LitSphere, size: Size) -> TileGrid {
+fn paint_ball_tiles(sphere: &LitSphere, size: Size) -> TileGrid {
     let (light, side) = (sphere.light(), size.width as usize);
     let byte = |light: f32| srgb::quantize(srgb::encode(light.max(0.0)));
     let pixel = |i: usize| {

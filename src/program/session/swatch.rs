@@ -47,7 +47,8 @@ pub fn render_swatch_on(preset: &BrushPreset, surface: Arc<Surface>) -> Option<V
     // An eraser is shown by what it removes.
     let under = if brush.erases { preset.color } else { Color::TRANSPARENT };
     let brush = Brush { erases: false, ..brush };
-    let stroke = Arc::new(Stroke::new(brush, *operator, shown(preset, background), wave(size)));
+    let stroke =
+        Arc::new(Stroke::new(brush, *operator, shown_color(preset, background), wave(size)));
     let strokes = Content::Strokes(Live::new(StrokeList { strokes: vec![stroke] }));
     let layers = [
         Layer::new("ground", Content::Gradient(Live::new(clay(background, size)))),
@@ -89,7 +90,7 @@ fn clay(background: Color, size: Size) -> Gradient {
 const GROOVES: f32 = 0.055;
 
 /// An eraser shows the background again.
-fn shown(preset: &BrushPreset, background: Color) -> Color {
+fn shown_color(preset: &BrushPreset, background: Color) -> Color {
     if preset.brush.erases { background } else { preset.color }
 }
 

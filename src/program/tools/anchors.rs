@@ -117,7 +117,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
 fn add(document: Document, layer: &Layer, mut image: PlacedImage, pen: PenSample) -> GestureStart {
     let surface = document.surface.clone();
     let at = pen.place();
-    let source = shown_at(&image, surface.as_deref(), &document, at);
+    let source = shown_place(&image, surface.as_deref(), &document, at);
     image.bend.anchors.push(Anchor { at, source });
     let index = image.bend.anchors.len() - 1;
     let (before, how, from) = (image.clone(), AnchorDrag::Carry, at);
@@ -147,7 +147,12 @@ fn remove(document: &Document, layer: &Layer, image: &PlacedImage, index: usize)
 }
 
 /// D(at): which point of the image is shown there.
-fn shown_at(image: &PlacedImage, surface: Option<&Surface>, document: &Document, at: Vec2) -> Vec2 {
+fn shown_place(
+    image: &PlacedImage,
+    surface: Option<&Surface>,
+    document: &Document,
+    at: Vec2,
+) -> Vec2 {
     let deformation = Deformation::new(surface, document.size, &image.bend);
     let center = at.floor();
     deformation.at(center.x as i32, center.y as i32) + (at - center - 0.5)
@@ -191,7 +196,7 @@ impl Gesture for AnchorGesture {
                 let surface: Option<Arc<Surface>> = self.document.surface.clone();
                 Anchor {
                     at,
-                    source: shown_at(&self.before, surface.as_deref(), &self.document, at),
+                    source: shown_place(&self.before, surface.as_deref(), &self.document, at),
                 }
             }
         };

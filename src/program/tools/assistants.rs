@@ -34,7 +34,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let Some((index, _)) = found else { return (None, Outcome::Idle) };
         let mut left = Vec::clone(&document.assistants);
         left.remove(index);
-        return (None, committed(document, "Remove assistant", left));
+        return (None, commit(document, "Remove assistant", left));
     }
     if let Some((index, handle)) = found {
         let moving = Moving { index, handle: Some(handle), from: pen.place(), is_new: false };
@@ -74,7 +74,7 @@ fn drag_out(kind: AssistantKind, from: Vec2, to: Vec2) -> Assistant {
     Assistant { kind, points }
 }
 
-fn committed(document: &Document, label: &str, assistants: Vec<Assistant>) -> Outcome {
+fn commit(document: &Document, label: &str, assistants: Vec<Assistant>) -> Outcome {
     let document = Document { assistants: Arc::new(assistants), ..document.clone() };
     Outcome::Commit { label: label.into(), document, select: None }
 }
@@ -143,7 +143,7 @@ impl Gesture for AssistantGesture {
             return Outcome::Cancel;
         }
         let label = if self.moving.is_new { "Add assistant" } else { "Move assistant" };
-        committed(&self.document, label, self.all.clone())
+        commit(&self.document, label, self.all.clone())
     }
 
     fn snap_lines(&self) -> SnapLines {

@@ -25,12 +25,12 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     (
         None,
         why.map(|why| Outcome::Refused(why.into()))
-            .or_else(|| filled(context, pen))
+            .or_else(|| fill(context, pen))
             .unwrap_or(Outcome::Idle),
     )
 }
 
-fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
+fn fill(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
     let (document, id) = fillable(context)?;
     let layer = document.layer(id)?;
     let Content::Pixels(pixels) = &layer.content else { return None };

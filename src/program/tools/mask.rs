@@ -31,7 +31,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         .map_or(context.document.surface.clone(), |scene| scene.surface);
     let active_selection = context.document.active_selection.clone();
     let sees = Document { surface, active_selection, ..Document::empty(context.document.size) };
-    painted(context, (pen, purpose), MaskTarget::Layer(layer.id), coverage.clone(), sees)
+    paint(context, (pen, purpose), MaskTarget::Layer(layer.id), coverage.clone(), sees)
 }
 
 /// The pen comes down on the selection itself: light colors select, dark ones and the eraser
@@ -47,11 +47,11 @@ pub fn press_on_selection(
         None => Plane::filled(size, 255),
     };
     let sees = Document { surface: context.document.surface.clone(), ..Document::empty(size) };
-    painted(context, (pen, purpose), MaskTarget::Selection, Arc::new(mask), sees)
+    paint(context, (pen, purpose), MaskTarget::Selection, Arc::new(mask), sees)
 }
 
 /// Begins a stroke on a sheet of a mask's grays; `sees`: the document around the sheet.
-fn painted(
+fn paint(
     context: &ToolContext,
     (pen, purpose): (PenSample, StrokePurpose),
     target: MaskTarget,

@@ -115,7 +115,7 @@ fn step(document: Document) -> Outcome {
 }
 
 /// A selection made with settings that the pen changed: a preview, or a finished step.
-fn tuned(document: Document, select: SelectSettings, is_done: bool) -> Outcome {
+fn adjust(document: Document, select: SelectSettings, is_done: bool) -> Outcome {
     let outcome = if is_done { step(document) } else { Outcome::Preview(document) };
     outcome.with_settings(move |tools| tools.select = select)
 }

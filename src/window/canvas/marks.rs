@@ -79,7 +79,7 @@ pub fn draw(
                 &to_screen,
             );
         }
-        ToolKind::Eyedropper => picked(painter, session, to_screen(at)),
+        ToolKind::Eyedropper => draw_picked(painter, session, to_screen(at)),
         _ => {}
     }
 }
@@ -112,7 +112,7 @@ pub fn draw_unwrapped(
                 &to_screen,
             );
         }
-        ToolKind::Eyedropper => picked(painter, session, to_screen(at)),
+        ToolKind::Eyedropper => draw_picked(painter, session, to_screen(at)),
         _ => {}
     }
 }
@@ -138,7 +138,7 @@ fn footprint(
 }
 
 /// The current color, around the point where another is picked.
-fn picked(painter: &Painter, session: &Session, at: Pos2) {
+fn draw_picked(painter: &Painter, session: &Session, at: Pos2) {
     painter.circle_stroke(at, 14.0, Stroke::new(4.0, color32(session.tools.color)));
     painter.circle_stroke(at, 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
 }
@@ -194,7 +194,7 @@ fn draw_selected_strokes(painter: &Painter, session: &Session, to_screen: &impl 
         return selected.into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
     }
     let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
-    outlined(painter, selected, &scene, to_screen);
+    draw_outlines(painter, selected, &scene, to_screen);
 }
 
 /// Dark beneath light, so that it is visible on any picture.
@@ -210,7 +210,7 @@ fn line_through(painter: &Painter, stroke: &PaintStroke, to_screen: &impl Fn(Vec
 }
 
 /// The outlines of strokes, kept while they do not change.
-fn outlined(
+fn draw_outlines(
     painter: &Painter,
     strokes: Vec<&Arc<PaintStroke>>,
     scene: &Scene,

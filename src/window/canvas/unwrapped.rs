@@ -67,7 +67,7 @@ impl UnwrappedSheet {
         let due: Vec<TileAt> =
             self.feeds.iter().filter(|(_, feeds)| is_due(feeds)).map(|(at, _)| *at).collect();
         let pulled: Vec<_> =
-            due.into_par_iter().map(|at| (at, pulled(layout, picture, at))).collect();
+            due.into_par_iter().map(|at| (at, pull_tile(layout, picture, at))).collect();
         self.shown.put(pulled);
         self.shown.send(ctx, false)
     }
@@ -147,7 +147,7 @@ fn feeding(layout: &PlaneLayout, at: TileAt) -> Vec<TileAt> {
 }
 
 /// A tile of the sheet; premultiplied, interpolated between four pixels of the picture.
-fn pulled(layout: &PlaneLayout, picture: &TileGrid, at: TileAt) -> Option<Arc<Tile>> {
+fn pull_tile(layout: &PlaneLayout, picture: &TileGrid, at: TileAt) -> Option<Arc<Tile>> {
     let rect = at.rect();
     let mut pixels = vec![0u8; TILE * TILE * 4];
     for (i, pixel) in pixels.chunks_exact_mut(4).enumerate() {

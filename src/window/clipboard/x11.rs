@@ -53,7 +53,7 @@ pub fn picture(most_bytes: u64) -> Result<Option<PictureFile>> {
     Ok(None)
 }
 
-fn failed(error: impl ToString) -> Error {
+fn failure(error: impl ToString) -> Error {
     Error::unsupported("clipboard", error)
 }
 
@@ -75,9 +75,9 @@ impl SelectionReader {
             .setup()
             .roots
             .get(screen)
-            .ok_or_else(|| failed("the display has no screen"))?
+            .ok_or_else(|| failure("the display has no screen"))?
             .root;
-        let window = connection.generate_id().map_err(failed)?;
+        let window = connection.generate_id().map_err(failure)?;
         let kind = WindowClass::INPUT_ONLY;
         let made = connection.create_window(
             COPY_DEPTH_FROM_PARENT,
@@ -92,9 +92,9 @@ impl SelectionReader {
             COPY_FROM_PARENT,
             &CreateWindowAux::new(),
         );
-        made.map_err(failed)?;
+        made.map_err(failure)?;
         let hears = ChangeWindowAttributesAux::new().event_mask(EventMask::PROPERTY_CHANGE);
-        connection.change_window_attributes(window, &hears).map_err(failed)?;
+        connection.change_window_attributes(window, &hears).map_err(failure)?;
         let mut reader =
             Self { connection, window, selection: 0, property: 0, in_pieces: 0, most_bytes };
         reader.selection = reader.atom("CLIPBOARD")?;
@@ -104,8 +104,8 @@ impl SelectionReader {
     }
 
     fn atom(&self, name: &str) -> Result<Atom> {
-        let asked = self.connection.intern_atom(false, name.as_bytes()).map_err(failed)?;
-        Ok(asked.reply().map_err(failed)?.atom)
+        let asked = self.connection.intern_atom(false, name.as_bytes()).map_err(failure)?;
+        Ok(asked.reply().map_err(failure)?.atom)
     }
 
     /// The content as a target; `None` if there is none.
@@ -118,7 +118,7 @@ impl SelectionReader {
             property,
             CURRENT_TIME,
         );
-        asked.map_err(failed)?;
+        asked.map_err(failure)?;
         let answer = self.awaited(|event| match event {
             Event::SelectionNotify(answer)
                 if answer.requestor == window && answer.target == target =>
@@ -156,7 +156,7 @@ impl SelectionReader {
     fn take(&self) -> Result<GetPropertyReply> {
         let asked =
             self.connection.get_property(false, self.window, self.property, AtomEnum::ANY, 0, 0);
-        self.check(asked.map_err(failed)?.reply().map_err(failed)?.bytes_after.into())?;
+        self.check(asked.map_err(failure)?.reply().map_err(failure)?.bytes_after.into())?;
         let asked = self.connection.get_property(
             true,
             self.window,
@@ -165,13 +165,13 @@ impl SelectionReader {
             0,
             u32::MAX / 4,
         );
-        asked.map_err(failed)?.reply().map_err(failed)
+        asked.map_err(failure)?.reply().map_err(failure)
     }
 
     fn check(&self, bytes: u64) -> Result<()> {
         let most = self.most_bytes;
         if bytes > most {
-            Err(failed(format!("its picture has more than {most} bytes")))
+            Err(failure(format!("its picture has more than {most} bytes")))
         } else {
             Ok(())
         }
@@ -179,10 +179,10 @@ impl SelectionReader {
 
     /// The first event that is meant; others are passed over.
     fn awaited<T>(&self, meant: impl Fn(Event) -> Option<T>) -> Result<T> {
-        self.connection.flush().map_err(failed)?;
+        self.connection.flush().map_err(failure)?;
         let began = Instant::now();
         while began.elapsed() < PATIENCE {
-            match self.connection.poll_for_event().map_err(failed)? {
+            match self.connection.poll_for_event().map_err(failure)? {
                 Some(event) => {
                     if let Some(found) = meant(event) {
                         return Ok(found);
@@ -191,6 +191,6 @@ impl SelectionReader {
                 None => std::thread::sleep(LOOK_AGAIN),
             }
         }
-        Err(failed("the program that holds it does not answer"))
+        Err(failure("the program that holds it does not answer"))
     }
 }

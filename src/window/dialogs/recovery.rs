@@ -32,7 +32,7 @@ impl RecoveryDialog {
                 ui.separator();
                 let title = if lost.title.is_empty() { "Unnamed" } else { &lost.title };
                 ui.label(RichText::new(title).strong());
-                ui.label(described(lost));
+                ui.label(describe(lost));
                 ui.horizontal(|ui| {
                     if ui.button(format!("Recover {title}")).clicked() {
                         recover = Some(i);
@@ -75,7 +75,7 @@ fn first((lost, _): (LostSession, bool)) -> LostSession {
 }
 
 /// When the session began, its file, and a warning if recovery failed before.
-fn described(lost: &LostSession) -> String {
+fn describe(lost: &LostSession) -> String {
     let age = lost.start_time().and_then(|begun| SystemTime::now().duration_since(begun).ok());
     let begun = age.map(|age| format!("Started {} ago", spoken(age)));
     let place = lost

@@ -94,7 +94,7 @@ impl ShortcutsDialog {
 
     /// Takes the key that is being waited for.
     fn listen(&mut self, ui: &Ui, keymap: &mut Keymap) {
-        let Some(keyed) = self.waiting.and_then(keyed) else { return };
+        let Some(keyed) = self.waiting.and_then(find_target) else { return };
         let pressed = ui.input_mut(|i| {
             let at = i
                 .events
@@ -128,7 +128,7 @@ impl ShortcutsDialog {
     /// Asks whether a key may be reassigned.
     fn request(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         let Some((name, keys)) = self.conflict else { return };
-        let Some(keyed) = keyed(name) else { return };
+        let Some(keyed) = find_target(name) else { return };
         let Some(other) = keymap.conflict(keys, keyed) else { return self.conflict = None };
         ui.horizontal_wrapped(|ui| {
             let text = format!("{} belongs to “{}”.", key_text(ui.ctx(), keys), other.name());
@@ -144,6 +144,6 @@ impl ShortcutsDialog {
     }
 }
 
-fn keyed(name: &str) -> Option<KeyTarget> {
+fn find_target(name: &str) -> Option<KeyTarget> {
     KeyTarget::all().find(|keyed| keyed.name() == name)
 }

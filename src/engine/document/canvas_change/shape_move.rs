@@ -54,7 +54,7 @@ impl Document {
         // What lies on parts is carried as it shows, and put on them again at their new places.
         let lifted = self.detach(|_| true);
         let around = LayerMap::none(self.size);
-        let layers = carried(&lifted.layers, &around, map)
+        let layers = carry_layers(&lifted.layers, &around, map)
             .ok_or("A layer cannot follow the shape there.")?;
         let maps = self.maps_surface().map(|maps| maps.transformed(self.size, map)).transpose();
         let maps = maps.map_err(|error| match error {
@@ -160,12 +160,16 @@ fn has_painted_mask(layer: &Layer) -> bool {
 
 /// Layers, those that move with the shape moved by a map of the canvas; `None` where that cannot be
 /// expressed.
-fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<Vec<Arc<Layer>>> {
+fn carry_layers(
+    layers: &[Arc<Layer>],
+    around: &LayerMap,
+    map: &PlaneMap,
+) -> Option<Vec<Arc<Layer>>> {
     let one = |layer: &Arc<Layer>| {
         let own = around.within(layer);
         if !is_moved_with_shape(layer) {
             let Content::Group(group) = &layer.content else { return Some(masked(layer, map)) };
-            let layers = carried(&group.layers, &own, map)?;
+            let layers = carry_layers(&group.layers, &own, map)?;
             let content = Content::Group(Group { layers, ..group.clone() });
             return Some(Arc::new(Layer { content, ..Layer::clone(&masked(layer, map)) }));
         }

@@ -49,13 +49,14 @@ pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
             }
         }
         if !known.contains(&Arc::as_ptr(selection)) {
-            selected(selection, document.size).map_err(|why| format!("The selection: {why}."))?;
+            check_selection(selection, document.size)
+                .map_err(|why| format!("The selection: {why}."))?;
         }
     }
     Ok(())
 }
 
-fn selected(selection: &Selection, canvas: Size) -> Fit {
+fn check_selection(selection: &Selection, canvas: Size) -> Fit {
     if let Some(from_region) = &selection.made {
         return region(from_region);
     }

@@ -262,10 +262,10 @@ impl OutlineKey {
                 Outline::new((rect.x0, rect.y0), &coverage)
             }
             Self::Coverage(coverage) => Outline::new((0, 0), coverage),
-            Self::Selection(selection) => covered(&selection.coverage, most_px),
+            Self::Selection(selection) => outline_coverage(&selection.coverage, most_px),
             Self::Region(region, surface) => {
                 let scene = Scene { size: document.size, surface: surface.clone() };
-                covered(&Selection::of_region(*region, &scene).coverage, most_px)
+                outline_coverage(&Selection::of_region(*region, &scene).coverage, most_px)
             }
             Self::Profiles(pictures) => {
                 let size = pictures.first()?.size();
@@ -293,7 +293,7 @@ impl OutlineKey {
 }
 
 /// The outline of coverage in tiles.
-fn covered(coverage: &CoverageGrid, most_px: usize) -> Option<Outline> {
+fn outline_coverage(coverage: &CoverageGrid, most_px: usize) -> Option<Outline> {
     let rect = coverage.covered_rect();
     if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
         return None;

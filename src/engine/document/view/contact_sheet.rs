@@ -26,7 +26,8 @@ pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
         let (left, top) = (side(column, cell.width), side(row, cell.height));
         for y in 0..cell.height {
             for x in 0..cell.width {
-                let [r, g, b] = mean_over_background(picture, covered(picture.size, cell, x, y));
+                let [r, g, b] =
+                    mean_over_background(picture, source_rect(picture.size, cell, x, y));
                 texels[((top + y) * sheet.width + left + x) as usize] = [r, g, b, 255];
             }
         }
@@ -35,7 +36,7 @@ pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
 }
 
 /// The number of pixels of a picture that one pixel of a smaller one covers; at least one.
-fn covered(from: Size, to: Size, x: u32, y: u32) -> Rect {
+fn source_rect(from: Size, to: Size, x: u32, y: u32) -> Rect {
     let span = |i: u32, from: u32, to: u32| {
         let at = |i: u32| (u64::from(i) * u64::from(from) / u64::from(to)) as i32;
         (at(i).min(from as i32 - 1), at(i + 1).max(at(i) + 1).min(from as i32))

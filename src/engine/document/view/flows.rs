@@ -41,7 +41,7 @@ fn of_flow(flow: FlowField, surface: Option<&Surface>, options: &ViewOptions) ->
         let direction = flow.at(x, y).eigen().direction;
         FlowPixel { line: direction.perp(), hue_of: direction, magnitude: flow.magnitude(x, y) }
     });
-    shown(&marks, surface)
+    draw_flows(&marks, surface)
 }
 
 /// Lines along u, the direction that curves most; hue u, saturation |k_u − k_v|.
@@ -55,10 +55,10 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
         let u = vec2(u.x, -u.y);
         FlowPixel { line: u, hue_of: u, magnitude: (ku.abs() - kv.abs()).abs() }
     });
-    shown(&marks, Some(surface))
+    draw_flows(&marks, Some(surface))
 }
 
-fn shown(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
+fn draw_flows(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
     let covered = |x: usize, y: usize| surface.is_none_or(|s| s.coverage(x, y) > 0);
     let lines = marks.map(|mark| mark.line);
     let gray = smeared_noise(&lines, LineStyle::for_size(marks.size()), |from, to| {

@@ -52,7 +52,7 @@ pub(super) fn curvature_gray(surface: &Surface, options: &ViewOptions) -> Pictur
 const LIGHT: Vec3 = vec3(-0.45, 0.6, 0.66);
 
 /// Diffuse light and a highlight, encoded.
-fn lit_by(normal: Vec3) -> f32 {
+fn shade(normal: Vec3) -> f32 {
     let light = LIGHT.normalize_or_zero();
     let half = (light + Vec3::Z).normalize_or_zero();
     let (diffuse, glossy) = (normal.dot(light).max(0.0), normal.dot(half).max(0.0).powf(60.0));
@@ -76,8 +76,8 @@ pub(super) fn lit(surface: &Surface) -> Picture {
     painted(size, None, |x, y| {
         let covered = f32::from(surface.coverage(x, y)) / 255.0;
         let shade = match ball(x, y) {
-            Some(normal) => lit_by(normal),
-            None => BACKDROP + (lit_by(surface.normal(x, y)) - BACKDROP) * covered,
+            Some(normal) => shade(normal),
+            None => BACKDROP + (shade(surface.normal(x, y)) - BACKDROP) * covered,
         };
         [shade; 3]
     })

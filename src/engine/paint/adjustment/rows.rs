@@ -80,13 +80,13 @@ enum RowAdjuster {
     Nothing,
 }
 
-fn tabulated(tone: impl Fn(f32) -> f32) -> ToneTable {
+fn tabulate(tone: impl Fn(f32) -> f32) -> ToneTable {
     let entry = |i: usize| tone(i as f32 / (TONES - 1) as f32).max(0.0).min(1.0);
     (0..TONES).map(entry).collect()
 }
 
 fn alike(tone: impl Fn(f32) -> f32) -> RowAdjuster {
-    let table = tabulated(tone);
+    let table = tabulate(tone);
     RowAdjuster::Tones([table.clone(), table.clone(), table])
 }
 
@@ -99,9 +99,9 @@ impl RowAdjuster {
         use ColorAdjustment as A;
         match adjustment {
             A::Levels(own) if own.is_gray() => alike(|v| own.tone(0, v)),
-            A::Levels(own) => Self::Tones([0, 1, 2].map(|c| tabulated(|v| own.tone(c, v)))),
+            A::Levels(own) => Self::Tones([0, 1, 2].map(|c| tabulate(|v| own.tone(c, v)))),
             A::Curves(own) if own.is_gray() => alike(own.tone(0)),
-            A::Curves(own) => Self::Tones([0, 1, 2].map(|c| tabulated(own.tone(c)))),
+            A::Curves(own) => Self::Tones([0, 1, 2].map(|c| tabulate(own.tone(c)))),
             A::BrightnessContrast(own) => alike(own.tone()),
             A::Exposure(own) => alike(|v| own.tone(v)),
             A::Invert(_) => alike(Invert::tone),

@@ -2,7 +2,7 @@
 //! canvas.
 
 use super::TipShape;
-use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
+use crate::math::{Size, Vec2, srgb::Color, vec2};
 use crate::paint::dab::shape;
 use crate::paint::dab_walker::Dab;
 use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
@@ -11,24 +11,18 @@ use crate::paint::pattern::Pattern;
 use crate::paint::profile::RoundProfile;
 use crate::paint::rim::Rim;
 use crate::paint::stroke::render_tile;
+use crate::paint::test_scenes;
 use crate::paint::tip::{Bristles, Hose, HoseRank, Noise, RankSelect};
 use crate::paint::{Adjust, Brush, PictureSource, Sample, Scene, Stroke, Tip};
-use crate::raster::{Picture, Plane, TILE, TileAt, TileGrid};
-use crate::surface::{Deformation, Maps, Operator, Surface, links};
+use crate::raster::{Picture, TILE, TileAt, TileGrid};
+use crate::surface::{Deformation, Operator, links};
 use std::sync::Arc;
 
 const SIZE: Size = Size::new(140, 130);
 const AT: Vec2 = vec2(66.0, 62.0);
 
 fn ball() -> Scene {
-    let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - SIZE.center()) / 58.0;
-    let height = |x: usize, y: usize| (1.0 - at(x, y).length_squared()).max(0.0).sqrt();
-    let normals =
-        Plane::from_fn(SIZE, |x, y| vec3(at(x, y).x, -at(x, y).y, height(x, y).max(0.02)));
-    let depth = Plane::from_fn(SIZE, |x, y| 1.0 - height(x, y));
-    let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
-    let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
-    Scene { size: SIZE, surface: Some(Arc::new(surface)) }
+    test_scenes::ball(SIZE, 58.0)
 }
 
 fn flat() -> Scene {

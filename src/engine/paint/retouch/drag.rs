@@ -53,7 +53,7 @@ pub(super) fn smudged(
     field.for_each(scene, |(x, y), there, jacobian| {
         let here = vec2(x as f32 + 0.5, y as f32 + 0.5);
         let gap = (there - before.at) - (now[colors.len()] - dab.at);
-        let dragged = here - solved(jacobian, gap).clamp_length_max(FARTHEST_STEPS * step.length());
+        let dragged = here - solve(jacobian, gap).clamp_length_max(FARTHEST_STEPS * step.length());
         let (old, new) = (own.pixel(x, y), reader.sample(canvas.clamped(dragged)));
         colors.push(std::array::from_fn(|c| old[c] + (new[c] - old[c]) * kept));
     });
@@ -93,7 +93,7 @@ pub(super) fn cloned(
 }
 
 /// J⁻¹ v, or v where J is nearly singular.
-fn solved(jacobian: Mat2, v: Vec2) -> Vec2 {
+fn solve(jacobian: Mat2, v: Vec2) -> Vec2 {
     if jacobian.determinant().abs() > 1e-3 { jacobian.inverse() * v } else { v }
 }
 

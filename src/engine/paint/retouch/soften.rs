@@ -39,7 +39,7 @@ pub(super) fn blurred(
     let variance = variance.max(0.0).min(WIDEST_PX * WIDEST_PX);
     let area = touch.area;
     let seen = area.grown((CUT * variance.sqrt()).ceil() as i32 + 1);
-    let before = weighed(seen, part, retouched, scene.size.rect());
+    let before = weigh_pixels(seen, part, retouched, scene.size.rect());
     let after = blur::spread_pixels(
         Size::new(seen.width() as u32, seen.height() as u32),
         &before,
@@ -70,7 +70,7 @@ fn mean([r, g, b, a, weight]: &WeightedPixel) -> [f32; 4] {
 type WeightedPixel = [f32; 5];
 
 /// The pixels of a rectangle; those beyond the canvas count nothing.
-fn weighed(
+fn weigh_pixels(
     rect: Rect,
     part: &CanvasPart,
     retouched: &RetouchPixels,

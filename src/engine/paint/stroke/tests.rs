@@ -4,26 +4,20 @@
 mod stamps;
 
 use super::*;
-use crate::math::{Size, vec2, vec3};
+use crate::math::{Size, vec2};
 use crate::paint::dab_walker::{self, Dab};
 use crate::paint::profile::RoundProfile;
+use crate::paint::test_scenes;
 use crate::paint::{Adjust, ColorJitter, Dynamics, PictureSource, Property, Tip};
 use crate::raster::{BlendMode, Picture, Plane, TileGrid};
-use crate::surface::{Deformation, Maps, Surface, links};
+use crate::surface::{Deformation, links};
 use proptest::prelude::*;
 
 const SIZE: Size = Size::new(150, 140);
 
 /// A ball on its own canvas, with matching depth and normals.
 fn ball() -> Scene {
-    let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - SIZE.center()) / 62.0;
-    let height = |x: usize, y: usize| (1.0 - at(x, y).length_squared()).max(0.0).sqrt();
-    let normals =
-        Plane::from_fn(SIZE, |x, y| vec3(at(x, y).x, -at(x, y).y, height(x, y).max(0.02)));
-    let depth = Plane::from_fn(SIZE, |x, y| 1.0 - height(x, y));
-    let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
-    let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
-    Scene { size: SIZE, surface: Some(Arc::new(surface)) }
+    test_scenes::ball(SIZE, 62.0)
 }
 
 fn flat() -> Scene {

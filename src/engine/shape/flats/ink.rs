@@ -89,7 +89,7 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
     let mut thin = thin_pixels(of, color, half, least);
     let mut lines: Vec<(usize, usize)> = Vec::new();
     for start in pixels((of.width(), of.height())) {
-        let area = taken(&mut thin, start);
+        let area = take_area(&mut thin, start);
         if area.is_empty() {
             continue;
         }
@@ -118,7 +118,7 @@ fn thin_pixels(of: &Plane<u16>, color: u16, half: usize, least: usize) -> Plane<
     let mut thick = Plane::from_fn(of.size(), is_thick);
     let mut thin = Plane::from_fn(of.size(), |x, y| of.at(x, y) == color && !is_thick(x, y));
     for start in pixels((of.width(), of.height())) {
-        let area = taken(&mut thick, start);
+        let area = take_area(&mut thick, start);
         if area.len() < least {
             area.into_iter().for_each(|(x, y)| thin.set(x, y, true));
         }
@@ -127,7 +127,7 @@ fn thin_pixels(of: &Plane<u16>, color: u16, half: usize, least: usize) -> Plane<
 }
 
 /// The pixels of a set that are joined to one of it; they are taken out.
-fn taken(set: &mut Plane<bool>, start: (usize, usize)) -> Vec<(usize, usize)> {
+fn take_area(set: &mut Plane<bool>, start: (usize, usize)) -> Vec<(usize, usize)> {
     let mut area = Vec::new();
     if !set.at(start.0, start.1) {
         return area;

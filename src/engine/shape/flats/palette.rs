@@ -59,7 +59,7 @@ impl Palette {
         let shades = shades(pixels, is_flat, asked);
         let of = shade_of_each(pixels, is_flat, &shades);
         let solid = solid(&of, shades.len());
-        let joined = joined(&borders(pixels, &of), &shades, &solid, asked.len());
+        let joined = join_shades(&borders(pixels, &of), &shades, &solid, asked.len());
         // Shades of one color have the number of the first of them: it was asked for, or is the
         // most frequent.
         let mut firsts: Vec<usize> = joined.clone();
@@ -151,7 +151,7 @@ fn shade_of_each(
 ///
 /// * `solid`: how many pixels of each shade have it all around.
 /// * `asked`: how many shades were asked for; they are never joined with each other.
-fn joined(
+fn join_shades(
     borders: &ShadeBorders,
     shades: &[(Pixel, usize)],
     solid: &[usize],

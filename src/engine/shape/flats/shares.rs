@@ -73,7 +73,7 @@ impl Flats {
         let is_kept = choose_flats(&colors, least_area(owner.size()));
         let is_seen = |i: usize| colors[i].pixels >= LEAST_SEEN && !is_line[i];
         let left_out = (0..colors.len()).filter(|i| !is_kept[*i] && is_seen(*i)).count();
-        owner = renumbered(owner, &is_kept);
+        owner = renumber(owner, &is_kept);
         colors = (0..colors.len()).filter(|i| is_kept[*i]).map(|i| colors[i]).collect();
         let flat = in_areas(&owner) + of_lines;
         let painted = picture.pixels.values().iter().filter(|pixel| pixel[3] >= MOSTLY).count();
@@ -303,7 +303,7 @@ fn choose_flats(colors: &[PaletteColor], least: usize) -> Vec<bool> {
 }
 
 /// Without the colors that are not kept.
-fn renumbered(owner: Plane<u16>, is_kept: &[bool]) -> Plane<u16> {
+fn renumber(owner: Plane<u16>, is_kept: &[bool]) -> Plane<u16> {
     let mut next = 0;
     let number = is_kept.iter().map(|is_kept| {
         next += u16::from(*is_kept);

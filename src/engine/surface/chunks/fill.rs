@@ -194,8 +194,8 @@ impl CellBlock {
             vec2(cell.x0 as f32 + 0.5, cell.y0 as f32 + 0.5),
             vec2(cell.x1 as f32 - 0.5, cell.y1 as f32 - 0.5),
         );
-        let farthest = |seed: Vec2| super::squared((seed - low).abs().max((seed - high).abs()));
-        let nearest = |seed: Vec2| super::squared(seed - seed.max(low).min(high));
+        let farthest = |seed: Vec2| super::square((seed - low).abs().max((seed - high).abs()));
+        let nearest = |seed: Vec2| super::square(seed - seed.max(low).min(high));
         // Room for rounding, so that no seed is left out that could be chosen.
         let least =
             around.iter().map(|(_, s)| farthest(*s)).fold(f32::MAX, f32::min) * 1.001 + 0.01;

@@ -23,7 +23,7 @@ pub(super) fn find_seams(maps: &ChunkMaps, places: Plane<BallPlace>) -> BallPlac
     seams.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         find_borders(&chunks, y, joined.seam_px, row);
         for (x, out) in row.iter_mut().enumerate().filter(|(_, bits)| **bits > 0) {
-            *out = averaged(maps, &joined, (x, y), *out);
+            *out = average(maps, &joined, (x, y), *out);
         }
     });
     joined.seams = Some(seams);
@@ -52,7 +52,7 @@ crate::widest! {
 }
 
 /// Those of some neighbors that are joined to the pixel, and whose places suit it.
-fn averaged(maps: &ChunkMaps, joined: &BallPlaces, (x, y): (usize, usize), bits: u8) -> u8 {
+fn average(maps: &ChunkMaps, joined: &BallPlaces, (x, y): (usize, usize), bits: u8) -> u8 {
     let step = joined.seam_px as i32;
     let (nbar, nz) = (maps.nbar(x, y), maps.seen[2].at(x, y));
     let is_averaged = |bit: usize| {

@@ -221,47 +221,7 @@ type LineEnd = (usize, bool);
 
 /// Lines of one kind whose ends are near and point at each other, as one.
 fn join_over_gaps(lines: Vec<RawLine>) -> Vec<RawLine> {
-    let end = |(i, is_last): LineEnd| {
-        let points = &lines[i].points;
-        let far = points.len().saturating_sub(1).min(4);
-        let (at, from) = if is_last {
-            (points[points.len() - 1].at, points[points.len() - 1 - far].at)
-        } else {
-            (points[0].at, points[far].at)
-        };
-        (at, (at - from).normalize_or_zero())
-    };
-    let cell = |at: Vec2| (at / JOIN_PX).floor().as_ivec2();
-    let mut grid: HashMap<(i32, i32), Vec<LineEnd>> = HashMap::new();
-    let ends = || {
-        let open = lines.iter().enumerate().filter(|(_, l)| !l.is_closed && l.points.len() > 1);
-        open.flat_map(|(i, _)| [(i, false), (i, true)])
-    };
-    for own in ends() {
-        let at = cell(end(own).0);
-        grid.entry((at.x, at.y)).or_default().push(own);
-    }
-    let mut pairs: Vec<(f32, LineEnd, LineEnd)> = Vec::new();
-    for own in ends() {
-        let (at, out) = end(own);
-        let c = cell(at);
-        for other in (-1..=1)
-            .flat_map(|dy| (-1..=1).map(move |dx| (c.x + dx, c.y + dy)))
-            .filter_map(|c| grid.get(&c))
-            .flatten()
-            .copied()
-            .filter(|other| *other > own)
-        {
-            let (there, its_out) = end(other);
-            let gap = there - at;
-            let agrees = out.dot(-its_out) >= JOIN_COS
-                && (gap.length() < 0.5 || out.dot(gap.normalize_or_zero()) >= JOIN_COS);
-            let is_near = gap.length() <= JOIN_PX && lines[own.0].kind == lines[other.0].kind;
-            if is_near && agrees && own.0 != other.0 {
-                pairs.push((gap.length(), own, other));
-            }
-        }
-    }
+    let mut pairs = facing_ends(&lines);
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut mates: HashMap<LineEnd, LineEnd> = HashMap::new();
     for (_, a, b) in pairs {
@@ -271,6 +231,52 @@ fn join_over_gaps(lines: Vec<RawLine>) -> Vec<RawLine> {
         }
     }
     string_lines(lines, &mates)
+}
+
+/// Where an end is, and the direction in which its line would go on.
+fn place_of_end(lines: &[RawLine], (i, is_last): LineEnd) -> (Vec2, Vec2) {
+    let points = &lines[i].points;
+    let far = points.len().saturating_sub(1).min(4);
+    let (at, from) = if is_last {
+        (points[points.len() - 1].at, points[points.len() - 1 - far].at)
+    } else {
+        (points[0].at, points[far].at)
+    };
+    (at, (at - from).normalize_or_zero())
+}
+
+/// The pairs of ends of two lines of one kind that face each other over a gap, and the gap's width.
+fn facing_ends(lines: &[RawLine]) -> Vec<(f32, LineEnd, LineEnd)> {
+    let cell = |at: Vec2| (at / JOIN_PX).floor().as_ivec2();
+    let mut grid: HashMap<(i32, i32), Vec<LineEnd>> = HashMap::new();
+    let ends = || {
+        let open = lines.iter().enumerate().filter(|(_, l)| !l.is_closed && l.points.len() > 1);
+        open.flat_map(|(i, _)| [(i, false), (i, true)])
+    };
+    for own in ends() {
+        let at = cell(place_of_end(lines, own).0);
+        grid.entry((at.x, at.y)).or_default().push(own);
+    }
+    let mut pairs = Vec::new();
+    for own in ends() {
+        let (at, out) = place_of_end(lines, own);
+        let c = cell(at);
+        let near = (-1..=1)
+            .flat_map(|dy| (-1..=1).map(move |dx| (c.x + dx, c.y + dy)))
+            .filter_map(|c| grid.get(&c))
+            .flatten();
+        for other in near.copied().filter(|other| *other > own) {
+            let (there, its_out) = place_of_end(lines, other);
+            let gap = there - at;
+            let agrees = out.dot(-its_out) >= JOIN_COS
+                && (gap.length() < 0.5 || out.dot(gap.normalize_or_zero()) >= JOIN_COS);
+            let is_near = gap.length() <= JOIN_PX && lines[own.0].kind == lines[other.0].kind;
+            if is_near && agrees && own.0 != other.0 {
+                pairs.push((gap.length(), own, other));
+            }
+        }
+    }
+    pairs
 }
 
 /// Lines strung together at the ends that are mates.

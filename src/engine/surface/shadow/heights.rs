@@ -24,7 +24,7 @@ pub(in crate::surface) struct HeightMap {
 
 impl HeightMap {
     fn of(whole: Plane<f32>) -> Self {
-        Self { half: halved(&whole), whole }
+        Self { half: halve(&whole), whole }
     }
 }
 
@@ -65,7 +65,7 @@ impl HeapSize for HeightMaps {
 }
 
 /// The mean of each two by two pixels; the last ones count twice where there is only one.
-fn halved(map: &Plane<f32>) -> Plane<f32> {
+fn halve(map: &Plane<f32>) -> Plane<f32> {
     let side = |n: usize| n.div_ceil(2).max(1);
     let (width, height) = (side(map.width()), side(map.height()));
     let mut half = Plane::filled(Size::new(width as u32, height as u32), 0.0);

@@ -24,7 +24,7 @@ pub fn for_each_tile_of<'s, 'b>(
     let mut start = 0;
     while start < dabs.len() {
         let run = run_of(&dabs[start..]);
-        match joined(&dabs[start..start + run]).filter(|_| run > 1) {
+        match join_bounds(&dabs[start..start + run]).filter(|_| run > 1) {
             Some(all) => all.for_each_tile(|at| {
                 let tile = PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row };
                 for (i, dab) in dabs.iter().enumerate().skip(start).take(run) {
@@ -56,7 +56,7 @@ fn run_of(dabs: &[&SupportBounds]) -> usize {
 
 /// One dab that reaches what any of a run reaches; `None` where their anchors are not finite, or
 /// where none needs to go down from the whole canvas.
-fn joined<'s>(dabs: &[&SupportBounds<'s>]) -> Option<SupportBounds<'s>> {
+fn join_bounds<'s>(dabs: &[&SupportBounds<'s>]) -> Option<SupportBounds<'s>> {
     let first = dabs.first()?;
     let flow = first.flow.at_anchors(dabs.iter().map(|dab| &dab.flow))?;
     let (low, high) = range(dabs.iter().map(|dab| dab.at));

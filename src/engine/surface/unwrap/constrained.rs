@@ -2,7 +2,7 @@
 //! equation that unwrapped it (MATH 8). Floor 2. Not here: its rigid part (`deformation::plane`), the
 //! solver (`poisson`).
 
-use super::{UnwrapSettings, couplings, covered, place::nearest_covered, smooth};
+use super::{UnwrapSettings, couplings, covered_rect, place::nearest_covered, smooth};
 use crate::math::{Rect, Vec2};
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
@@ -68,7 +68,7 @@ impl PlaneDisplacement {
         let (size, PlaneSolver { rect, solver }) = (surface.size(), solver);
         let (w, n) = (rect.width(), rect.width() * rect.height());
         let discs = discs(surface, *rect, constraints);
-        let pixels = pulled_pixels(&discs);
+        let pixels = list_pulled_pixels(&discs);
         let held = solver.constraints(pixels.iter().map(|held| (held.0, held.1)).collect());
         let mut scratch = SolveScratch::default();
         let planes = [0, 1].map(|axis| {
@@ -157,7 +157,7 @@ fn disc(surface: &Surface, rect: Rect, middle: (usize, usize), radius: f32) -> V
 }
 
 /// All held pixels in order: index, stiffness, and stiffness times how far it is to move.
-fn pulled_pixels(discs: &[ConstrainedDisc]) -> Vec<(u32, f32, Vec2)> {
+fn list_pulled_pixels(discs: &[ConstrainedDisc]) -> Vec<(u32, f32, Vec2)> {
     let of_disc = |disc: &ConstrainedDisc| {
         let (displacement, constraint) = (disc.displacement, HOLD * disc.count);
         disc.pixels
@@ -252,7 +252,7 @@ impl Surface {
     /// Around all that constraints can move. Parts may be linked beyond what shows each of them.
     fn pulled_rect(&self, constraints: &[PlaneConstraint]) -> Rect {
         if self.parts_plane().is_some() {
-            return covered(self);
+            return covered_rect(self);
         }
         let objects = self.objects();
         let object = |constraint: &PlaneConstraint| {

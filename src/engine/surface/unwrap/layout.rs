@@ -59,7 +59,7 @@ impl PlaneLayout {
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Option<Self> {
         let unwrapping = surface.unwrapping(settings);
         let mut pieces = extents(surface, &unwrapping);
-        let size = shelved(&mut pieces)?;
+        let size = shelve(&mut pieces)?;
         let (w, objects) = (surface.size().width as usize, surface.objects());
         let labels = objects.labels();
         let most = pieces.iter().map(|piece| piece.object as usize + 1).max().unwrap_or(0);
@@ -215,7 +215,7 @@ struct ObjectExtent {
 
 /// Lays pieces out on shelves, the highest first, on a sheet about as high as wide; its size.
 /// `None` without pieces.
-fn shelved(pieces: &mut [LaidPiece]) -> Option<Size> {
+fn shelve(pieces: &mut [LaidPiece]) -> Option<Size> {
     let room = |rect: &Rect| (rect.width() as i32 + GAP_PX, rect.height() as i32 + GAP_PX);
     pieces.sort_by_key(|piece| (std::cmp::Reverse(piece.rect.height()), piece.object));
     let area: f64 =

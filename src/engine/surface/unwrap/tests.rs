@@ -269,7 +269,7 @@ fn smoothing_takes_fine_relief_out_of_the_metric() {
 #[test]
 fn rows_do_as_the_equations_say() {
     let surface = sphere(Size::new(70, 60), 28.0, 0.1);
-    let rect = covered(&surface);
+    let rect = covered_rect(&surface);
     let normals = smooth::normals(&surface, rect, 0.0);
     let (metric, grid) =
         (Metric::of(&surface, rect, &normals, 1.0), couplings(&surface, rect, &normals));

@@ -53,7 +53,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Map<String, Va
     }
     let mut settings = Map::new();
     for (name, value) in pairs.into_iter().filter(|(name, _)| !OTHERS.contains(name)) {
-        let (name, factor) = renamed(name);
+        let (name, factor) = rename_setting(name);
         let setting = setting(value, factor, version == "1");
         let is_plain = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
         // A line that is not a setting comes from a newer program.
@@ -67,7 +67,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Map<String, Va
     }
 }
 
-fn renamed(name: &str) -> (&str, f64) {
+fn rename_setting(name: &str) -> (&str, f64) {
     RENAMED
         .iter()
         .find(|(old, ..)| *old == name)
@@ -83,7 +83,7 @@ fn setting(text: &str, factor: f64, is_first: bool) -> Option<Value> {
         let (input, points) = part.split_once(char::is_whitespace)?;
         let points = if is_first { pairs_from_zero(points) } else { pairs_in_brackets(points) };
         let points: Vec<Value> = points?.into_iter().map(|[x, y]| json!([x, y * factor])).collect();
-        inputs.insert(renamed(input).0.to_owned(), points.into());
+        inputs.insert(rename_setting(input).0.to_owned(), points.into());
     }
     Some(json!({ "base_value": base, "inputs": inputs }))
 }

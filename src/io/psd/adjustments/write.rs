@@ -30,8 +30,8 @@ pub fn blocks(adjustment: &ColorAdjustment) -> Vec<Block> {
         A::PhotoFilter(own) => one(b"phfl", photo_filter(own)),
         A::ChannelMixer(own) => one(b"mixr", channel_mixer(own)),
         A::Invert(_) => one(b"nvrt", Vec::new()),
-        A::Posterize(own) => one(b"post", padded(own.levels)),
-        A::Threshold(own) => one(b"thrs", padded(own.level)),
+        A::Posterize(own) => one(b"post", pad(own.levels)),
+        A::Threshold(own) => one(b"thrs", pad(own.level)),
         A::SelectiveColor(own) => one(b"selc", selective_color(own)),
         A::GradientMap(own) => one(b"grdm", gradient_map(own)),
         A::Exposure(own) => {
@@ -62,7 +62,7 @@ fn numbers(out: &mut Vec<u8>, values: &[f32]) {
     values.iter().for_each(|value| number(out, *value));
 }
 
-fn padded(value: f32) -> Vec<u8> {
+fn pad(value: f32) -> Vec<u8> {
     let mut out = Vec::new();
     number(&mut out, value);
     out.extend([0; 2]);

@@ -17,18 +17,23 @@ use std::sync::Arc;
 
 /// The list of a document's parts as JSON; `list`: what selections are called.
 pub fn write(document: &Document, list: &SelectionList) -> Value {
-    let one = |part: &Arc<Part>| written(part, Some(document.size), |name| id_of_kept(name, list));
+    let one =
+        |part: &Arc<Part>| write_fitted(part, Some(document.size), |name| id_of_kept(name, list));
     document.parts.list.iter().map(one).collect()
 }
 
 /// One part as an edit describes it: as in the list, but with selections by name, and whatever the
 /// canvas.
 pub fn write_part(part: &Part) -> Value {
-    written(part, None, |name| Some(name.to_owned()))
+    write_fitted(part, None, |name| Some(name.to_owned()))
 }
 
 /// `canvas`: the frame of maps that need not be named.
-fn written(part: &Part, canvas: Option<Size>, selection: impl Fn(&str) -> Option<String>) -> Value {
+fn write_fitted(
+    part: &Part,
+    canvas: Option<Size>,
+    selection: impl Fn(&str) -> Option<String>,
+) -> Value {
     let mut out = JsonObject::default();
     out.set("id", part.id.as_str().into());
     out.text("name", &part.name, &part.id);

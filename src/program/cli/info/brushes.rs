@@ -46,7 +46,7 @@ impl BrushReport {
             "{}: {}, {}\n",
             self.name,
             self.kind.name(),
-            counted(brushes.len(), "brush", "brushes")
+            count_text(brushes.len(), "brush", "brushes")
         );
         for ImportedBrush { name, brush, notes } in brushes {
             out += &format!("  {name}: {}\n", looks(brush));
@@ -62,7 +62,7 @@ fn looks(brush: &Brush) -> String {
         brush.pictures().take(1).map(|p| format!(" of {} px", p.picture.size)).collect();
     let count = brush.pictures().count();
     let several = if count > 1 {
-        format!(", {}", counted(count, "picture", "pictures"))
+        format!(", {}", count_text(count, "picture", "pictures"))
     } else {
         String::new()
     };
@@ -72,11 +72,11 @@ fn looks(brush: &Brush) -> String {
         pictures.concat(),
         (brush.size * 10.0).round() / 10.0,
         brush.spacing * 100.0,
-        counted(drives, "curve", "curves"),
+        count_text(drives, "curve", "curves"),
     )
 }
 
-fn counted(n: usize, one: &str, many: &str) -> String {
+fn count_text(n: usize, one: &str, many: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { many })
 }
 

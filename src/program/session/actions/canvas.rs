@@ -98,10 +98,10 @@ impl CanvasAction {
     ) -> Result<(&'static str, Document), String> {
         let size = document.size;
         let (label, change) = match self {
-            CanvasAction::Crop { to } => ("Crop", cropped(size, *to)?),
+            CanvasAction::Crop { to } => ("Crop", crop_to(size, *to)?),
             CanvasAction::CropToSelection {} => {
                 let selected = document.selected().ok_or("Nothing is selected.")?.covered_rect();
-                ("Crop to selection", cropped(size, selected.intersect(size.rect()))?)
+                ("Crop to selection", crop_to(size, selected.intersect(size.rect()))?)
             }
             CanvasAction::Trim {} => {
                 let nothing = || "There is no paint to trim to.".to_owned();
@@ -116,15 +116,15 @@ impl CanvasAction {
                         "There is nothing to trim: the picture reaches every border.".into()
                     );
                 }
-                ("Trim", cropped(size, painted)?)
+                ("Trim", crop_to(size, painted)?)
             }
             CanvasAction::Size { width, height, anchor } => {
-                let to = allowed(*width, *height)?;
+                let to = check_size(*width, *height)?;
                 let change = CanvasChange::resized(size, to, *anchor);
                 ("Canvas size", change.ok_or("A canvas has at least one pixel.")?)
             }
             CanvasAction::Scale { width, height, filter } => {
-                let to = allowed(*width, *height)?;
+                let to = check_size(*width, *height)?;
                 if to == size {
                     return Err("The picture already has that size.".into());
                 }
@@ -135,7 +135,7 @@ impl CanvasAction {
             }
             CanvasAction::Turn { degrees } => {
                 let change = CanvasChange::turned(size, f64::from(*degrees));
-                allowed(change.size().width, change.size().height)?;
+                check_size(change.size().width, change.size().height)?;
                 ("Turn canvas", change)
             }
             CanvasAction::Mirror { mirror } => {
@@ -164,15 +164,15 @@ fn near(area: Rect) -> Rect {
     Rect::new(x0, y0, x1, y1)
 }
 
-fn cropped(from: Size, to: Rect) -> Result<CanvasChange, String> {
+fn crop_to(from: Size, to: Rect) -> Result<CanvasChange, String> {
     let change =
         CanvasChange::crop(from, near(to)).ok_or("The frame contains no pixel of the canvas.")?;
-    allowed(change.size().width, change.size().height)?;
+    check_size(change.size().width, change.size().height)?;
     Ok(change)
 }
 
 /// A size that fits this machine's memory.
-fn allowed(width: u32, height: u32) -> Result<Size, String> {
+fn check_size(width: u32, height: u32) -> Result<Size, String> {
     let budget = Budget::of_this_machine();
     budget
         .size(Path::new("canvas"), width.into(), height.into())

@@ -120,12 +120,12 @@ const NOTHING_THERE: &str = "The layer has nothing where you selected.";
 const LOCKED: &str = "The layer is locked. Unlock it to cut from it.";
 
 /// What is selected, or all of the canvas.
-fn covered(document: &Document) -> CoverageGrid {
+fn covered_area(document: &Document) -> CoverageGrid {
     document.selected().cloned().unwrap_or_else(|| CoverageGrid::filled(document.size.rect()))
 }
 
 fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'static str> {
-    let (covered, progress) = (covered(document), Progress::default());
+    let (covered, progress) = (covered_area(document), Progress::default());
     let (layers, tiles) = if merged {
         let tiles =
             multiply(&flatten_to_paint(document, &progress).ok_or(NOTHING_THERE)?, &covered);
@@ -177,7 +177,7 @@ fn cut(open: &mut OpenDocument) -> Result<Copied, &'static str> {
         });
     }
     let copied = copy(document, &ids, false)?;
-    let covered = covered(document);
+    let covered = covered_area(document);
     let cleared = |next: Document, id: &LayerId| next.with_cleared(*id, &covered);
     let next = ids.iter().try_fold(document.clone(), cleared).ok_or(LOCKED)?;
     open.commit("Cut", next);
@@ -187,7 +187,7 @@ fn cut(open: &mut OpenDocument) -> Result<Copied, &'static str> {
 fn paste(open: &mut OpenDocument, copied: &Copied) {
     let slot = above(open);
     let (mut next, mut ids) = (open.document().clone(), Vec::new());
-    for (i, layer) in pasted(copied, &next).into_iter().enumerate() {
+    for (i, layer) in paste_layers(copied, &next).into_iter().enumerate() {
         let layer = Layer { name: next.free_layer_name(&layer.name), ..layer };
         let slot = LayerSlot { index: slot.index.saturating_add(i), ..slot };
         ids.push(layer.id);
@@ -201,7 +201,7 @@ fn paste(open: &mut OpenDocument, copied: &Copied) {
 
 /// What was copied as new layers of a document; on a canvas of another size masks become pixels,
 /// because a mask has the size of its canvas.
-fn pasted(copied: &Copied, document: &Document) -> Vec<Layer> {
+fn paste_layers(copied: &Copied, document: &Document) -> Vec<Layer> {
     let is_plain = |layer: &Layer| layer.mask.is_none() && layer.content.group().is_none();
     if copied.canvas != document.size && !copied.layers.iter().all(is_plain) {
         let Rect { x0, y0, .. } = copied.rect;

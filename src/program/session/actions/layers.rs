@@ -292,7 +292,7 @@ impl LayerAction {
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(open))?, vec![id])
             }
-            LayerAction::AddShading { model } => added(open, lit_layer(*model, document))?,
+            LayerAction::AddShading { model } => add_layer(open, lit_layer(*model, document))?,
             LayerAction::Look { name } => looks::apply_look(document, name)?,
             LayerAction::MakeStrokes { layer: path } => {
                 let id = layer(path)?.id;
@@ -302,10 +302,10 @@ impl LayerAction {
                 let layer = layer(path)?;
                 looks::with_ball(document, &layer, name, *hollows)?
             }
-            LayerAction::PixelColors { layer: path } => toned(document, layer(path)?.as_ref())?,
+            LayerAction::PixelColors { layer: path } => tone_step(document, layer(path)?.as_ref())?,
             LayerAction::AddAdjustment { adjustment } => {
                 let name = document.free_layer_name(adjustment.label());
-                added(open, Layer::new(name, adjustment.clone()))?
+                add_layer(open, Layer::new(name, adjustment.clone()))?
             }
             LayerAction::AddFilter { filter } => {
                 let name = document.free_layer_name(filter.label());
@@ -384,7 +384,7 @@ impl LayerAction {
 }
 
 /// A new layer above the selected one, masked by the selection.
-fn added(open: &OpenDocument, new: Layer) -> Option<EditStep> {
+fn add_layer(open: &OpenDocument, new: Layer) -> Option<EditStep> {
     let document = open.document();
     let new = selecting(document, new);
     let id = new.id;
@@ -392,7 +392,7 @@ fn added(open: &OpenDocument, new: Layer) -> Option<EditStep> {
 }
 
 /// A painter's light in tones of the picture beneath it; in three tones if light was smooth.
-fn toned(document: &Document, layer: &Layer) -> Option<EditStep> {
+fn tone_step(document: &Document, layer: &Layer) -> Option<EditStep> {
     let Content::Shading(live) = &layer.content else { return None };
     let mut shading = live.params().clone();
     shading.pixel.colors = colors_beneath(document, layer.id)?;

@@ -65,7 +65,7 @@ pub fn put(open: &mut OpenDocument, layer: LayerId, read: ReadPart) {
     let document = open.document();
     let (file, canvas) = (free_file(document, &name), document.size);
     let next = match what {
-        PartValue::Mask(mask) => with_mask(document, layer, file, fitted(&mask, canvas)),
+        PartValue::Mask(mask) => with_mask(document, layer, file, fit_mask(&mask, canvas)),
         PartValue::Detail(picture, map) => {
             with_detail(document, layer, PictureSource::new(file, picture, Adjust::default()), map)
         }
@@ -141,7 +141,7 @@ fn with_picture(
 }
 
 /// A mask stretched over the canvas, by nearest pixels.
-fn fitted(mask: &Plane<u8>, canvas: Size) -> Plane<u8> {
+fn fit_mask(mask: &Plane<u8>, canvas: Size) -> Plane<u8> {
     if mask.size() == canvas {
         return mask.clone();
     }
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn a_mask_of_another_size_covers_the_canvas() {
         let mask = Plane::from_values(Size::new(2, 1), vec![10, 200]).unwrap();
-        let fitted = fitted(&mask, Size::new(6, 3));
+        let fitted = fit_mask(&mask, Size::new(6, 3));
         assert_eq!(
             (fitted.at(0, 0), fitted.at(2, 2), fitted.at(3, 1), fitted.at(5, 2)),
             (10, 10, 200, 200)

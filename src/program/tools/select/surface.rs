@@ -2,7 +2,7 @@
 //! it does, belongs to its object, would shine with it, or flows along it; a drag to the right or
 //! the left changes the tolerance. Floor 5. Not here: finding it (`surface::region`).
 
-use super::{combined, dragged, tuned};
+use super::{adjust, combined, dragged};
 use crate::document::Document;
 use crate::math::Vec2;
 use crate::paint::Selection;
@@ -59,7 +59,7 @@ impl RegionGesture {
         let selection = Selection::provisional(self.field.region(&self.region), Some(self.region));
         let document = combined(&self.document, selection, self.how);
         let select = SelectSettings { region: self.region, ..self.settings };
-        tuned(document, select, is_done)
+        adjust(document, select, is_done)
     }
 }
 

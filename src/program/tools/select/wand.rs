@@ -2,7 +2,7 @@
 //! to the right or the left changes the tolerance. Floor 5. Not here: finding the region
 //! (`paint::fill`).
 
-use super::{combined, dragged, tuned};
+use super::{adjust, combined, dragged};
 use crate::document::{Content, Document, PreparedDocument, Progress};
 use crate::math::{Rect, Vec2};
 use crate::paint::{Fill, Selection};
@@ -106,7 +106,7 @@ impl WandGesture {
 
     fn outcome(&mut self, is_done: bool) -> Outcome {
         let select = self.settings;
-        self.found().map_or(Outcome::Cancel, |document| tuned(document, select, is_done))
+        self.found().map_or(Outcome::Cancel, |document| adjust(document, select, is_done))
     }
 }
 

@@ -57,7 +57,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if pen.keys.alt {
         return (
             None,
-            found.map_or_else(|| taken(document, at), |touch| without(document, &touch)),
+            found.map_or_else(|| take_direction(document, at), |touch| without(document, &touch)),
         );
     }
     if let Some(touch) = found {
@@ -117,7 +117,7 @@ pub(super) fn layer_on(
 }
 
 /// The direction of the surface at a point.
-fn taken(document: &Document, at: Vec2) -> Outcome {
+fn take_direction(document: &Document, at: Vec2) -> Outcome {
     let Some(surface) = &document.surface else {
         return Outcome::Refused("There is no surface to take the direction from.".into());
     };

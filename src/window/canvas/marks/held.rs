@@ -1,7 +1,7 @@
 //! What the move tool would hold, and what it holds: the outline of a stroke, or the bounds of a
 //! layer. Floor 7. Not here: which of them it is (`tools::move_content`).
 
-use super::{LOOKS, line_through, outlined};
+use super::{LOOKS, draw_outlines, line_through};
 use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::session::Session;
@@ -69,7 +69,7 @@ pub fn draw(
                 .scene_of(layer.id)
                 .unwrap_or_else(|| open.shown_document().scene());
             let strokes = open.shown_document().strokes_on_canvas(layer.id);
-            outlined(painter, strokes.get(index).into_iter().collect(), &scene, to_screen);
+            draw_outlines(painter, strokes.get(index).into_iter().collect(), &scene, to_screen);
         }
         MoveTarget::Layer => bounds(painter, open.shown_document(), layer.id, to_screen),
     }

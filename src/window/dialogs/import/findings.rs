@@ -22,7 +22,7 @@ pub fn describe(choice: &Finding) -> (&str, String) {
     let (name, words): (&str, &[(&str, &str)]) = match *field {
         "normal.encoding" => {
             let words =
-                NormalEncoding::from_name(value).map(|encoding| worded(encoding, &ENCODINGS));
+                NormalEncoding::from_name(value).map(|encoding| words_of(encoding, &ENCODINGS));
             return ("Numbers", words.map_or_else(|| value.clone(), str::to_owned));
         }
         "normal.srgb" => (
@@ -38,7 +38,7 @@ pub fn describe(choice: &Finding) -> (&str, String) {
             &[("camera", "as seen in the picture"), ("world", "of the scene, rotated to the view")],
         ),
         "depth.near" => {
-            let words = Near::from_name(value).map(|near| worded(near, &NEAR));
+            let words = Near::from_name(value).map(|near| words_of(near, &NEAR));
             return ("Near is", words.map_or_else(|| value.clone(), str::to_owned));
         }
         "depth.encoding" => (
@@ -56,7 +56,7 @@ pub fn describe(choice: &Finding) -> (&str, String) {
     (name, known.map_or_else(|| value.clone(), |(_, words)| (*words).to_owned()))
 }
 
-fn worded<T: PartialEq>(meant: T, words: &[(T, &'static str)]) -> &'static str {
+fn words_of<T: PartialEq>(meant: T, words: &[(T, &'static str)]) -> &'static str {
     words.iter().find(|(choice, _)| *choice == meant).map_or("", |(_, words)| words)
 }
 

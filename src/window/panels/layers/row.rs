@@ -44,13 +44,13 @@ fn row_id(layer: LayerId) -> Id {
     Id::unique(("layer row", layer))
 }
 
-fn folded(layer: LayerId) -> Id {
+fn folded_id(layer: LayerId) -> Id {
     Id::unique(("folded", layer))
 }
 
 /// Whether the group is folded.
 pub fn is_folded(ui: &Ui, layer: LayerId) -> bool {
-    ui.data(|data| data.get_temp::<bool>(folded(layer)).unwrap_or(false))
+    ui.data(|data| data.get_temp::<bool>(folded_id(layer)).unwrap_or(false))
 }
 
 impl LayerRow<'_> {
@@ -167,7 +167,7 @@ impl LayerRow<'_> {
             let is_folded = is_folded(ui, layer.id);
             let icon = if is_folded { Icon::Closed } else { Icon::Opened };
             if quiet_button(ui, icon, &format!("Fold {}", layer.name), true, 18.0).clicked() {
-                ui.data_mut(|data| data.insert_temp(folded(layer.id), !is_folded));
+                ui.data_mut(|data| data.insert_temp(folded_id(layer.id), !is_folded));
             }
         }
         if layer.clip_below {

@@ -43,7 +43,7 @@ fn puff(value: f32) -> NumberRow<'static> {
 
 fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     match kind {
-        PartKind::Inflate { outline, inflation } => inflated(ui, *inflation).map(|changed| {
+        PartKind::Inflate { outline, inflation } => inflation_rows(ui, *inflation).map(|changed| {
             changed.map(|inflation| PartKind::Inflate { outline: outline.clone(), inflation })
         }),
         PartKind::Bevel { outline, bevel } => kinds::beveled(ui, bevel).map(|changed| {
@@ -108,7 +108,7 @@ fn by_hand(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
 }
 
 /// The presets, and the three numbers.
-fn inflated(ui: &mut Ui, now: Inflation) -> Option<ValueChange<Inflation>> {
+fn inflation_rows(ui: &mut Ui, now: Inflation) -> Option<ValueChange<Inflation>> {
     let mut changed = None;
     let chosen = presets(ui, now);
     changed = chosen.map(|to| ValueChange { to, done: true }).or(changed);

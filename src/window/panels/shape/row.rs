@@ -64,7 +64,7 @@ pub fn show(
     }
     name(&mut inner, part, &response, requests);
     if !lies_on {
-        dragged(ui, document, part, &response, rect, requests);
+        drag_row(ui, document, part, &response, rect, requests);
     }
     if response.clicked() {
         act(requests, PartAction::Select { part: part.id.clone() });
@@ -142,7 +142,7 @@ fn name(ui: &mut Ui, part: &Part, row: &Response, requests: &mut UiRequests) {
 }
 
 /// The dragged row, and the rows that it can be dropped between.
-fn dragged(
+fn drag_row(
     ui: &Ui,
     document: &Document,
     part: &Part,

@@ -37,7 +37,7 @@ impl CutLines {
         };
         let marks = Plane::from_fn(size, |x, y| u8::from(is_marked(x, y)));
         let away = distance::squared(&marks, SOFT as u16 + 1);
-        let mut taker = taken(cut, &marks);
+        let mut taker = assign_marks(cut, &marks);
         let is_ink = taker.map(|part| part != NO_PART);
         for _ in 0..SOFT {
             let grown: Vec<(usize, usize, u16)> = soft_border(cut, &taker);
@@ -101,7 +101,7 @@ fn is_off_color(cut: &Cut, part: u16, (x, y): (usize, usize)) -> bool {
 
 /// The ink on farther parts along each part, as far from its outline as the part's own side of the
 /// line is wide, and a quarter more.
-fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
+fn assign_marks(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     let size = (cut.drawn.width(), cut.drawn.height());
     let is_marked = |x: usize, y: usize| marks.at(x, y) > 0;
     let can_take = |part: u16, x: usize, y: usize| {
@@ -119,7 +119,7 @@ fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     let is_own_ink = |part: u16, x: usize, y: usize| {
         is_marked(x, y) && cut.owner.at(x, y) == u32::from(part) + 1
     };
-    let own_side = walked(cut, &seeds, &widest, is_own_ink);
+    let own_side = walk(cut, &seeds, &widest, is_own_ink);
     let count = |taken: &[(usize, usize, u16)]| {
         let mut counts = vec![0usize; cut.outlines.len()];
         taken.iter().for_each(|(.., part)| counts[usize::from(*part)] += 1);
@@ -131,14 +131,14 @@ fn taken(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
     };
     let widths: Vec<usize> = count(&own_side).into_iter().zip(count(&seeds)).map(width).collect();
     let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
-    let found = walked(cut, &seeds, &widths, can_take);
+    let found = walk(cut, &seeds, &widths, can_take);
     found.into_iter().for_each(|(x, y, part)| taker.set(x, y, part));
     taker
 }
 
 /// The pixels that each part reaches from its seeds over those that it may enter, the seeds first;
 /// each is reached by one part. `most_px`: how far each part goes from a seed.
-fn walked(
+fn walk(
     cut: &Cut,
     seeds: &[(usize, usize, u16)],
     most_px: &[usize],

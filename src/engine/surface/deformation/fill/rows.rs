@@ -32,18 +32,8 @@ pub(in crate::surface::deformation) fn try_fill_dab(
         return false;
     }
     let pin = kernel.pinned(pin);
-    let span_of = |y: i32| span_of(rect, columns(y), y);
-    let width = rect.width();
-    let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
-    let mut next = span_of(rect.y0);
-    for (y, (out_x, out_y)) in (rect.y0..rect.y1).zip(rows) {
-        let span = next;
-        if y + 1 < rect.y1 {
-            next = span_of(y + 1);
-            ask(surface, kernel, next);
-        }
-        let start = span.x - rect.x0 as usize;
-        let (out_x, out_y) = (&mut out_x[start..start + span.n], &mut out_y[start..start + span.n]);
+    let ask = |next: MapSpan| ask(surface, kernel, next);
+    for_each_span(rect, columns, (out_x, out_y), ask, |y, span, out_x, out_y| {
         let first = deformation.center(span.x as i32, y).into();
         let (row, coverage) = (DabRow { first, pin }, span.of(surface.coverage_plane()));
         let [x, y, z] = surface.normal_planes();
@@ -57,8 +47,35 @@ pub(in crate::surface::deformation) fn try_fill_dab(
                 mirrored_row(row, coverage, [x, y, z].map(|plane| span.of(plane)), k, out_x, out_y)
             }
         }
-    }
+    });
     true
+}
+
+/// Fills some columns of each row of `rect`, the top one first.
+///
+/// * `ask`: prefetches what the row after it reads.
+/// * `fill`: takes a row's number, its span and D there.
+#[inline(always)]
+fn for_each_span(
+    rect: Rect,
+    columns: impl Fn(i32) -> Range<i32>,
+    (out_x, out_y): (&mut [f32], &mut [f32]),
+    ask: impl Fn(MapSpan),
+    mut fill: impl FnMut(i32, MapSpan, &mut [f32], &mut [f32]),
+) {
+    let span_of = |y: i32| span_of(rect, columns(y), y);
+    let width = rect.width();
+    let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
+    let mut next = span_of(rect.y0);
+    for (y, (out_x, out_y)) in (rect.y0..rect.y1).zip(rows) {
+        let span = next;
+        if y + 1 < rect.y1 {
+            next = span_of(y + 1);
+            ask(next);
+        }
+        let start = span.x - rect.x0 as usize;
+        fill(y, span, &mut out_x[start..start + span.n], &mut out_y[start..start + span.n]);
+    }
 }
 
 /// Some columns of a row of `rect`, which the maps hold.
@@ -83,21 +100,13 @@ fn try_fill_laid(
         return false;
     }
     let [u, v] = planes.unwrapping.planes();
-    let span_of = |y: i32| span_of(rect, columns(y), y);
-    let width = rect.width();
-    let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
-    let mut next = span_of(rect.y0);
-    for (y, (out_x, out_y)) in (rect.y0..rect.y1).zip(rows) {
-        let span = next;
-        if y + 1 < rect.y1 {
-            next = span_of(y + 1);
-            [u, v].into_iter().for_each(|plane| prefetch(next.of(plane)));
-            prefetch(next.of(planes.objects.labels()));
-            prefetch(next.of(surface.coverage_plane()));
-            prefetch(next.of(surface.smooth_links_plane()));
-        }
-        let start = span.x - rect.x0 as usize;
-        let (out_x, out_y) = (&mut out_x[start..start + span.n], &mut out_y[start..start + span.n]);
+    let ask = |next: MapSpan| {
+        [u, v].into_iter().for_each(|plane| prefetch(next.of(plane)));
+        prefetch(next.of(planes.objects.labels()));
+        prefetch(next.of(surface.coverage_plane()));
+        prefetch(next.of(surface.smooth_links_plane()));
+    };
+    for_each_span(rect, columns, (out_x, out_y), ask, |y, span, out_x, out_y| {
         let first = deformation.center(span.x as i32, y).into();
         let row = LaidRow {
             first,
@@ -116,7 +125,7 @@ fn try_fill_laid(
             out_x,
             out_y,
         );
-    }
+    });
     true
 }
 

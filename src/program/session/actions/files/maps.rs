@@ -22,7 +22,7 @@ pub fn replace_maps(
     let mut notes = findings.notes;
     let map = source.map().or_else(|| {
         let is_other = found != canvas;
-        notes.extend(is_other.then(|| stretched(found, canvas)));
+        notes.extend(is_other.then(|| stretch_text(found, canvas)));
         is_other.then(|| PlaneMap::scaling(found, canvas))
     });
     let surface = Arc::new(surface)
@@ -42,7 +42,7 @@ pub fn replace_maps(
     Ok(())
 }
 
-fn stretched(found: Size, canvas: Size) -> String {
+fn stretch_text(found: Size, canvas: Size) -> String {
     format!("The maps have {found} pixels and were stretched to the canvas, {canvas}.")
 }
 
@@ -57,7 +57,7 @@ pub fn add_maps(
     let Some(open) = session.active_mut() else { return Ok(()) };
     let (canvas, found) = (open.document().size, surface.size());
     let mut notes = findings.notes;
-    notes.extend((found != canvas).then(|| stretched(found, canvas)));
+    notes.extend((found != canvas).then(|| stretch_text(found, canvas)));
     let surface = Arc::new(surface)
         .onto(canvas, source.map().as_ref())
         .map_err(|error| Error::unsupported("maps", error))?;

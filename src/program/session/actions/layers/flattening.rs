@@ -50,8 +50,8 @@ impl LayerAction {
         match self {
             LayerAction::MergeDown { layer } => {
                 match &document.outermost(&layer.find(document)?)[..] {
-                    [one] if !layer.is_several() => merged(document, *one, progress),
-                    several => merged_several(document, several, progress),
+                    [one] if !layer.is_several() => merge_down(document, *one, progress),
+                    several => merge_several(document, several, progress),
                 }
             }
             LayerAction::Bake { layer } => {
@@ -118,7 +118,7 @@ fn layer_beneath(document: &Document, id: LayerId) -> Option<LayerId> {
 }
 
 /// A layer and the one beneath it as one paint layer.
-fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
+fn merge_down(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
     // Groups around hand down their transforms, so that what is merged lies as it shows.
     let document = &bake_displacement(document, id, progress)?;
     let layer = document.layer(id)?;
@@ -148,7 +148,7 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
 
 /// Layers, bottom first, as one paint layer in the place of the topmost of them; it has the name
 /// and the blend mode of the bottom one.
-fn merged_several(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<Edit> {
+fn merge_several(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<Edit> {
     let in_place = |next: Document, id: &LayerId| next.with_transform_applied(*id);
     let document = &ids.iter().try_fold(document.clone(), in_place)?;
     let mut layers: Vec<Arc<Layer>> =

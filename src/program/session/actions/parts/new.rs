@@ -108,7 +108,7 @@ pub fn make_part(kind: NewPart, open: &OpenDocument) -> Result<Part, PartRefusal
             lines: Lines::default(),
         },
         NewPart::Relief => {
-            let picture = grays::detail(document, selected(open)?)?;
+            let picture = grays::detail(document, primary_layer(open)?)?;
             PartKind::Relief { on: form_of_selected(open)?, picture, detail: Detail::default() }
         }
         NewPart::Profiles => PartKind::Profiles { outline: None, shadings: grays::shadings(open)? },
@@ -152,13 +152,13 @@ fn form_of_selected(open: &OpenDocument) -> Result<String, PartRefusal> {
 
 const NO_LAYER: PartRefusal = "No layer is selected.";
 
-fn selected(open: &OpenDocument) -> Result<LayerId, PartRefusal> {
+fn primary_layer(open: &OpenDocument) -> Result<LayerId, PartRefusal> {
     open.primary.ok_or(NO_LAYER)
 }
 
 fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
     let document = open.document();
-    let layer = document.layer(selected(open)?).ok_or(NO_LAYER)?;
+    let layer = document.layer(primary_layer(open)?).ok_or(NO_LAYER)?;
     if !layer.content.has_pixels() {
         return Err("This layer has no paint of its own, so it has no outline. Select another.");
     }
