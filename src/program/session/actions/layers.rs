@@ -309,7 +309,7 @@ impl LayerAction {
             }
             LayerAction::AddFilter { filter } => {
                 let name = document.free_layer_name(filter.label());
-                added(open, Layer::new(name, filter.clone()))?
+                add_layer(open, Layer::new(name, filter.clone()))?
             }
             LayerAction::PaintMask { layer: path, hides } => {
                 let layer = layer(path)?;
