@@ -32,6 +32,7 @@ pub mod srgb_profile;
 pub mod svg;
 pub mod text;
 pub mod thumbnail;
+mod version;
 
 // The floors beneath, under their own names.
 use rilievo_engine::{
@@ -43,3 +44,4 @@ pub use files::{Files, RecipeFolder, UserFiles};
 pub use open::{OpenedDocument, open};
 pub use replace::{Overwrite, Terms};
 pub use save::{SavedDocument, save};
+pub use version::version;

@@ -38,7 +38,7 @@ pub type OpenWindow = fn(Vec<PathBuf>) -> Result<()>;
 /// Paint over normal and depth maps: brushes, gradients and photos that bend over the shape they
 /// are put on.
 #[derive(Parser)]
-#[command(name = "rilievo", version, max_term_width = 100)]
+#[command(name = "rilievo", version = crate::io::version(), max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<CliCommand>,

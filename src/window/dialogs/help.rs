@@ -7,7 +7,7 @@ use eframe::egui::Ui;
 pub fn about(ui: &mut Ui) -> DialogAnswer {
     ui.set_width(360.0);
     ui.heading("Rilievo");
-    ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));
+    ui.label(format!("Version {}", crate::io::version()));
     ui.label("Paint on the picture of a shape: brushes, gradients and photos bend over its normals and depth.");
     ui.weak(
         "It implements “Surface Flows for Image-based Shading Design” (2012) and \
