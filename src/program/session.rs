@@ -91,6 +91,8 @@ pub struct Session {
     /// The same, of little importance, which disappear by themselves.
     pub said: Vec<String>,
     untitled: usize,
+    /// The most steps of a document that are kept.
+    steps: usize,
 }
 
 /// A place in a text where the hand wants to type.
@@ -134,6 +136,7 @@ impl Default for Session {
             notes: Vec::new(),
             said: Vec::new(),
             untitled: 0,
+            steps: open_document::STEPS,
         }
     }
 }
@@ -193,14 +196,27 @@ impl Session {
         self.gesture.as_ref().map_or_else(SnapLines::default, |gesture| gesture.snap_lines())
     }
 
+    /// The color that is taken when the pen lifts.
+    pub fn picked_color(&self) -> Option<Color> {
+        self.gesture.as_ref().and_then(|gesture| gesture.picked_color())
+    }
+
+    /// Keeps at most so many steps of each document, those that are opened later included.
+    pub fn keep_steps(&mut self, steps: usize) {
+        if std::mem::replace(&mut self.steps, steps) != steps {
+            self.open_documents.iter_mut().for_each(|open| open.history.keep(steps));
+        }
+    }
+
     /// Whether a guide is being dragged.
     pub fn is_dragging_guide(&self) -> bool {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_guide())
     }
 
     /// Adds an open document, in front of the others.
-    pub fn add_document(&mut self, open: OpenDocument) {
+    pub fn add_document(&mut self, mut open: OpenDocument) {
         self.drop_gesture();
+        open.history.keep(self.steps);
         self.open_documents.push(open);
         self.current = self.open_documents.len() - 1;
     }

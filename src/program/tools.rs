@@ -122,6 +122,8 @@ pub struct ToolSettings {
     pub second_color: Color,
     /// How new marks follow the surface.
     pub operator: Operator,
+    /// Whether new gradients are live layers, and not painted into the selected paint layer.
+    pub live_gradients: bool,
     /// Whether a stroke that begins on a part of the shape may go on to others.
     pub crosses_parts: bool,
     /// How strokes repeat.
@@ -156,6 +158,7 @@ impl ToolSettings {
         Self {
             brush,
             presses_by_speed: false,
+            live_gradients: false,
             color: Color::BLACK,
             second_color: Color::WHITE,
             operator: Operator::None,

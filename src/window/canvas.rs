@@ -10,11 +10,13 @@ mod follow;
 mod frame_input;
 mod gizmo;
 mod guides;
+mod loupe;
 mod marks;
 mod overlay;
 mod parts;
 mod pointer;
 mod rulers;
+mod second_view;
 mod sheet;
 mod text_carets;
 mod unwrapped;
@@ -22,12 +24,14 @@ mod wobble;
 
 pub use overlay::loaded;
 pub use parts::ball;
+pub use second_view::SecondView;
 
-use super::pen::SharedTablet;
+use super::pen::{PenReport, SharedTablet};
+use super::preferences::Preferences;
 use super::render_thread::RenderThread;
 use super::theme;
 use crate::Error;
-use crate::math::{Affine2, Rect, Vec2, vec2};
+use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, OpenDocument, Session};
@@ -69,6 +73,8 @@ pub struct Canvas {
     ants: Ants,
     parts: PartMarks,
     wobble: Option<Wobble>,
+    /// Whether pixels are enlarged while a color is taken.
+    has_loupe: bool,
     /// The picture for the navigator, and whether it is outdated.
     small: Option<TextureHandle>,
     small_is_old: bool,
@@ -108,6 +114,7 @@ impl Canvas {
             ants: Ants::default(),
             parts: PartMarks::default(),
             wobble: None,
+            has_loupe: true,
             small: None,
             small_is_old: true,
             area_pt: vec2(800.0, 600.0),
@@ -124,6 +131,17 @@ impl Canvas {
         self.hand.draw_on(tablet);
     }
 
+    /// Works as the user prefers.
+    pub fn prefer(&mut self, preferences: &Preferences) {
+        self.hand.prefer(preferences);
+        self.has_loupe = preferences.has_loupe;
+    }
+
+    /// What the pen reported in this frame.
+    pub fn pens(&self) -> &[PenReport] {
+        self.hand.reports()
+    }
+
     /// Draws the canvas and requests what the pen does.
     pub fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let whole = ui.available_rect_before_wrap();
@@ -135,7 +153,7 @@ impl Canvas {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
         self.area_pt = vec2(rect.width(), rect.height());
         ui.painter().rect_filled(rect, 0.0, theme::surround(ui.visuals()));
-        let Some(open) = session.active() else { return };
+        let Some(open) = session.active() else { return self.hand.overhear(ui) };
         let area_before_pt = self.areas_pt.insert(open.key, self.area_pt).unwrap_or(self.area_pt);
         let Some(view) = open.view else {
             // The first view shows the whole canvas.
@@ -210,6 +228,7 @@ impl Canvas {
             self.insets.draw(ui.ctx(), session, &painter);
             self.trouble = self.trouble.take().or(self.insets.trouble.take());
         }
+        self.draw_loupe(ui, session, inverse, layout.is_some());
         if response.hovered() || self.hand.is_looking() {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
@@ -236,6 +255,15 @@ impl Canvas {
         }
     }
 
+    /// While a color is taken: the pixels around the pen, the new color and the one before.
+    fn draw_loupe(&self, ui: &Ui, session: &Session, canvas_from_screen: Affine2, is_flat: bool) {
+        let Some((at, before)) = self.hand.picking().filter(|_| self.has_loupe) else { return };
+        let pixel = canvas_from_screen.transform_point2(vec2(at.x, at.y));
+        let grid = &self.texture_in_front(is_flat).grid;
+        let colors = loupe::LoupeColors { new: session.picked_color().unwrap_or(before), before };
+        loupe::draw(ui, at, pixel, grid, colors);
+    }
+
     /// Starts or stops swaying the picture by its depth.
     pub fn wobble(&mut self, ctx: &egui::Context, session: &Session) {
         self.wobble = match self.wobble {
@@ -251,6 +279,15 @@ impl Canvas {
         self.ants.bounds()
     }
 
+    /// Draws the picture in another place, as far as it is painted.
+    fn draw_elsewhere(&self, painter: &egui::Painter, screen_from_canvas: Affine2, size: Size) {
+        let at = corners(size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
+        if let Some(checker) = &self.checker {
+            painter.add(checkered(checker.id(), at));
+        }
+        self.texture_in_front(false).draw(painter, screen_from_canvas, size);
+    }
+
     fn draw_checker(&mut self, ui: &Ui, painter: &egui::Painter, canvas: [egui::Pos2; 4]) {
         let [light, dark] = theme::CHECKER;
         let texture = self.checker.get_or_insert_with(|| {
@@ -259,9 +296,7 @@ impl Canvas {
                 TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
             ui.ctx().load_texture("checker", image, options)
         });
-        const SQUARES_PT: f32 = 16.0;
-        let uv = canvas.map(|p| (p, pos2(p.x / SQUARES_PT, p.y / SQUARES_PT)));
-        painter.add(quad(texture.id(), uv, Color32::WHITE));
+        painter.add(checkered(texture.id(), canvas));
     }
 
     fn draw_overlay(
@@ -287,6 +322,13 @@ impl Canvas {
             Color32::from_white_alpha((session.overlay_opacity * 255.0) as u8),
         ));
     }
+}
+
+/// The squares behind what is transparent, of the same size at any zoom.
+fn checkered(texture: egui::TextureId, canvas: [egui::Pos2; 4]) -> egui::Shape {
+    const SQUARES_PT: f32 = 16.0;
+    let uv = canvas.map(|p| (p, pos2(p.x / SQUARES_PT, p.y / SQUARES_PT)));
+    quad(texture, uv, Color32::WHITE)
 }
 
 /// Enter closes a lasso of clicks, Escape cancels it.

@@ -16,17 +16,20 @@ pub mod materials;
 pub mod new;
 pub mod palette;
 pub mod path;
+pub mod preferences;
 pub mod recovery;
 pub mod replace;
 pub mod shape;
-pub mod shortcuts;
 pub mod unsaved;
 pub mod unwrapped;
 
+use super::file_pictures::FilePictures;
 use super::file_purpose::FilePurpose;
-use super::keymap::Keymap;
+use super::pen::PenReport;
 use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
+use super::settings::Settings;
+use super::usage::MemoryMeter;
 use crate::document::SurfaceSource;
 use crate::io::maps::ImportedSurface;
 use crate::io::recovery::LostSession;
@@ -58,7 +61,7 @@ pub enum Dialog {
     Losses(losses::Losses),
     Maps(maps::MapsDialog),
     Palette(palette::CommandPalette),
-    Shortcuts(shortcuts::ShortcutsDialog),
+    Preferences(Box<preferences::PreferencesDialog>),
     About,
 }
 
@@ -93,17 +96,22 @@ pub enum DialogAnswer {
     Delete(LostSession),
 }
 
+/// What dialogs read and change besides their own input.
+pub struct DialogContext<'a> {
+    pub session: &'a Session,
+    pub settings: &'a mut Settings,
+    /// The picture of the document in front, small.
+    pub preview: Option<egui::TextureId>,
+    /// What the pen reported in this frame.
+    pub pens: &'a [PenReport],
+    pub memory: &'a mut MemoryMeter,
+    pub pictures: &'a mut FilePictures,
+    pub requests: &'a mut UiRequests,
+}
+
 impl Dialog {
-    /// Shows the dialog; escape and a click outside close it. `preview`: the picture of the
-    /// document in front, small.
-    pub fn show(
-        &mut self,
-        ctx: &egui::Context,
-        session: &Session,
-        keymap: &mut Keymap,
-        preview: Option<egui::TextureId>,
-        requests: &mut UiRequests,
-    ) -> DialogAnswer {
+    /// Shows the dialog; escape and a click outside close it.
+    pub fn show(&mut self, ctx: &egui::Context, mut context: DialogContext) -> DialogAnswer {
         let mut modal = Modal::new(Id::unique("dialog"));
         if let Dialog::Adjust(_) | Dialog::Filter(_) | Dialog::Materials(_) = self {
             // Beside the picture, which shows what it does.
@@ -113,36 +121,7 @@ impl Dialog {
         }
         let modal = modal.show(ctx, |ui| {
             ui.spacing_mut().item_spacing.y = 7.0;
-            match self {
-                Dialog::New(new) => new.show(ui, requests),
-                Dialog::Adjust(adjust) => adjust.show(ui, requests),
-                Dialog::Filter(filter) => filter.show(ui, requests),
-                Dialog::Edge(edge) => edge.show(ui, requests),
-                Dialog::Keep(keep) => {
-                    let kept = session.active().map_or(&[][..], |open| &open.document().selections);
-                    let names: Vec<String> = kept.iter().map(|kept| kept.name.clone()).collect();
-                    keep.show(ui, &names, requests)
-                }
-                Dialog::Grid => grid::show(ui, session, requests),
-                Dialog::Looks(looks) => looks.show(ui, session, requests),
-                Dialog::Materials(materials) => materials.show(ui, session, requests),
-                Dialog::Canvas(canvas) => canvas.show(ui, requests),
-                Dialog::ImageSize(image) => image.show(ui, requests),
-                Dialog::Turn(turn) => turn.show(ui, requests),
-                Dialog::Export(export) => export.show(ui, session, preview),
-                Dialog::Unwrapped(unwrapped) => unwrapped.show(ui, session),
-                Dialog::Import(import) => import.show(ui),
-                Dialog::Path(path) => path.show(ui),
-                Dialog::Recovery(recovery) => recovery.show(ui),
-                Dialog::Shape(shape) => shape.show(ui, session, requests),
-                Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
-                Dialog::Replace(replace) => replace.show(ui),
-                Dialog::Maps(maps) => maps.show(ui, session),
-                Dialog::Losses(losses) => losses.show(ui),
-                Dialog::Palette(palette) => palette.show(ui, session, keymap, requests),
-                Dialog::Shortcuts(shortcuts) => shortcuts.show(ui, keymap),
-                Dialog::About => help::about(ui),
-            }
+            self.content(ui, &mut context)
         });
         let answer = if modal.should_close() && matches!(modal.inner, DialogAnswer::Open) {
             DialogAnswer::Close
@@ -150,12 +129,50 @@ impl Dialog {
             modal.inner
         };
         if let (Dialog::Adjust(adjust), DialogAnswer::Close) = (&*self, &answer) {
-            adjust.forget(requests);
+            adjust.forget(context.requests);
         }
         if let (Dialog::Filter(filter), DialogAnswer::Close) = (&*self, &answer) {
-            filter.forget(requests);
+            filter.forget(context.requests);
         }
         answer
+    }
+
+    fn content(&mut self, ui: &mut Ui, context: &mut DialogContext) -> DialogAnswer {
+        match self {
+            Dialog::Preferences(preferences) => return preferences.show(ui, context),
+            Dialog::Path(path) => return path.show(ui, context),
+            _ => {}
+        }
+        let DialogContext { session, settings, preview, requests, .. } = context;
+        match self {
+            Dialog::New(new) => new.show(ui, requests),
+            Dialog::Adjust(adjust) => adjust.show(ui, requests),
+            Dialog::Filter(filter) => filter.show(ui, requests),
+            Dialog::Edge(edge) => edge.show(ui, requests),
+            Dialog::Keep(keep) => {
+                let kept = session.active().map_or(&[][..], |open| &open.document().selections);
+                let names: Vec<String> = kept.iter().map(|kept| kept.name.clone()).collect();
+                keep.show(ui, &names, requests)
+            }
+            Dialog::Grid => grid::show(ui, session, requests),
+            Dialog::Looks(looks) => looks.show(ui, session, requests),
+            Dialog::Materials(materials) => materials.show(ui, session, requests),
+            Dialog::Canvas(canvas) => canvas.show(ui, requests),
+            Dialog::ImageSize(image) => image.show(ui, requests),
+            Dialog::Turn(turn) => turn.show(ui, requests),
+            Dialog::Export(export) => export.show(ui, session, *preview),
+            Dialog::Unwrapped(unwrapped) => unwrapped.show(ui, session),
+            Dialog::Import(import) => import.show(ui),
+            Dialog::Recovery(recovery) => recovery.show(ui),
+            Dialog::Shape(shape) => shape.show(ui, session, requests),
+            Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
+            Dialog::Replace(replace) => replace.show(ui),
+            Dialog::Maps(maps) => maps.show(ui, session),
+            Dialog::Losses(losses) => losses.show(ui),
+            Dialog::Palette(palette) => palette.show(ui, session, &settings.keymap, requests),
+            Dialog::About => help::about(ui),
+            Dialog::Preferences(_) | Dialog::Path(_) => DialogAnswer::Close,
+        }
     }
 }
 
@@ -165,7 +182,10 @@ fn close(ui: &mut Ui) -> DialogAnswer {
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     let right = egui::Layout::right_to_left(egui::Align::Center);
     let closed = ui.allocate_ui_with_layout(row, right, |ui| ui.button("Close").clicked()).inner;
-    if closed { DialogAnswer::Close } else { DialogAnswer::Open }
+    // Enter on a control belongs to the control.
+    let is_free = ui.memory(|memory| memory.focused().is_none());
+    let is_accepted = is_free && ui.input(|i| i.key_pressed(egui::Key::Enter));
+    if closed || is_accepted { DialogAnswer::Close } else { DialogAnswer::Open }
 }
 
 /// The two buttons at a dialog's foot, the affirmative one last; true for it, false for the other.

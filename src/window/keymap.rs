@@ -1,5 +1,9 @@
-//! The keymap: the default keys of commands and tools, and those the user chose instead. Floor 7.
-//! `keys` handles key presses.
+//! The keymap: the default keys of commands and tools, those of a preset, and those the user chose
+//! instead. Floor 7. `keys` handles key presses.
+
+mod presets;
+
+pub use presets::KeyPreset;
 
 use super::commands::{self, MenuCommand};
 use crate::tools::ToolKind;
@@ -8,9 +12,12 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// The keys chosen by the user, by the name of the command or the label of the tool; all others
-/// keep their defaults.
+/// have those of the preset.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keymap {
+    preset: KeyPreset,
+    /// Where the preset differs from the default keys.
+    of_preset: BTreeMap<&'static str, Vec<KeyboardShortcut>>,
     custom: BTreeMap<String, Vec<KeyboardShortcut>>,
 }
 
@@ -55,9 +62,46 @@ impl KeyTarget {
     }
 }
 
+/// What a preset changes: its own rows, and what lost a default key to one of them.
+fn differences(preset: KeyPreset) -> BTreeMap<&'static str, Vec<KeyboardShortcut>> {
+    let rows: BTreeMap<&str, Vec<KeyboardShortcut>> = preset
+        .rows()
+        .iter()
+        .map(|(name, keys)| (*name, keys.iter().filter_map(|keys| read(keys)).collect()))
+        .collect();
+    let is_taken = |keys: &KeyboardShortcut| rows.values().any(|taken| taken.contains(keys));
+    let changed = |keyed: KeyTarget| {
+        let keys = match rows.get(keyed.name()) {
+            Some(keys) => keys.clone(),
+            None => keyed.default_keys().into_iter().filter(|keys| !is_taken(keys)).collect(),
+        };
+        (keys != keyed.default_keys()).then_some((keyed.name(), keys))
+    };
+    KeyTarget::all().filter_map(changed).collect()
+}
+
 impl Keymap {
     pub fn of(&self, keyed: KeyTarget) -> Vec<KeyboardShortcut> {
-        self.custom.get(keyed.name()).cloned().unwrap_or_else(|| keyed.default_keys())
+        self.custom.get(keyed.name()).cloned().unwrap_or_else(|| self.usual(keyed))
+    }
+
+    /// Its keys in the preset.
+    fn usual(&self, keyed: KeyTarget) -> Vec<KeyboardShortcut> {
+        self.of_preset.get(keyed.name()).cloned().unwrap_or_else(|| keyed.default_keys())
+    }
+
+    pub fn preset(&self) -> KeyPreset {
+        self.preset
+    }
+
+    /// Takes all keys of a preset; what the user chose is dropped.
+    pub fn with_preset(preset: KeyPreset) -> Self {
+        Self { preset, of_preset: differences(preset), custom: BTreeMap::new() }
+    }
+
+    /// Whether the user changed anything of the preset.
+    pub fn is_changed(&self) -> bool {
+        !self.custom.is_empty()
     }
 
     /// The first key of a command, which menus show.
@@ -69,9 +113,9 @@ impl Keymap {
         self.custom.contains_key(keyed.name())
     }
 
-    /// Sets the keys; default ones are not stored.
+    /// Sets the keys; those of the preset are not stored.
     pub fn set(&mut self, keyed: KeyTarget, keys: Vec<KeyboardShortcut>) {
-        if keys == keyed.default_keys() {
+        if keys == self.usual(keyed) {
             self.custom.remove(keyed.name());
         } else {
             self.custom.insert(keyed.name().to_owned(), keys);
@@ -114,7 +158,7 @@ impl Keymap {
     }
 
     /// Unknown entries are left out.
-    pub fn from_json(value: &Map<String, Value>) -> Self {
+    pub fn from_json(preset: KeyPreset, value: &Map<String, Value>) -> Self {
         let known = |name: &str| KeyTarget::all().any(|keyed| keyed.name() == name);
         let keys = |list: &Value| -> Option<Vec<KeyboardShortcut>> {
             list.as_array()?.iter().map(|keys| read(keys.as_str()?)).collect()
@@ -122,6 +166,7 @@ impl Keymap {
         let custom = value.iter().filter(|(name, _)| known(name));
         Self {
             custom: custom.filter_map(|(name, list)| Some((name.clone(), keys(list)?))).collect(),
+            ..Self::with_preset(preset)
         }
     }
 }
@@ -185,9 +230,52 @@ mod tests {
         keymap.take(of_brush, save);
         assert!(keymap.of(brush).is_empty() && keymap.of(save).contains(&of_brush));
         let json = keymap.to_json();
-        assert_eq!(Keymap::from_json(json.as_object().unwrap()), keymap);
+        assert_eq!(Keymap::from_json(KeyPreset::Rilievo, json.as_object().unwrap()), keymap);
         keymap.reset(brush);
         keymap.reset(save);
         assert_eq!(keymap, Keymap::default());
+    }
+    #[test]
+    fn every_row_of_a_preset_names_a_command_or_tool_and_keys_that_exist() {
+        for (preset, _) in KeyPreset::ALL {
+            for (name, keys) in preset.rows() {
+                assert!(KeyTarget::all().any(|keyed| keyed.name() == *name), "no “{name}”");
+                for keys in *keys {
+                    assert!(read(keys).is_some(), "{name}: no key “{keys}”");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_two_commands_share_a_key_in_a_preset_and_none_loses_its_last() {
+        for (preset, _) in KeyPreset::ALL {
+            let keymap = Keymap::with_preset(preset);
+            for keyed in KeyTarget::all() {
+                let keys = keymap.of(keyed);
+                let name = keyed.name();
+                for one in &keys {
+                    let other = keymap.conflict(*one, keyed).map(KeyTarget::name);
+                    assert_eq!(other, None, "{preset:?}: {} of {name}", written(*one));
+                }
+                let had = !keyed.default_keys().is_empty();
+                assert!(!had || !keys.is_empty(), "{preset:?}: {name} has no key");
+            }
+        }
+    }
+
+    #[test]
+    fn a_preset_is_changed_by_hand_and_comes_back_with_the_change() {
+        let mut keymap = Keymap::with_preset(KeyPreset::Krita);
+        let [picker, save] = ["Eyedropper", "Save"].map(named);
+        assert_eq!(keymap.of(picker), [read("P").unwrap()]);
+        assert!(!keymap.is_custom(picker), "a preset's key is not the user's");
+        keymap.take(read("P").unwrap(), save);
+        assert!(keymap.of(picker).is_empty() && keymap.is_changed());
+        let json = keymap.to_json();
+        assert_eq!(Keymap::from_json(KeyPreset::Krita, json.as_object().unwrap()), keymap);
+        keymap.reset(picker);
+        keymap.reset(save);
+        assert_eq!(keymap, Keymap::with_preset(KeyPreset::Krita));
     }
 }

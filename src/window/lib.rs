@@ -4,11 +4,13 @@
 #![cfg_attr(not(test), warn(missing_docs))]
 
 mod advice;
+mod brush_shelf;
 mod canvas;
 mod clipboard;
 mod commands;
 mod dialogs;
 mod event_loop;
+mod file_pictures;
 mod file_purpose;
 mod files;
 mod icons;
@@ -24,6 +26,7 @@ mod panels;
 mod part_pictures;
 mod pen;
 mod pending;
+mod preferences;
 mod program_icon;
 mod recovery;
 mod render_thread;

@@ -10,7 +10,7 @@ pub mod brush_mode;
 pub mod brushes;
 pub mod colors;
 mod crop;
-mod curve;
+pub mod curve;
 pub mod fill;
 mod form_drawing;
 pub mod history;

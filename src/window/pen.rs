@@ -12,6 +12,7 @@ mod tablet;
 #[cfg(all(unix, not(target_os = "macos")))]
 mod x11;
 
+use crate::paint::Curve;
 use eframe::egui::{PointerButton, Pos2};
 
 pub use events::WindowPen;
@@ -36,6 +37,14 @@ pub struct PenReport {
     pub secs: f64,
     /// The pen is held upside down.
     pub is_eraser: bool,
+}
+
+impl PenReport {
+    /// The same with another pressure for each; what is not a number stays so.
+    pub fn pressed_along(self, curve: &Curve) -> Self {
+        let along = |pressed: f32| if pressed.is_finite() { curve.at(pressed) } else { pressed };
+        Self { pressure: self.pressure.map(along), ..self }
+    }
 }
 
 /// What the pen did.

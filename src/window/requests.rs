@@ -3,6 +3,7 @@
 
 use super::file_purpose::FilePurpose;
 use super::panel_layout::PanelKind;
+use super::preferences::PreferencePage;
 use crate::paint::{ColorAdjustment, PictureFilter};
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, PasteTo};
@@ -78,8 +79,13 @@ pub enum WindowRequest {
     TurnDialog,
     Paste(PasteTo),
     Palette,
-    Shortcuts,
+    /// The preferences, at a page.
+    Preferences(PreferencePage),
     About,
+    /// Opens the menus, for the arrow keys.
+    Menus,
+    /// Opens or closes the second view of the document.
+    SecondView,
     TogglePanels,
     OtherSide,
     PanelsApart,
@@ -92,6 +98,8 @@ pub enum WindowRequest {
     NextLook,
     /// Shows or hides in the status bar what is measured.
     ToggleDetails,
+    /// One of the sizes to choose from.
+    ScaleInterface(f32),
     ResizeInterface {
         is_larger: bool,
     },

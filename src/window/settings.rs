@@ -2,14 +2,17 @@
 //! theme, keys. A small JSON file in the user's folder for settings; a broken one is reported and
 //! never keeps the program from starting. Floor 7. Not here: replacing the file (`io::replace`).
 
+use super::brush_shelf::BrushShelf;
 use super::jobs;
-use super::keymap::Keymap;
+use super::keymap::{KeyPreset, Keymap};
 use super::panel_layout::{ColorView, PanelKind, PanelLayout, SIDES};
+use super::preferences::Preferences;
 use super::theme::Look;
 use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
 use crate::document::Progress;
 use crate::io::fs::Disk;
 use crate::io::replace::{Overwrite, replace};
+use crate::math::srgb::Color;
 use crate::session::replay::ReplayValue;
 use crate::tools::snap::ViewAids;
 use crate::{Error, Result};
@@ -17,8 +20,8 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The number of recent files.
-const RECENT: usize = 12;
+/// The most bookmarks that are read.
+const BOOKMARKS: usize = 100;
 /// The greatest size of a settings file; larger files are ignored.
 const LARGEST_BYTES: u64 = 1 << 20;
 /// The time between two checks for changes.
@@ -43,6 +46,12 @@ pub struct Settings {
     pub color: ColorView,
     /// Whether the status bar shows what is measured: the surface under the pointer, memory, times.
     pub has_details: bool,
+    pub preferences: Preferences,
+    /// The last colors painted with, newest first, if they are remembered.
+    pub colors: Vec<Color>,
+    /// Folders that the user marked in the window's own file dialog.
+    pub bookmarks: Vec<PathBuf>,
+    pub shelf: BrushShelf,
 }
 
 impl Default for Settings {
@@ -58,6 +67,10 @@ impl Default for Settings {
             kept_share: USUAL_KEPT_SHARE,
             color: ColorView::default(),
             has_details: false,
+            preferences: Preferences::default(),
+            colors: Vec::new(),
+            bookmarks: Vec::new(),
+            shelf: BrushShelf::default(),
         }
     }
 }
@@ -66,17 +79,24 @@ impl Settings {
     pub fn recent_is(&mut self, file: PathBuf) {
         self.recent.retain(|known| *known != file);
         self.recent.insert(0, file);
-        self.recent.truncate(RECENT);
+        self.keep_recent();
+    }
+
+    /// Drops recent files beyond their number.
+    pub fn keep_recent(&mut self) {
+        self.recent.truncate(self.preferences.recent_files);
     }
 
     fn to_json(&self) -> Value {
         let PanelLayout { side, is_hidden, front, below, floating, width_pt } = &self.layout;
-        let recent: Vec<String> =
-            self.recent.iter().map(|file| file.to_string_lossy().into_owned()).collect();
+        let paths = |paths: &[PathBuf]| -> Vec<String> {
+            paths.iter().map(|path| path.to_string_lossy().into_owned()).collect()
+        };
+        let colors: Vec<String> = self.colors.iter().map(Color::to_string).collect();
         let floating: Vec<&str> = floating.iter().map(|front| front.name()).collect();
         let side = SIDES.iter().find(|(known, _)| known == side).map_or("right", |(_, name)| name);
         json!({
-            "recent": recent,
+            "recent": paths(&self.recent),
             "look": self.look.name(),
             "scale": self.scale,
             "hint done": self.is_hint_done,
@@ -84,11 +104,16 @@ impl Settings {
                 "side": side, "hidden": is_hidden, "front": front.name(), "below": below.name(), "apart": floating,
                 "width": width_pt.round(),
             },
+            "key preset": self.keymap.preset().name(),
             "keys": self.keymap.to_json(),
             "aids": self.aids.written(),
             "kept share": self.kept_share,
             "color": { "wheel": self.color.is_wheel, "numbers": self.color.has_numbers },
             "details": self.has_details,
+            "preferences": self.preferences.to_json(),
+            "colors": colors,
+            "bookmarks": paths(&self.bookmarks),
+            "brushes": self.shelf.to_json(),
         })
     }
 
@@ -124,9 +149,17 @@ impl Settings {
                 .collect(),
             width_pt: width.max(200.0).min(800.0),
         };
-        let recent =
-            texts(value.get("recent")).into_iter().take(RECENT).map(PathBuf::from).collect();
-        let keymap = Keymap::from_json(object("keys"));
+        let preferences = Preferences::from_json(object("preferences"));
+        let paths = |name: &str, most: usize| {
+            texts(value.get(name)).into_iter().take(most).map(PathBuf::from).collect()
+        };
+        let (recent, bookmarks) =
+            (paths("recent", preferences.recent_files), paths("bookmarks", BOOKMARKS));
+        let colors = texts(value.get("colors"));
+        let colors = colors.iter().filter_map(|color| Color::parse(color)).collect();
+        let preset = value.get("key preset").and_then(Value::as_str);
+        let preset = preset.and_then(KeyPreset::from_name).unwrap_or_default();
+        let keymap = Keymap::from_json(preset, object("keys"));
         let scale = value
             .get("scale")
             .and_then(Value::as_f64)
@@ -157,6 +190,10 @@ impl Settings {
             kept_share,
             color,
             has_details,
+            preferences,
+            colors,
+            bookmarks,
+            shelf: BrushShelf::from_json(object("brushes")),
         }
     }
 
@@ -274,6 +311,9 @@ mod tests {
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
         let color = ColorView { is_wheel: true, has_numbers: true };
+        let keymap = Keymap::with_preset(KeyPreset::Krita);
+        let preferences = Preferences { recent_files: 15, ..Preferences::default() };
+        let (colors, bookmarks) = (vec![Color::WHITE], vec![PathBuf::from("/pictures")]);
         let mut settings = Settings {
             look: Look::Gray,
             layout,
@@ -281,13 +321,17 @@ mod tests {
             aids,
             color,
             has_details: true,
+            keymap,
+            preferences,
+            colors,
+            bookmarks,
             ..Settings::default()
         };
         (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
         settings.write(&file).unwrap();
         let read = Settings::read(&file).unwrap();
         assert_eq!(read, settings);
-        assert_eq!((read.recent.len(), read.recent[0].to_str()), (RECENT, Some("19.ora")));
+        assert_eq!((read.recent.len(), read.recent[0].to_str()), (15, Some("19.ora")));
     }
 
     #[test]

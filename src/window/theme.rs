@@ -175,6 +175,25 @@ const LIGHT: Grays = Grays {
     selected: 0.55,
 };
 
+/// Sizes of the interface to choose from; 1 is the system's.
+pub const SCALES: [f32; 10] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0];
+
+/// The height of controls, points of the interface.
+const CONTROL_PT: f32 = 21.0;
+/// The height of a control for fingers, points of an interface that is not enlarged.
+const FINGER_PT: f32 = 32.0;
+
+/// Controls as high as fingers need where the interface is enlarged, or where the user wants it so.
+pub fn enlarge_targets(ctx: &egui::Context, always: bool) {
+    let zoom = ctx.zoom_factor();
+    let finger_pt = (FINGER_PT / zoom).max(CONTROL_PT);
+    let height_pt = if always || zoom > 1.0 { finger_pt } else { CONTROL_PT };
+    let now_pt = ctx.global_style().spacing.interact_size.y;
+    if (now_pt - height_pt).abs() > 0.01 {
+        ctx.all_styles_mut(|style| style.spacing.interact_size.y = height_pt);
+    }
+}
+
 /// Sets the theme of the first start.
 pub fn install(ctx: &egui::Context) {
     Look::default().show(ctx);
@@ -253,7 +272,7 @@ fn apply_style(style: &mut Style, mut visuals: Visuals, grays: &Grays) {
     style.interaction.selectable_labels = false;
     style.spacing.item_spacing = vec2(6.0, 5.0);
     style.spacing.button_padding = vec2(7.0, 3.0);
-    style.spacing.interact_size = vec2(36.0, 21.0);
+    style.spacing.interact_size = vec2(36.0, CONTROL_PT);
     style.spacing.slider_width = 110.0;
     style.spacing.combo_width = 92.0;
     for (kind, size) in [
@@ -328,6 +347,23 @@ mod tests {
     }
 
     /// WCAG 2 asks for 3 where a shape says what a control is.
+    #[test]
+    fn controls_are_as_high_as_fingers_need_in_a_larger_interface_and_by_choice() {
+        let height_of = |zoom: f32, always: bool| {
+            let ctx = egui::Context::default();
+            ctx.set_zoom_factor(zoom);
+            // The zoom is that of the next frame.
+            ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
+            Look::Light.show(&ctx);
+            enlarge_targets(&ctx, always);
+            ctx.global_style().spacing.interact_size.y * zoom
+        };
+        assert_eq!(height_of(1.0, false), CONTROL_PT);
+        for (zoom, always) in [(1.0, true), (1.25, false), (1.5, false), (2.0, false)] {
+            assert!(height_of(zoom, always) > FINGER_PT - 0.1, "{zoom}");
+        }
+    }
+
     #[test]
     fn the_outline_of_an_empty_box_is_seen() {
         for (look, name) in Look::ALL {

@@ -12,13 +12,14 @@ mod typing;
 mod unwrap;
 mod work;
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, SecondView};
 use super::clipboard::{self, Clipboard, ClipboardSource};
 use super::dialogs::import::MapsRead;
-use super::dialogs::{Dialog, DialogAnswer, export, maps, unwrapped};
+use super::dialogs::{Dialog, DialogAnswer, DialogContext, export, maps, unwrapped};
 use super::jobs::{JobKind, JobResult, JobWindow, Jobs};
 use super::messages::Messages;
 use super::panel_layout::PanelKind;
+use super::panels::menu::MenuState;
 use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
@@ -26,6 +27,7 @@ use super::sample::SAMPLES;
 use super::settings::{Settings, SettingsFile};
 use super::start_pictures::StartPictures;
 use super::swatches::Swatches;
+use super::theme;
 use super::thumbnails::Thumbnails;
 use crate::Error;
 use crate::advice::with_advice;
@@ -46,6 +48,7 @@ pub struct MainWindow {
     /// The program behind the window.
     pub session: Session,
     canvas: Canvas,
+    second_view: SecondView,
     thumbnails: Thumbnails,
     swatches: Swatches,
     start: StartPictures,
@@ -54,6 +57,8 @@ pub struct MainWindow {
     pub(super) dialogs: Vec<Dialog>,
     /// Messages that stay until they are closed.
     pub(super) messages: Messages,
+    /// The menus by keyboard, and the pictures of files.
+    menu: MenuState,
     settings: Settings,
     keeper: SettingsFile,
     /// Whether it uses its own file dialogs instead of the system's.
@@ -109,15 +114,20 @@ impl MainWindow {
         settings.look.show(ctx);
         let mut messages = Messages::default();
         messages.extend(trouble);
+        let mut session = Session::default().with_aids(settings.aids);
+        session.tools.presses_by_speed = settings.preferences.presses_by_speed;
+        session.recent_colors.clone_from(&settings.colors);
         Self {
-            session: Session::default().with_aids(settings.aids),
+            session,
             canvas: Canvas::new(ctx),
+            second_view: SecondView::default(),
             thumbnails: Thumbnails::new(ctx),
             swatches: Swatches::default(),
             start: StartPictures::default(),
             jobs: Jobs::new(ctx),
             dialogs: Vec::new(),
             messages,
+            menu: MenuState::default(),
             settings,
             keeper,
             asks_itself: false,
@@ -207,6 +217,7 @@ impl MainWindow {
         self.hear_keys(ui.ctx(), &mut requests);
         self.take_dropped(ui.ctx());
         self.lay_out(ui, &mut requests);
+        self.second_view.show(ui.ctx(), &self.canvas, &self.session);
         self.show_dialog(ui.ctx(), &mut requests);
         self.show_editing(ui.ctx());
         self.guard_leaving(ui.ctx());
@@ -215,8 +226,26 @@ impl MainWindow {
         self.expect_dialog(dialogs);
         self.session.keep();
         self.set_title(ui.ctx());
-        self.settings.aids = self.session.tools.aids;
+        self.follow_settings(ui.ctx());
         self.keeper.keep(&self.settings);
+    }
+
+    /// The settings learn what the session keeps of them, and the session and the canvas what the
+    /// user prefers.
+    fn follow_settings(&mut self, ctx: &egui::Context) {
+        let (settings, session) = (&mut self.settings, &mut self.session);
+        settings.aids = session.tools.aids;
+        let preferences = &mut settings.preferences;
+        preferences.presses_by_speed = session.tools.presses_by_speed;
+        settings.colors.clear();
+        if preferences.remembers_colors {
+            settings.colors.clone_from(&session.recent_colors);
+        }
+        settings.shelf.note_used(&session.preset);
+        session.keep_steps(preferences.undo_steps);
+        self.canvas.prefer(preferences);
+        theme::enlarge_targets(ctx, preferences.has_large_targets);
+        settings.keep_recent();
     }
 
     /// Collects the errors of the window's threads.
@@ -255,7 +284,16 @@ impl MainWindow {
         let is_flat = self.session.active().is_some_and(|open| open.unwrap_settings().is_some());
         let is_seen = matches!(dialog, Dialog::Export(_)) && !is_flat;
         let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
-        let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, requests);
+        let context = DialogContext {
+            session: &self.session,
+            settings: &mut self.settings,
+            preview,
+            pens: self.canvas.pens(),
+            memory: &mut self.memory,
+            pictures: &mut self.menu.pictures,
+            requests,
+        };
+        let answer = dialog.show(ctx, context);
         match dialog {
             Dialog::Export(export) => self.export = export.clone(),
             Dialog::Maps(maps) => self.maps = maps.clone(),

@@ -89,3 +89,22 @@ fn a_brush_is_kept_under_a_name_and_stands_with_ones_own() {
     press(&mut harness, "Presets");
     harness.get_by_label("Brush My wash");
 }
+
+#[test]
+fn favorites_and_the_last_used_come_before_all_others() {
+    let mut harness = window();
+    press(&mut harness, "Brushes");
+    tap(&mut harness, "Brush Airbrush");
+    assert!(harness.query_by_label("Brush Airbrush, last used").is_some());
+    harness.get_by_label("Brush Soft round, last used").click_secondary();
+    steps(&mut harness);
+    press(&mut harness, "Add to favorites");
+    let top = |harness: &Story, label: &str| harness.get_by_label(label).rect().top();
+    let favorite = top(&harness, "Brush Soft round, favorite");
+    assert!(favorite < top(&harness, "Brush Airbrush, last used"));
+    assert!(top(&harness, "Brush Airbrush, last used") < top(&harness, "Brush Soft round"));
+    harness.get_by_label("Brush Soft round, favorite").click_secondary();
+    steps(&mut harness);
+    press(&mut harness, "Remove from favorites");
+    assert!(harness.query_by_label("Brush Soft round, favorite").is_none());
+}

@@ -198,3 +198,20 @@ fn a_canvas_that_was_seen_whole_is_so_in_a_window_that_grew_behind_another() {
     assert!(key_of(&harness) == first && grown > before + 0.1, "{before} {grown}");
     assert_eq!(zoom(&harness), grown);
 }
+
+#[test]
+fn a_second_view_shows_the_document_until_it_is_asked_to_go() {
+    let mut harness = window();
+    command(&mut harness, "Second view");
+    let view = harness.get_by_label("Second view").rect();
+    assert!(view.width() > 200.0 && view.height() > 200.0, "{view:?}");
+    let before = session(&harness).active().unwrap().view;
+    harness.drag_at(view.center());
+    steps(&mut harness);
+    harness.drop_at(view.center() + vec2(30.0, 20.0));
+    steps(&mut harness);
+    let open = session(&harness).active().unwrap();
+    assert_eq!((open.view, open.history.past().len()), (before, 0), "nothing is painted or moved");
+    command(&mut harness, "Second view");
+    assert!(harness.query_by_label("Second view").is_none());
+}

@@ -42,7 +42,7 @@ fn the_surface_is_laid_flat_painted_on_and_the_story_replays_to_the_same_bytes()
         assert!(stroke.operator().unwrapping().is_some() && stroke.samples().len() > 20);
         let canvas = open.document().size.rect();
         assert!(stroke.samples().iter().all(|s| canvas.contains(s.at.x as i32, s.at.y as i32)));
-        assert_eq!(open.history.undo_label(), Some("Brush stroke"));
+        assert_eq!(open.history.undo_label(), Some("Wrapped stroke"));
     }
     key(&mut harness, Modifiers::ALT, Key::Num9);
     assert!(!is_unwrapped(&harness));

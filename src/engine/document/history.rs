@@ -70,7 +70,13 @@ impl<T> History<T> {
         self.future.clear();
         let old = std::mem::replace(&mut self.present, document.reshaped());
         self.past.push(HistoryStep { label: label.into(), document: old, before, after: None });
-        let excess = self.past.len().saturating_sub(self.limit);
+        self.keep(self.limit);
+    }
+
+    /// Keeps at most `limit` past steps from now on; the oldest are forgotten.
+    pub fn keep(&mut self, limit: usize) {
+        self.limit = limit;
+        let excess = self.past.len().saturating_sub(limit);
         self.past.drain(..excess);
     }
 

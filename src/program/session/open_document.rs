@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use target::EditTarget;
 
 /// Steps that can be undone.
-const STEPS: usize = 200;
+pub(super) const STEPS: usize = 200;
 
 /// A step: its name, the resulting document, and the new selection.
 pub struct Edit {

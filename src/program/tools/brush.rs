@@ -16,9 +16,9 @@ use crate::document::{
     StrokeList,
 };
 use crate::math::{Vec2, hash, srgb::Color};
-use crate::paint::{ActiveStrokes, Backdrop, BrushMode, Sample, StabilizedPen, Stroke};
+use crate::paint::{ActiveStrokes, Backdrop, Brush, BrushMode, Sample, StabilizedPen, Stroke};
 use crate::raster::TileAt;
-use crate::surface::{PaintLimit, Surface};
+use crate::surface::{Operator, PaintLimit, Surface};
 use erase::EraseStrokesGesture;
 use std::sync::Arc;
 use stroke::{StrokeGesture, StrokeTarget};
@@ -96,7 +96,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         })),
         stabilized: StabilizedPen::of_brush(&brush, context.tools.operator, &scene),
         room: Some(Stroke::MOST_SAMPLES),
-        label: if is_eraser { "Erase" } else { "Brush stroke" },
+        label: if is_eraser { "Erase" } else { name_of(&brush, context.tools.operator) },
         document,
         layer: id,
         scene,
@@ -104,6 +104,20 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         images,
     };
     begin(painting, pen)
+}
+
+/// What a stroke is called in the history: what it does to the paint, or how it is bent.
+fn name_of(brush: &Brush, operator: Operator) -> &'static str {
+    match (brush.mode, operator) {
+        (BrushMode::Smudge { .. }, _) => "Smudge",
+        (BrushMode::Blur { .. }, _) => "Blur",
+        (BrushMode::Clone { .. }, _) => "Clone",
+        (BrushMode::Paint, _) if brush.erases => "Erase",
+        (BrushMode::Paint, Operator::None) => "Brush stroke",
+        (BrushMode::Paint, Operator::Normal { .. }) => "Gloss highlight",
+        (BrushMode::Paint, Operator::Reflection { .. }) => "Mirrored stroke",
+        (BrushMode::Paint, Operator::Depth { .. } | Operator::Surface { .. }) => "Wrapped stroke",
+    }
 }
 
 /// Whether a mark on a layer begins on a part, and is no drawing from which parts have outlines:

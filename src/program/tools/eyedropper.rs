@@ -1,5 +1,5 @@
-//! The eyedropper: the color that the flattened picture shows under the pen.
-//! Floor 5.
+//! The eyedropper: the color that the flattened picture shows under the pen, taken when the pen
+//! lifts. Floor 5.
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Document, PreparedDocument, Progress};
@@ -9,23 +9,31 @@ use crate::raster::{TILE, TileAt};
 
 /// The pen comes down with the tool.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    let mut picking = EyedropperGesture { document: context.document.clone() };
+    let mut picking = EyedropperGesture { document: context.document.clone(), color: None };
     let outcome = picking.drag(&[pen]);
     (Some(Box::new(picking)), outcome)
 }
 
 struct EyedropperGesture {
     document: Document,
+    /// The last color under the pen.
+    color: Option<Color>,
 }
 
 impl Gesture for EyedropperGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let color = pens.last().and_then(|pen| color_at(&self.document, pen.place()));
-        color.map_or(Outcome::Idle, |color| Outcome::set(move |tools| tools.color = color))
+        self.color = color.or(self.color);
+        Outcome::Idle
     }
 
     fn release(&mut self) -> Outcome {
-        Outcome::Cancel
+        let take = |color| Outcome::Cancel.with_settings(move |tools| tools.color = color);
+        self.color.map_or(Outcome::Cancel, take)
+    }
+
+    fn picked_color(&self) -> Option<Color> {
+        self.color
     }
 }
 
@@ -50,6 +58,21 @@ mod tests {
     use crate::document::{Content, Layer};
     use crate::math::{Size, vec2};
     use std::sync::Arc;
+
+    #[test]
+    fn a_color_is_taken_when_the_pen_lifts() {
+        let teal = Color { r: 10, g: 120, b: 130, a: 255 };
+        let layers = vec![Arc::new(Layer::new("fill", Content::Fill(teal)))];
+        let document = Document { layers, ..Document::empty(Size::new(100, 90)) };
+        let tools = crate::tools::ToolSettings::default();
+        let context = ToolContext::new(&document, &tools);
+        let (gesture, outcome) = press(&context, PenSample::at(vec2(5.0, 5.0)));
+        let mut gesture = gesture.unwrap();
+        assert_eq!((outcome.settings().color, gesture.picked_color()), (tools.color, Some(teal)));
+        // Beyond the canvas it keeps the last one.
+        gesture.drag(&[PenSample::at(vec2(500.0, 5.0))]);
+        assert_eq!(gesture.release().settings().color, teal);
+    }
 
     #[test]
     fn the_color_is_that_of_the_picture_and_beyond_it_there_is_none() {

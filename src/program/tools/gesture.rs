@@ -5,7 +5,7 @@ use super::ToolSettings;
 use super::pen::PenSample;
 use super::snap::SnapLines;
 use crate::document::{Document, LayerId};
-use crate::math::Vec2;
+use crate::math::{Vec2, srgb::Color};
 use std::borrow::Cow;
 
 /// What a tool returns for an event of the pen.
@@ -94,6 +94,11 @@ pub trait Gesture: Send {
 
     /// The last point that it was drawn to, if that is not at the pen.
     fn end(&self) -> Option<Vec2> {
+        None
+    }
+
+    /// The color that it takes when the pen lifts.
+    fn picked_color(&self) -> Option<Color> {
         None
     }
 

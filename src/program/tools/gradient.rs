@@ -1,11 +1,17 @@
-//! The gradient tool: a drag creates a gradient; the ends of the selected one are handles.
-//! Floor 5.
+//! The gradient tool: a drag paints a gradient into the paint layer, or creates a live one; the ends
+//! of the selected live one are handles. Floor 5.
+
+mod painted;
 
 use super::snap::{SnapLines, SnapTargets};
-use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
+use super::{BrushTarget, GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live};
 use crate::math::Vec2;
 use crate::paint::{Gradient, GradientStop, ImageFilter};
+use painted::PaintedGradient;
+
+/// A shorter drag leaves no gradient, px.
+const SHORTEST_PX: f32 = 2.0;
 
 /// Which end of a gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +58,15 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let place = selected.and_then(|layer| context.document.place_of(layer.id));
     let (document, snap, lines) =
         (context.document.clone(), context.snap.clone(), SnapLines::default());
+    let is_painted = !context.tools.live_gradients && context.target == BrushTarget::Layer;
+    let paint = selected.filter(|layer| matches!(layer.content, Content::Pixels(_)) && is_painted);
+    if let Some(layer) = paint {
+        if let Some(why) = closed::unpaintable(context.document, layer) {
+            return (None, Outcome::Refused(why.into()));
+        }
+        let painted = PaintedGradient { document, layer: layer.id, gradient, snap, lines };
+        return (Some(Box::new(painted)), Outcome::Idle);
+    }
     let laid = NewGradientGesture { document, place, gradient, layer: None, snap, lines };
     (Some(Box::new(laid)), Outcome::Idle)
 }
@@ -94,7 +109,7 @@ impl Gesture for NewGradientGesture {
     }
 
     fn release(&mut self) -> Outcome {
-        if self.gradient.from.distance(self.gradient.to) < 2.0 {
+        if self.gradient.from.distance(self.gradient.to) < SHORTEST_PX {
             return Outcome::Cancel;
         }
         let Some(document) = self.with() else { return Outcome::Cancel };

@@ -21,7 +21,8 @@ rilievo_engine::named! {
         ),
         Gradient = "gradient" => (
             "Gradient",
-            "Drag to create a gradient from the first color to the second, or drag an end of the selected one",
+            "Drag from the first color to the second, into the paint layer or as a live layer, or drag an end of the \
+             selected live gradient",
         ),
         Image = "image" => (
             "Image",

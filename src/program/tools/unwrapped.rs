@@ -8,7 +8,7 @@ use super::assistants::StrokeStart;
 use super::kept_context::KeptContext;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolKind, ToolSettings};
 use crate::document::{Document, LayerId};
-use crate::math::Vec2;
+use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, DistanceMetric, Sample, StabilizedPen, Stabilizer};
 use crate::surface::Surface;
 use crate::surface::unwrap::{CanvasPlace, PlaneLayout};
@@ -128,6 +128,10 @@ impl Gesture for LedGesture {
 
     fn release(&mut self) -> Outcome {
         self.tool.release()
+    }
+
+    fn picked_color(&self) -> Option<Color> {
+        self.tool.picked_color()
     }
 }
 

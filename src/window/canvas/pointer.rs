@@ -3,11 +3,12 @@
 
 use super::frame_input::{FrameInput, wheel};
 use super::rulers;
-use crate::math::{COORDINATE, Vec2, vec2};
-use crate::paint::Sample;
+use crate::math::{COORDINATE, Vec2, srgb::Color, vec2};
+use crate::paint::{Curve, Sample};
 use crate::pen::{
     FilteredReport, PenPhase, PenReport, PenSource, ReportFilter, SharedTablet, WindowPen,
 };
+use crate::preferences::{PickKeys, Preferences};
 use crate::session::actions::{EditAction, GuideAction, HandAction, PointerAction, ViewAction};
 use crate::session::{Action, CanvasView, Session};
 use crate::tools::{ModifierKeys, PenSample, ToolKind};
@@ -54,6 +55,14 @@ pub struct PointerState {
     area: Rect,
     /// A guide is pulled out of a ruler.
     pulls: bool,
+    /// What the pen reported in this frame.
+    reports: Vec<PenReport>,
+    /// The keys that take a color.
+    pick_keys: PickKeys,
+    /// From a pen's pressure to the one that is painted with.
+    pressure: Curve,
+    /// The first color before a color is taken.
+    color_before: Option<Color>,
 }
 
 impl Default for PointerState {
@@ -68,6 +77,10 @@ impl Default for PointerState {
             space: false,
             area: Rect::NOTHING,
             pulls: false,
+            reports: Vec::new(),
+            pick_keys: PickKeys::default(),
+            pressure: Preferences::default().pressure,
+            color_before: None,
         }
     }
 }
@@ -76,6 +89,34 @@ impl PointerState {
     /// The tablet that the window's pointer may belong to.
     pub fn draw_on(&mut self, tablet: SharedTablet) {
         self.pen.on(tablet);
+    }
+
+    /// Uses the pen as the user prefers.
+    pub fn prefer(&mut self, preferences: &Preferences) {
+        self.pick_keys = preferences.pick_keys;
+        self.pressure.clone_from(&preferences.pressure);
+    }
+
+    /// What the pen reported in this frame.
+    pub fn reports(&self) -> &[PenReport] {
+        &self.reports
+    }
+
+    /// The pen during a color's taking: where it is, and the color before.
+    pub fn picking(&self) -> Option<(Pos2, Color)> {
+        let is_held = self.holding == PointerGesture::Drawing;
+        self.color_before.filter(|_| is_held).map(|before| (self.last, before))
+    }
+
+    /// Reads the events of a frame without a document.
+    pub fn overhear(&mut self, ui: &Ui) {
+        let (events, now_secs) = ui.input(|i| (i.events.clone(), i.time));
+        self.reports.clear();
+        for event in events {
+            self.pen.read_event(&event, ui.ctx().pixels_per_point(), now_secs);
+            self.reports.extend(std::iter::from_fn(|| self.pen.next()));
+        }
+        self.pen.end_frame();
     }
 
     /// Whether the view is being moved: then nothing is painted, and no brush cursor is shown.
@@ -91,9 +132,10 @@ impl PointerState {
         // Alt sets the source point of a clone brush.
         let clones = session.tool == ToolKind::Brush && session.tools.brush.mode.is_clone();
         let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient) && !clones;
+        let picks = paints && self.pick_keys.are_held(self.keys);
         match self.holding {
             PointerGesture::Nothing if self.space => ToolKind::Hand,
-            PointerGesture::Nothing if self.keys.alt && paints => ToolKind::Eyedropper,
+            PointerGesture::Nothing if picks => ToolKind::Eyedropper,
             _ => session.tool,
         }
     }
@@ -139,6 +181,7 @@ impl PointerState {
         let is_in_front = |pos: Pos2| ui.ctx().layer_id_at(pos) == Some(canvas.layer_id);
         let ours = |pos: Pos2| canvas.rect.contains(pos) && is_in_front(pos);
         self.area = canvas.rect;
+        self.reports.clear();
         if let Some(touch) =
             ui.input(|i| i.multi_touch()).filter(|touch| canvas.rect.contains(touch.center_pos))
         {
@@ -156,6 +199,8 @@ impl PointerState {
                 self.touched(*phase, ours(*pos), now_secs, &mut listening);
             }
             while let Some(report) = self.pen.next() {
+                self.reports.push(report);
+                let report = report.pressed_along(&self.pressure);
                 match report.phase {
                     // A press outside an open menu closes it, and does nothing else.
                     PenPhase::Down(_) if ours(report.at) && Popup::is_any_open(ui.ctx()) => {
@@ -264,6 +309,7 @@ impl PointerState {
                     return;
                 };
                 self.watch = Some(watch);
+                self.color_before = (tool == ToolKind::Eyedropper).then_some(session.tools.color);
                 let (pen, px_per_pt) =
                     (self.reading(reading, listening), 1.0 / listening.view.zoom);
                 listening.actions.push(Action::Pointer(PointerAction::Press {

@@ -5,6 +5,7 @@ use super::row::{
     LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row,
     submenu,
 };
+use crate::preferences::PreferencePage;
 use crate::requests::WindowRequest;
 use crate::session::Action;
 use crate::session::actions::{ClipboardAction, EditAction, HandAction, LayerAction, PasteTo};
@@ -72,7 +73,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     ),
     LINE,
     row(
-        "Transform",
+        "Free transform",
         &[ctrl(Key::T)],
         "A frame around the selected layers and groups: move, scale, turn, skew and distort them, \
          live",
@@ -89,5 +90,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| {
             requests.act(Action::Layer(LayerAction::Clear { layer: session.layer_paths() }))
         },
+    ),
+    LINE,
+    row(
+        "Preferences…",
+        &[ctrl(Key::Comma)],
+        "Everything that is set once: the interface, keys, the pen, colors, files, memory",
+        always,
+        |_, requests| requests.request(WindowRequest::Preferences(PreferencePage::default())),
     ),
 ];

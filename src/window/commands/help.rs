@@ -1,8 +1,10 @@
 //! The Help menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, row};
+use super::row::{LINE, MenuCommand, always, key, row};
+use crate::preferences::PreferencePage;
 use crate::requests::WindowRequest;
+use eframe::egui::Key;
 
 pub const COMMANDS: &[MenuCommand] = &[
     row(
@@ -13,8 +15,15 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.request(WindowRequest::OpenSample(0)),
     ),
     row("Keyboard shortcuts…", &[], "Every command and its keys", always, |_, requests| {
-        requests.request(WindowRequest::Shortcuts)
+        requests.request(WindowRequest::Preferences(PreferencePage::Keys))
     }),
+    row(
+        "Open the menus",
+        &[key(Key::F10)],
+        "For the keyboard: arrows go through them, Enter chooses, Escape leaves them",
+        always,
+        |_, requests| requests.request(WindowRequest::Menus),
+    ),
     LINE,
     row("About Rilievo…", &[], "About this program", always, |_, requests| {
         requests.request(WindowRequest::About)

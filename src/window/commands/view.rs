@@ -263,4 +263,11 @@ const PANELS: &[MenuCommand] = &[
         requests.request(WindowRequest::Float(PanelKind::Layers))
     })
     .ticked(|_, layout| layout.floating.contains(&PanelKind::Layers)),
+    row(
+        "Second view",
+        &[],
+        "The picture once more in a window of its own, to look at, with a zoom of its own; again closes it",
+        has_document,
+        |_, requests| requests.request(WindowRequest::SecondView),
+    ),
 ];

@@ -2,6 +2,7 @@
 //! the current one. Floor 7.
 
 use super::brush;
+use crate::brush_shelf::BrushShelf;
 use crate::file_purpose::FilePurpose;
 use crate::icons::{BUTTON_PT, Icon, icon_button};
 use crate::io::recipe::{BrushPreset, PresetGroup};
@@ -11,13 +12,19 @@ use crate::session::actions::{FileAction, HandAction};
 use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
 use crate::swatches::Swatches;
+use crate::theme::ACCENT;
 use crate::widgets::{NumberField, segment, segments, set_accessible_name, title};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     self, Align, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2,
 };
 
-pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    shown: (&mut Swatches, &mut BrushShelf),
+    requests: &mut UiRequests,
+) {
     let id = edits_id();
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     let sought = ui.horizontal(|ui| {
@@ -42,7 +49,7 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
         brush::show(ui, session, requests);
         keep(ui, requests);
     } else {
-        presets(ui, session, swatches, &sought, requests);
+        presets(ui, session, shown, &sought, requests);
     }
 }
 
@@ -60,46 +67,83 @@ pub fn edit(ctx: &egui::Context) {
 fn presets(
     ui: &mut Ui,
     session: &Session,
-    swatches: &mut Swatches,
+    (swatches, shelf): (&mut Swatches, &mut BrushShelf),
     search: &str,
     requests: &mut UiRequests,
 ) {
     if !session.presets.iter().any(|preset| is_found(preset, search)) {
         ui.weak(format!("No brush is called “{}”", search.trim()));
     }
-    for (group, name) in PresetGroup::ALL {
-        let presets = session
-            .presets
-            .iter()
-            .filter(|preset| preset.group == group && is_found(preset, search));
-        let presets: Vec<&BrushPreset> = presets.collect();
-        if presets.is_empty() {
-            continue;
-        }
+    let mut marked = None;
+    for (name, kind, presets) in sections(session, shelf, search) {
         title(ui, name);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
             for known in presets {
-                let response = preset(ui, known, session.preset == known.key, swatches);
+                let is_favorite = shelf.is_favorite(&known.key);
+                let look = CellLook { kind, is_on: session.preset == known.key, is_favorite };
+                let response = preset(ui, known, look, swatches);
                 if response.clicked() {
                     requests.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
                 }
-                if known.group == PresetGroup::Imported {
-                    remove(&response, known, requests);
+                if let Some(on) = menu(&response, known, is_favorite, requests) {
+                    marked = Some((known.key.clone(), on));
                 }
             }
         });
     }
+    if let Some((key, on)) = marked {
+        shelf.mark(&key, on);
+    }
 }
 
-/// A right click on one of the user's own brushes.
-fn remove(response: &Response, known: &BrushPreset, requests: &mut UiRequests) {
+/// The groups that are not empty, each with its title and what its brushes are called besides:
+/// favorites, those used last, the user's own, then those of the program.
+fn sections<'a>(
+    session: &'a Session,
+    shelf: &BrushShelf,
+    search: &str,
+) -> Vec<(&'static str, &'static str, Vec<&'a BrushPreset>)> {
+    let found = |preset: &&BrushPreset| is_found(preset, search);
+    let by_key = |keys: &[String]| -> Vec<&'a BrushPreset> {
+        let one = |key: &String| session.presets.iter().find(|preset| preset.key == *key);
+        keys.iter().filter_map(one).filter(found).collect()
+    };
+    let mut sections = vec![("Favorites", ", favorite", by_key(&shelf.favorites))];
+    // The brush in hand alone says nothing.
+    if shelf.used.len() > 1 && search.is_empty() {
+        sections.push(("Last used", ", last used", by_key(&shelf.used)));
+    }
+    let own = PresetGroup::ALL.into_iter().filter(|(group, _)| *group == PresetGroup::Imported);
+    let others = PresetGroup::ALL.into_iter().filter(|(group, _)| *group != PresetGroup::Imported);
+    for (group, name) in own.chain(others) {
+        let of_group = session.presets.iter().filter(|preset| preset.group == group);
+        sections.push((name, "", of_group.filter(found).collect()));
+    }
+    sections.retain(|(.., presets)| !presets.is_empty());
+    sections
+}
+
+/// A right click on a brush; returns whether it is a favorite from now on, if that was said.
+fn menu(
+    response: &Response,
+    known: &BrushPreset,
+    is_favorite: bool,
+    requests: &mut UiRequests,
+) -> Option<bool> {
+    let mut marked = None;
     response.context_menu(|ui| {
-        if ui.button("Remove brush").clicked() {
+        let mark = if is_favorite { "Remove from favorites" } else { "Add to favorites" };
+        if ui.button(mark).clicked() {
+            marked = Some(!is_favorite);
+            ui.close();
+        }
+        if known.group == PresetGroup::Imported && ui.button("Remove brush").clicked() {
             requests.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
             ui.close();
         }
     });
+    marked
 }
 
 /// Saves the current brush under a name.
@@ -142,12 +186,26 @@ fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
 const CELL_PT: eframe::egui::Vec2 = vec2(58.0, 74.0);
 const SWATCH_PT: f32 = 44.0;
 
+/// How a preset is shown.
+#[derive(Clone, Copy)]
+struct CellLook {
+    /// What its name is followed by for screen readers, where it is listed twice.
+    kind: &'static str,
+    is_on: bool,
+    is_favorite: bool,
+}
+
 /// One preset.
-fn preset(ui: &mut Ui, preset: &BrushPreset, is_on: bool, swatches: &mut Swatches) -> Response {
+fn preset(
+    ui: &mut Ui,
+    preset: &BrushPreset,
+    CellLook { kind, is_on, is_favorite }: CellLook,
+    swatches: &mut Swatches,
+) -> Response {
     let (rect, response) = ui.allocate_exact_size(CELL_PT, Sense::click());
     let label = &preset.name;
     response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}"))
+        egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}{kind}"))
     });
     if !ui.is_rect_visible(rect) {
         return response;
@@ -165,6 +223,10 @@ fn preset(ui: &mut Ui, preset: &BrushPreset, is_on: bool, swatches: &mut Swatche
             Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
             Color32::WHITE,
         );
+    }
+    if is_favorite {
+        let corner = at.right_top() + vec2(1.0, 3.0);
+        ui.painter().circle_filled(corner, 3.5, ACCENT);
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let mut job = LayoutJob::simple(label.clone(), font, look.text_color(), rect.width() - 4.0);

@@ -1,22 +1,42 @@
 //! The menu bar and the documents' tabs.
 //! Floor 7.
 
+mod keys;
+
+pub use keys::MenuKeys;
+
 use crate::commands::{MENUS, MenuCommand};
+use crate::file_pictures::FilePictures;
 use crate::icons::{Icon, sized_button};
 use crate::keymap::key_text;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, SelectionAction};
 use crate::session::{Action, Session};
 use crate::settings::Settings;
-use crate::widgets::tab;
-use eframe::egui::{self, Button, Ui};
+use crate::widgets::{set_accessible_name, tab};
+use eframe::egui::load::SizedTexture;
+use eframe::egui::{self, Button, Image, Ui, vec2};
 use std::path::PathBuf;
 
+/// What the menus keep from frame to frame.
+#[derive(Default)]
+pub struct MenuState {
+    pub keys: MenuKeys,
+    pub pictures: FilePictures,
+}
+
 /// The menus, made from the commands.
-pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut UiRequests) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    settings: &Settings,
+    menu: &mut MenuState,
+    requests: &mut UiRequests,
+) {
     egui::MenuBar::new().ui(ui, |ui| {
         for (title, commands) in MENUS {
-            ui.menu_button(title, |ui| {
+            let MenuState { keys, pictures } = &mut *menu;
+            let button = ui.menu_button(title, |ui| {
                 ui.set_min_width(220.0);
                 // A low window scrolls the menu.
                 let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 12.0;
@@ -26,7 +46,7 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                         for command in commands {
                             entry(ui, session, settings, command, requests);
                             match command.name {
-                                "Open…" => recent_files(ui, &settings.recent, requests),
+                                "Open…" => recent_files(ui, &settings.recent, pictures, requests),
                                 "Keep selection…" => kept_selections(ui, session, requests),
                                 _ => {}
                             }
@@ -34,6 +54,7 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                     },
                 );
             });
+            keys.show(&button.response);
         }
     });
 }
@@ -66,12 +87,31 @@ fn entry(
     }
 }
 
-fn recent_files(ui: &mut Ui, recent: &[PathBuf], requests: &mut UiRequests) {
+/// The side of a recent file's picture, points.
+const PICTURE_PT: f32 = 28.0;
+
+fn recent_files(
+    ui: &mut Ui,
+    recent: &[PathBuf],
+    pictures: &mut FilePictures,
+    requests: &mut UiRequests,
+) {
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for file in recent {
                 let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                if ui.button(name).on_hover_text(file.display().to_string()).clicked() {
+                let button = match pictures.of(ui.ctx(), file) {
+                    Some(texture) => {
+                        let size = texture.size_vec2();
+                        let size = size * (PICTURE_PT / size.max_elem().max(1.0));
+                        let picture = Image::from_texture(SizedTexture::new(texture.id(), size));
+                        Button::image_and_text(picture.fit_to_exact_size(size), &name)
+                    }
+                    None => Button::new(&name),
+                };
+                let response = ui.add(button.min_size(vec2(0.0, PICTURE_PT + 2.0)));
+                set_accessible_name(&response, &name);
+                if response.on_hover_text(file.display().to_string()).clicked() {
                     requests.request(WindowRequest::Open(file.clone()));
                     ui.close();
                 }

@@ -93,6 +93,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             liquify::options(ui, session, requests);
             symmetry(ui, session, requests);
         }
+        ToolKind::Gradient => gradient(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
         tool => drop(ui.weak(tool.hint())),
@@ -112,6 +113,15 @@ const SYMMETRIES: [(Symmetry, &str); 8] = [
 ];
 const SYMMETRY_HINT: &str = "Repeats every stroke about an axis or a point, which the tool \
                              Assistants moves; each copy bends at its own place";
+/// Where new gradients go.
+fn gradient(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let mut on = session.tools.live_gradients;
+    let hint = "New gradients are layers whose ends can be moved; otherwise they go into the selected paint layer";
+    if check_box(ui, &mut on, "Live").on_hover_text(hint).changed() {
+        requests.act(Action::Hand(HandAction::LiveGradients { on }));
+    }
+    ui.weak(session.tool.hint());
+}
 
 /// How strokes repeat, as a menu.
 fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {

@@ -117,6 +117,23 @@ fn measured(
     let is_idle = !canvas.is_busy && !ui.input(|input| input.pointer.any_down());
     let used = memory.documents(session, kept_share, is_idle);
     memory_menu(ui, memory, kept_share, used, requests);
+/// How much may be kept for speed.
+pub fn cache_limit(
+    ui: &mut Ui,
+    memory: &mut MemoryMeter,
+    kept_share: f32,
+    requests: &mut UiRequests,
+) {
+    let percent = *KEPT_SHARE.start() * 100.0..=*KEPT_SHARE.end() * 100.0;
+    let hint = "Share of the machine's memory. Beyond it, old steps of the history drop their \
+                rendered pictures, which are rendered again on undo";
+    let field = NumberField::new("Cache limit", percent, hint).percent();
+    if let Some(change) = field.row(ui, (kept_share * 100.0).round()) {
+        requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
+    }
+    let (ceiling, machine) =
+        (bytes_text(memory.ceiling(kept_share)), bytes_text(memory.machine_bytes()));
+    ui.weak(format!("{ceiling} of {machine} for caches, in all documents"));
 }
 
 /// The memory of the document in front; the menu lists it, and sets how much may be kept for speed.
@@ -151,16 +168,7 @@ fn memory_menu(
             }
         });
         ui.separator();
-        let percent = *KEPT_SHARE.start() * 100.0..=*KEPT_SHARE.end() * 100.0;
-        let hint = "Share of the machine's memory. Beyond it, old steps of the history drop their \
-                    rendered pictures, which are rendered again on undo";
-        let field = NumberField::new("Cache limit", percent, hint).percent();
-        if let Some(change) = field.row(ui, (kept_share * 100.0).round()) {
-            requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
-        }
-        let (ceiling, machine) =
-            (bytes_text(memory.ceiling(kept_share)), bytes_text(memory.machine_bytes()));
-        ui.weak(format!("{ceiling} of {machine} for caches, in all documents"));
+        cache_limit(ui, memory, kept_share, requests);
     });
     let about = format!(
         "Memory of this document: {} painted, {} of pictures, {} of maps, {} of caches. Click for \

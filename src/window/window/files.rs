@@ -80,7 +80,7 @@ impl MainWindow {
 
     /// A document was opened, from a file if it has one.
     pub(super) fn add_opened(&mut self, file: Option<PathBuf>, opened: OpenedFile) {
-        self.recent_is(opened.open.file.clone());
+        self.recent_is(file.clone());
         let drawing = opened.drawing.filter(DrawingTraits::has_outline);
         self.session.adopt(opened);
         if let (Some(traits), Some(open)) = (drawing, self.session.active()) {
@@ -261,7 +261,8 @@ impl MainWindow {
 
     pub(super) fn ask_for(&mut self, purpose: FilePurpose, name: &str) {
         let then = move |window: &mut Self, answer| window.answered(purpose, answer);
-        files::request(&mut self.jobs, purpose, name, self.asks_itself, then);
+        let asks_itself = self.asks_itself || self.settings.preferences.has_own_file_dialog;
+        files::request(&mut self.jobs, purpose, name, asks_itself, then);
     }
 
     /// The proposed name of a file.
@@ -300,7 +301,9 @@ impl MainWindow {
     pub(super) fn recent_is(&mut self, file: Option<PathBuf>) {
         if let Some(file) = file {
             // An absolute path, which is also valid in the next run.
-            self.settings.recent_is(std::path::absolute(&file).unwrap_or(file));
+            let file = std::path::absolute(&file).unwrap_or(file);
+            self.menu.pictures.forget(&file);
+            self.settings.recent_is(file);
         }
     }
 }

@@ -4,10 +4,9 @@
 use super::MainWindow;
 use crate::session::Action;
 use crate::session::actions::ViewAction;
+use crate::theme::SCALES;
 use eframe::egui;
 
-/// Sizes of the interface to choose from; 1 is the system's.
-const SCALES: [f32; 10] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0];
 /// An unscaled screen of this many points in height is probably dense.
 const DENSE_PT: f32 = 1800.0;
 
@@ -36,9 +35,14 @@ impl MainWindow {
             SCALES.into_iter().rev().find(|&scale| scale < now - 0.01)
         };
         if let Some(next) = next {
-            self.settings.scale = Some(next);
-            self.show_at(ctx, next);
+            self.scale_interface(ctx, next);
         }
+    }
+
+    /// Selects and stores a size.
+    pub(super) fn scale_interface(&mut self, ctx: &egui::Context, scale: f32) {
+        self.settings.scale = Some(scale);
+        self.show_at(ctx, scale);
     }
 
     /// The picture keeps its size on screen: only the controls change.

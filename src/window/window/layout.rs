@@ -24,9 +24,12 @@ impl MainWindow {
         let is_bare =
             settings.layout.is_hidden && ui.input(|i| i.viewport().fullscreen.unwrap_or(false));
         if !is_bare {
+            let by_alt = settings.preferences.alt_opens_menus && self.dialogs.is_empty();
+            self.menu.keys.listen(ui, by_alt);
+            let menu = &mut self.menu;
             Panel::top("menu")
                 .frame(bar(ui))
-                .show(ui, |ui| panels::menu::show(ui, &self.session, settings, requests));
+                .show(ui, |ui| panels::menu::show(ui, &self.session, settings, menu, requests));
         }
         if !self.settings.layout.is_hidden {
             // Always as tall, so that nothing below it moves when its content changes.
@@ -210,7 +213,8 @@ impl MainWindow {
                 panels::colors::show(ui, &self.session, &mut self.settings.color, requests)
             }
             PanelKind::Brushes => {
-                panels::brushes::show(ui, &self.session, &mut self.swatches, requests)
+                let shown = (&mut self.swatches, &mut self.settings.shelf);
+                panels::brushes::show(ui, &self.session, shown, requests)
             }
             PanelKind::Properties => {
                 panels::properties::show(ui, &self.session, &mut self.thumbnails.moods, requests)

@@ -3,7 +3,7 @@
 
 use super::MainWindow;
 use crate::dialogs::{
-    Dialog, adjust, canvas, edge, filter, import, looks, materials, new, palette, shortcuts,
+    Dialog, adjust, canvas, edge, filter, import, looks, materials, new, palette, preferences,
 };
 use crate::file_purpose::FilePurpose;
 use crate::panel_layout::PanelSide;
@@ -82,10 +82,19 @@ impl MainWindow {
             WindowRequest::Palette => {
                 self.dialogs.push(Dialog::Palette(palette::CommandPalette::default()))
             }
-            WindowRequest::Shortcuts => {
-                self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default()))
-            }
+            WindowRequest::Preferences(page) => self
+                .dialogs
+                .push(Dialog::Preferences(Box::new(preferences::PreferencesDialog::at(page)))),
             WindowRequest::About => self.dialogs.push(Dialog::About),
+            WindowRequest::Menus => {
+                if ctx.input(|i| i.viewport().fullscreen.unwrap_or(false)) {
+                    // Hidden panels hide the menus, too.
+                    self.settings.layout.is_hidden = false;
+                }
+                self.menu.keys.open();
+                ctx.request_repaint();
+            }
+            WindowRequest::SecondView => self.second_view.toggle(),
             WindowRequest::TogglePanels => {
                 self.settings.layout.is_hidden = !self.settings.layout.is_hidden;
                 // The tab key that requested it also moved the focus to the next button.
@@ -117,6 +126,7 @@ impl MainWindow {
                 self.settings.has_details = !self.settings.has_details;
             }
             WindowRequest::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),
+            WindowRequest::ScaleInterface(scale) => self.scale_interface(ctx, scale),
             WindowRequest::Scale(scale) => self.scale(ctx, scale),
             WindowRequest::FullScreen => {
                 let is_full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));

@@ -169,6 +169,9 @@ impl MainWindow {
             self.busy.typed.clear();
         }
         self.busy.give_next(ctx);
+        if self.settings.preferences.alt_opens_menus {
+            self.menu.keys.hear_letter(ctx, &self.settings.keymap);
+        }
         keys::listen(ctx, &self.session, &self.settings.keymap, requests);
     }
 

@@ -76,6 +76,8 @@ actions! {
         "axes" Axes { center: Option<Vec2>, turn: f32 }
         "fill" Fill { fill: Fill }
         "liquify" Liquify { liquify: LiquifySettings }
+        /// Whether new gradients are live layers, and not painted into the selected paint layer.
+        "live gradients" LiveGradients { on: bool }
         /// Whether a mouse presses less the faster it moves.
         "press by speed" PressBySpeed { on: bool }
         /// Whether the brush paints, smudges, blurs or clones.
@@ -147,6 +149,7 @@ impl HandAction {
                     SymmetryAxes { center: *center, turn: *turn }.clamp_to_ranges()
             }
             HandAction::Fill { fill } => session.tools.fill = *fill,
+            HandAction::LiveGradients { on } => session.tools.live_gradients = *on,
             HandAction::PressBySpeed { on } => session.tools.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = mode.clamp_to_ranges(),
             HandAction::TransformTarget { carried } => session.tools.transform.target = *carried,

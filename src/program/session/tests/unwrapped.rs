@@ -83,7 +83,7 @@ fn a_stroke_drawn_on_the_sheet_is_one_step_on_the_form() {
             from.x, from.y, to.x, to.y
         ),
     );
-    assert_eq!(session.active().unwrap().history.undo_label(), Some("Brush stroke"));
+    assert_eq!(session.active().unwrap().history.undo_label(), Some("Wrapped stroke"));
     for x in [45, 70, 100, 130, 155] {
         assert_eq!(pixel(&session, x, 60), [0xc0, 0x20, 0x10, 255], "at {x}");
     }

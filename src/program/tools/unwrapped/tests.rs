@@ -137,12 +137,11 @@ fn tools_that_point_get_the_canvas_under_the_pen() {
     let tools = ToolSettings::default();
     let context = ToolContext::new(&document, &tools);
     let picked =
-        |p: Vec2| point(&context, PenSample::at(p), layout_of(&document), ToolKind::Eyedropper).1;
-    assert_eq!(picked(on_sheet(&document, 150.0, 70.0)).settings().color.r, 200);
-    assert!(
-        matches!(picked(vec2(-90.0, -90.0)), Outcome::Idle),
-        "beside all pieces there is nothing"
-    );
+        |p: Vec2| point(&context, PenSample::at(p), layout_of(&document), ToolKind::Eyedropper).0;
+    let mut picking = picked(on_sheet(&document, 150.0, 70.0)).unwrap();
+    assert_eq!(picking.picked_color().map(|color| color.r), Some(200));
+    assert_eq!(picking.release().settings().color.r, 200);
+    assert!(picked(vec2(-90.0, -90.0)).is_none(), "beside all pieces there is nothing");
 }
 
 #[test]

@@ -1,14 +1,15 @@
-//! The keyboard shortcuts: every command and tool with its keys, which can be changed; conflicts
-//! are shown before a key is reassigned. Floor 7.
+//! The keys: every command and tool with its keys, which can be changed; conflicts are shown before a
+//! key is reassigned. Presets have the keys of other programs. Floor 7.
 
-use super::{DialogAnswer, close};
-use crate::keymap::{KeyTarget, Keymap, key_text};
-use crate::widgets::{list, set_accessible_name};
+use crate::keymap::{KeyPreset, KeyTarget, Keymap, key_text};
+use crate::widgets::{choice, list, name, set_accessible_name};
 use eframe::egui::{Event, Grid, Key, KeyboardShortcut, Modifiers, RichText, TextEdit, Ui};
 
 #[derive(Default)]
-pub struct ShortcutsDialog {
+pub struct KeysPage {
     filter: String,
+    /// A preset that waits for an answer.
+    preset: Option<KeyPreset>,
     /// What waits for a key.
     waiting: Option<&'static str>,
     /// A pressed key that already belongs to something else.
@@ -23,7 +24,7 @@ pub const ON_CANVAS: [(&str, &str); 12] = [
     ("Pan with the wheel", "Shift or Alt and the wheel"),
     ("Brush size", "Drag with the right button"),
     ("Straight line", "Shift and click with the brush"),
-    ("Take a color", "Alt and click with the brush"),
+    ("Take a color", "Ctrl or Alt and click with the brush; the page Colors says which"),
     ("Content under an anchor", "Ctrl and drag with the anchor tool"),
     ("Re-pin an anchor", "Shift and drag with the anchor tool"),
     ("Remove an anchor", "Alt and click with the anchor tool"),
@@ -31,10 +32,9 @@ pub const ON_CANVAS: [(&str, &str); 12] = [
     ("Cancel a stroke", "Escape"),
 ];
 
-impl ShortcutsDialog {
-    pub fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) -> DialogAnswer {
-        ui.set_width(520.0);
-        ui.heading("Keyboard shortcuts");
+impl KeysPage {
+    pub fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
+        self.presets(ui, keymap);
         let field = ui.add(
             TextEdit::singleline(&mut self.filter).hint_text("Find").desired_width(f32::INFINITY),
         );
@@ -43,7 +43,7 @@ impl ShortcutsDialog {
         self.request(ui, keymap);
         let wanted = self.filter.to_lowercase();
         let shown = |name: &str| name.to_lowercase().contains(&wanted);
-        list(ui, 460.0).auto_shrink([false, false]).show(ui, |ui| {
+        list(ui, super::PAGE_PT - 76.0).auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(
                 ui,
                 |ui| {
@@ -60,7 +60,42 @@ impl ShortcutsDialog {
                 },
             );
         });
-        close(ui)
+    }
+
+    /// The presets; those that would drop the user's own keys ask first.
+    fn presets(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
+        ui.horizontal(|ui| {
+            name(ui, "Preset");
+            let now = self.preset.unwrap_or(keymap.preset());
+            let chosen = choice(ui, "Preset of keys", now, &KeyPreset::LABELS);
+            if let Some(preset) = chosen {
+                self.preset = Some(preset);
+            }
+            if keymap.is_changed() && self.preset.is_none() {
+                ui.weak("with your own keys");
+                if ui.button("Drop them").on_hover_text("All keys as in the preset").clicked() {
+                    *keymap = Keymap::with_preset(keymap.preset());
+                }
+            }
+        });
+        let Some(preset) = self.preset else { return };
+        if preset == keymap.preset() || !keymap.is_changed() {
+            if preset != keymap.preset() {
+                *keymap = Keymap::with_preset(preset);
+            }
+            return self.preset = None;
+        }
+        ui.horizontal_wrapped(|ui| {
+            let text = "The preset replaces the keys that you chose yourself.";
+            ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
+            if ui.button("Replace them").clicked() {
+                *keymap = Keymap::with_preset(preset);
+                self.preset = None;
+            }
+            if ui.button("Keep mine").clicked() {
+                self.preset = None;
+            }
+        });
     }
 
     /// The keys of one command or tool, and the buttons to change them.
@@ -84,7 +119,7 @@ impl ShortcutsDialog {
             (self.waiting, self.conflict) = (Some(name), None);
         }
         if keymap.is_custom(keyed) {
-            let response = ui.small_button("Reset").on_hover_text("The default keys");
+            let response = ui.small_button("Reset").on_hover_text("The keys of the preset");
             set_accessible_name(&response, &format!("Reset {name}"));
             if response.clicked() {
                 keymap.reset(keyed);

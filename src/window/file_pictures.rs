@@ -1,0 +1,130 @@
+//! Small pictures of files, for lists of files: made on a thread of their own, the one that was asked
+//! for last first. Floor 7. Not here: how they are made (`io::thumbnail`).
+
+use crate::io::Budget;
+use crate::io::thumbnail::thumbnail;
+use crate::jobs;
+use crate::memory::catch_out_of_memory;
+use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+/// The longer side of a picture, px.
+const SIDE_PX: u32 = 128;
+/// The most pictures that are kept.
+const MOST: usize = 400;
+/// Larger files show no picture: opening one would take too long.
+const LARGEST_BYTES: u64 = 256 << 20;
+
+/// The pictures that are made, and the thread that makes them.
+#[derive(Default)]
+pub struct FilePictures {
+    thread: Option<(Sender<PathBuf>, Receiver<(PathBuf, Option<ColorImage>)>)>,
+    /// `None` for a file whose picture is awaited, or that has none.
+    made: HashMap<PathBuf, Option<TextureHandle>>,
+}
+
+impl FilePictures {
+    /// The picture of a file, once it is made; `None` before, and if the file has none.
+    pub fn of(&mut self, ctx: &Context, file: &Path) -> Option<&TextureHandle> {
+        self.collect(ctx);
+        if !self.made.contains_key(file) {
+            self.order(ctx, file);
+        }
+        self.made.get(file).and_then(Option::as_ref)
+    }
+
+    /// The file has changed: its picture is made again when it is asked for.
+    pub fn forget(&mut self, file: &Path) {
+        self.made.remove(file);
+    }
+
+    fn order(&mut self, ctx: &Context, file: &Path) {
+        if self.made.len() >= MOST {
+            self.made.clear();
+        }
+        if self.thread.is_none() {
+            let (orders, coming) = channel();
+            let (finished, done) = channel();
+            let waker = ctx.clone();
+            let work = move || make_all(&coming, &finished, &waker);
+            // Without a thread there are no pictures.
+            let _ = jobs::spawn("pictures of files", work);
+            self.thread = Some((orders, done));
+        }
+        let Some((orders, _)) = &self.thread else { return };
+        let _ = orders.send(file.to_owned());
+        self.made.insert(file.to_owned(), None);
+    }
+
+    fn collect(&mut self, ctx: &Context) {
+        let Some((_, done)) = &self.thread else { return };
+        for (file, image) in done.try_iter() {
+            let load =
+                |image| ctx.load_texture(file.to_string_lossy(), image, TextureOptions::LINEAR);
+            // What was forgotten meanwhile is not wanted.
+            if let Some(place) = self.made.get_mut(&file) {
+                *place = image.map(load);
+            }
+        }
+    }
+}
+
+/// The thread: until nobody asks any more.
+fn make_all(
+    coming: &Receiver<PathBuf>,
+    finished: &Sender<(PathBuf, Option<ColorImage>)>,
+    waker: &Context,
+) {
+    let mut waiting = Vec::new();
+    loop {
+        if waiting.is_empty() {
+            let Ok(file) = coming.recv() else { return };
+            waiting.push(file);
+        }
+        waiting.extend(coming.try_iter());
+        // What is in sight now was asked for last.
+        let Some(file) = waiting.pop() else { continue };
+        let image = catch_out_of_memory(|| make(&file)).ok().flatten();
+        if finished.send((file, image)).is_err() {
+            return;
+        }
+        waker.request_repaint();
+    }
+}
+
+fn make(file: &Path) -> Option<ColorImage> {
+    if std::fs::metadata(file).ok()?.len() > LARGEST_BYTES {
+        return None;
+    }
+    let small = thumbnail(file, SIDE_PX, &Budget::of_this_machine()).ok()?;
+    let size = [small.size.width as usize, small.size.height as usize];
+    Some(ColorImage::from_rgba_unmultiplied(size, &small.rgba))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn a_picture_comes_after_a_while_and_a_file_that_is_none_has_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let (letter, recipe) = (folder.path().join("a.txt"), folder.path().join("b.json"));
+        std::fs::write(&letter, "Dear reader").unwrap();
+        let fill = r##"{"format":"rilievo","version":1,"canvas":{"width":40,"height":20},
+            "layers":[{"type":"fill","name":"f","color":"#336699"}]}"##;
+        std::fs::write(&recipe, fill).unwrap();
+        let (ctx, mut pictures) = (Context::default(), FilePictures::default());
+        let began = Instant::now();
+        while pictures.of(&ctx, &recipe).is_none() {
+            assert!(began.elapsed() < Duration::from_secs(60), "no picture came");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert_eq!(pictures.of(&ctx, &recipe).unwrap().size(), [40, 20]);
+        assert!(pictures.of(&ctx, &letter).is_none());
+        pictures.forget(&recipe);
+        assert!(pictures.of(&ctx, &recipe).is_none(), "it is made again");
+    }
+}
