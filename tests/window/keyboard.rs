@@ -88,7 +88,6 @@ fn a_typed_folder_is_listed_and_marked_and_the_arrows_choose_a_file() {
     assert!(is_shown(&harness, "one.json") && is_shown(&harness, "two.json"), "it is listed");
     press(&mut harness, "Bookmark");
     press(&mut harness, "Up");
-    eprintln!("{harness:#?}");
     press(&mut harness, "deep");
     steps(&mut harness);
     key(&mut harness, Modifiers::NONE, Key::ArrowDown);

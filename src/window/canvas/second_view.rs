@@ -24,10 +24,6 @@ pub struct SecondView {
 }
 
 impl SecondView {
-    pub fn is_open(&self) -> bool {
-        self.is_open
-    }
-
     /// Opens or closes it.
     pub fn toggle(&mut self) {
         (self.is_open, self.view) = (!self.is_open, None);

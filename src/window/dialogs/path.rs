@@ -7,7 +7,8 @@ use crate::file_purpose::FilePurpose;
 use crate::settings::Settings;
 use crate::widgets::{set_accessible_name, title};
 use eframe::egui::{
-    self, Button, Image, Key, Response, ScrollArea, TextEdit, Ui, load::SizedTexture, vec2,
+    self, Align, Button, Image, Key, Layout, Response, ScrollArea, TextEdit, Ui,
+    load::SizedTexture, vec2,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -69,7 +70,8 @@ impl PathDialog {
         self.above(ui, context.settings);
         let room_pt = (ui.ctx().content_rect().height() - 210.0).max(120.0).min(LIST_PT);
         let mut chosen = None;
-        ui.horizontal_top(|ui| {
+        let size = vec2(ui.available_width(), room_pt);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Min), |ui| {
             ui.vertical(|ui| {
                 ui.set_width(PLACES_PT);
                 let area = ScrollArea::vertical().id_salt("places");

@@ -46,6 +46,7 @@ impl PreferencesDialog {
                 ui.separator();
                 ui.vertical(|ui| {
                     ui.set_min_height(height);
+                    ui.set_max_width(ui.available_width());
                     self.page(ui, context);
                 });
             },

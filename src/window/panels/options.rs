@@ -11,7 +11,7 @@ use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
 use crate::tools::{Symmetry, ToolKind};
-use crate::widgets::{NumberField, ValueChange, check, more, segment, segments, title};
+use crate::widgets::{NumberField, ValueChange, check, check_box, more, segment, segments, title};
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{ScrollArea, Ui};
 
@@ -113,6 +113,7 @@ const SYMMETRIES: [(Symmetry, &str); 8] = [
 ];
 const SYMMETRY_HINT: &str = "Repeats every stroke about an axis or a point, which the tool \
                              Assistants moves; each copy bends at its own place";
+
 /// Where new gradients go.
 fn gradient(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let mut on = session.tools.live_gradients;

@@ -117,6 +117,8 @@ fn measured(
     let is_idle = !canvas.is_busy && !ui.input(|input| input.pointer.any_down());
     let used = memory.documents(session, kept_share, is_idle);
     memory_menu(ui, memory, kept_share, used, requests);
+}
+
 /// How much may be kept for speed.
 pub fn cache_limit(
     ui: &mut Ui,

@@ -9,5 +9,5 @@ use eframe::egui::Ui;
 pub fn show(ui: &mut Ui, context: &mut DialogContext) {
     cache_limit(ui, context.memory, context.settings.kept_share, context.requests);
     rows(ui, PreferencePage::Memory, &mut context.settings.preferences);
-    ui.weak("What each document takes is in the status bar.");
+    ui.weak("What each document takes is among the details in the status bar (Interface).");
 }
