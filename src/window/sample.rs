@@ -12,6 +12,7 @@ use crate::surface::{Maps, Operator, Surface};
 use crate::{Error, Result};
 use std::sync::Arc;
 
+/// Of a sample, px.
 const SIDE: usize = 640;
 
 /// A sample of the start screen.
@@ -27,12 +28,12 @@ pub const SAMPLES: [StartSample; 3] = [
     StartSample {
         name: "Ball and ring",
         about: "A shape with a gradient that follows it: drop a photo, paint highlights",
-        layers: |_| vec![bent("Base", &CLAY, 0.6)],
+        layers: |size| vec![bent("Base", size, &CLAY, 0.6)],
     },
     StartSample {
         name: "Chrome",
         about: "A horizon that is bent as metal reflects it",
-        layers: |_| vec![bent("Chrome", &CHROME, 1.0)],
+        layers: |size| vec![bent("Chrome", size, &CHROME, 1.0)],
     },
     StartSample {
         name: "In a painter's light",
@@ -59,26 +60,29 @@ const SKIN: Color = Color { r: 0xd8, g: 0x8c, b: 0x62, a: 255 };
 impl StartSample {
     /// The sample as a document of its own.
     pub fn open(&self) -> Result<OpenedFile> {
-        let surface = surface().map_err(|error| Error::unsupported("sample", error))?;
-        let size = Size::new(SIDE as u32, SIDE as u32);
-        let down = (vec2(0.0, 0.0), vec2(0.0, SIDE as f32));
-        let dark = [(0.0, [0x3a; 3]), (1.0, [0x24; 3])];
-        let behind =
-            Layer { clip_to_surface: false, ..gradient("Background", down, &dark, Operator::None) };
-        let layers = std::iter::once(behind).chain((self.layers)(size)).map(Arc::new).collect();
-        let document =
-            Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
         Ok(OpenedFile {
-            open: OpenDocument::new("Sample", document, None),
+            open: OpenDocument::new("Sample", self.document(SIDE)?, None),
             notes: Vec::new(),
             drawing: None,
         })
     }
+
+    /// The same, so many pixels wide and high.
+    pub fn document(&self, side: usize) -> Result<Document> {
+        let surface = surface(side).map_err(|error| Error::unsupported("sample", error))?;
+        let size = Size::new(side as u32, side as u32);
+        let down = (vec2(0.0, 0.0), vec2(0.0, side as f32));
+        let dark = [(0.0, [0x3a; 3]), (1.0, [0x24; 3])];
+        let behind =
+            Layer { clip_to_surface: false, ..gradient("Background", down, &dark, Operator::None) };
+        let layers = std::iter::once(behind).chain((self.layers)(size)).map(Arc::new).collect();
+        Ok(Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) })
+    }
 }
 
 /// A gradient that follows the directions of the shape.
-fn bent(name: &str, stops: &Stops, alpha: f32) -> Layer {
-    let ends = (vec2(0.30, 0.22) * SIDE as f32, vec2(0.62, 0.74) * SIDE as f32);
+fn bent(name: &str, size: Size, stops: &Stops, alpha: f32) -> Layer {
+    let ends = (vec2(0.30, 0.22) * size.width as f32, vec2(0.62, 0.74) * size.width as f32);
     gradient(name, ends, stops, Operator::Normal { alpha, beta: 1.0, detail: 0.0 })
 }
 
@@ -195,10 +199,10 @@ fn crossing(f: &impl Fn(f32) -> f32, mut outer: f32, mut inner: f32) -> f32 {
     inner
 }
 
-fn surface() -> std::result::Result<Surface, crate::surface::SurfaceError> {
-    let size = Size::new(SIDE as u32, SIDE as u32);
-    let place = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5) / SIDE as f32;
-    let px = 1.0 / SIDE as f32;
+fn surface(side: usize) -> std::result::Result<Surface, crate::surface::SurfaceError> {
+    let size = Size::new(side as u32, side as u32);
+    let place = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5) / side as f32;
+    let px = 1.0 / side as f32;
     let seen_at = |x: usize, y: usize| seen(place(x, y));
     let heights =
         Plane::from_fn(size, |x, y| seen_at(x, y).map_or(f32::NEG_INFINITY, |seen| seen.height));
@@ -242,7 +246,7 @@ mod tests {
 
     #[test]
     fn the_ring_ends_before_the_ball_in_a_clean_line() {
-        let surface = surface().unwrap();
+        let surface = surface(SIDE).unwrap();
         let is_ring = |at: Vec2| {
             ring(at).is_some_and(|ring| ball(at).is_none_or(|ball| ball.height < ring.height))
         };

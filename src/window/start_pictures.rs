@@ -2,9 +2,8 @@
 //! their card is first in sight. Floor 7. Not here: the screen (`panels::start`).
 
 use super::mood_pictures::image_of;
-use super::sample::{SAMPLES, StartSample};
+use super::sample::SAMPLES;
 use super::{Error, jobs};
-use crate::document::DocumentReducer;
 use crate::io::Budget;
 use crate::io::thumbnail::thumbnail;
 use eframe::egui::{self, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2};
@@ -92,10 +91,7 @@ fn painted(card: &StartCard) -> Option<ColorImage> {
             Some(ColorImage::from_rgba_unmultiplied(size, &small.rgba))
         }
         StartCard::Sample(index) => {
-            let opened = SAMPLES.get(*index).map(StartSample::open)?.ok()?;
-            let document = opened.open.document();
-            let factor = (SIDE_PX as f32 / document.size.longer_side()).min(1.0);
-            image_of(&DocumentReducer::new(factor).of(document).ok()?)
+            image_of(&SAMPLES.get(*index)?.document(SIDE_PX as usize).ok()?)
         }
     }
 }

@@ -74,9 +74,13 @@ fn presets(
     if !session.presets.iter().any(|preset| is_found(preset, search)) {
         ui.weak(format!("No brush is called “{}”", search.trim()));
     }
-    let mut marked = None;
+    let (mut marked, mut is_first) = (None, true);
     for (name, kind, presets) in sections(session, shelf, search) {
-        title(ui, name);
+        if std::mem::take(&mut is_first) {
+            ui.strong(name);
+        } else {
+            title(ui, name);
+        }
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
             for known in presets {

@@ -12,7 +12,7 @@ use crate::widgets::{tab, tab_width_pt};
 use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, Ui};
 
 /// The height that the layers take at first, if there is room: more than six of them.
-const LAYERS_PT: f32 = 390.0;
+const LAYERS_PT: f32 = 384.0;
 /// The range of the panels' width, points.
 const WIDTHS_PT: std::ops::RangeInclusive<f32> = 230.0..=460.0;
 
@@ -110,7 +110,7 @@ impl MainWindow {
         if has_color {
             ui.add_space(7.0);
             // Never so large that brushes and layers have no room.
-            let area_pt = (0.4 * height_pt - 174.0).max(70.0).min(190.0);
+            let area_pt = (0.4 * height_pt - 186.0).max(58.0).min(190.0);
             panels::colors::fixed(ui, &self.session, &mut self.settings.color, area_pt, requests);
             ui.separator();
         }
@@ -122,9 +122,13 @@ impl MainWindow {
         if let Some(front) = front {
             if has_below {
                 let left_pt = ui.available_height();
-                let front_pt = (left_pt - LAYERS_PT).max(112.0).min(0.5 * left_pt);
-                // Each height of the window has a division of its own.
-                let above = Panel::top(Id::unique(("front", (height_pt / 24.0) as i32)))
+                // Brushes leave room for the layers; properties and lists are longer.
+                let (front_pt, of) = match front {
+                    PanelKind::Brushes => ((left_pt - LAYERS_PT).max(104.0), "brushes"),
+                    _ => (0.56 * left_pt, "properties"),
+                };
+                // Each height of the window has divisions of its own.
+                let above = Panel::top(Id::unique((of, (height_pt / 24.0) as i32)))
                     .resizable(true)
                     .default_size(front_pt)
                     .size_range(100.0..=(left_pt - 120.0).max(101.0));

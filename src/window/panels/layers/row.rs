@@ -18,7 +18,7 @@ use eframe::egui::{
 };
 use std::sync::Arc;
 
-const ROW_PT: f32 = 44.0;
+const ROW_PT: f32 = 42.0;
 /// Sides of the pictures of a layer and of its mask.
 const PICTURE_PT: f32 = 40.0;
 const MASK_PT: f32 = 30.0;
@@ -309,7 +309,7 @@ fn name(
         room.max(10.0),
         TextStyle::Body,
     );
-    ui.painter().galley(pos2(at.left() + 4.0, at.top() + 5.0), galley, color);
+    ui.painter().galley(pos2(at.left() + 4.0, at.top() + 4.0), galley, color);
     let mode = if layer.blend == BlendMode::Normal {
         String::new()
     } else {
