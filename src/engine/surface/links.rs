@@ -105,6 +105,41 @@ pub fn find(
     })
 }
 
+/// Which of the nine pixels around one, row by row, links join to it without crossing a contour;
+/// itself too.
+pub fn joined_around(linked: &Plane<u8>, (x, y): (usize, usize)) -> [bool; 9] {
+    let here = linked.at(x, y);
+    if here == 15
+        && (1..linked.width() - 1).contains(&x)
+        && (1..linked.size().height as usize - 1).contains(&y)
+    {
+        let across = LEFT | RIGHT;
+        let rows = [linked.at(x, y - 1), linked.at(x, y + 1)];
+        if rows.iter().all(|bits| bits & across == across) {
+            return [true; 9];
+        }
+    }
+    let has = |dx: i32, dy: i32, bit: u8| {
+        linked.get(x as i32 + dx, y as i32 + dy).is_some_and(|bits| bits & bit != 0)
+    };
+    let side = |dx: i32, dy: i32| match (dx, dy) {
+        (-1, 0) => here & LEFT != 0,
+        (1, 0) => here & RIGHT != 0,
+        (_, -1) => here & UP != 0,
+        _ => here & DOWN != 0,
+    };
+    std::array::from_fn(|i| {
+        let (dx, dy) = (i as i32 % 3 - 1, i as i32 / 3 - 1);
+        let across = if dx < 0 { LEFT } else { RIGHT };
+        let down = if dy < 0 { UP } else { DOWN };
+        match (dx, dy) {
+            (0, 0) => true,
+            (0, _) | (_, 0) => side(dx, dy),
+            _ => side(dx, 0) && has(dx, 0, down) || side(0, dy) && has(0, dy, across),
+        }
+    })
+}
+
 /// Removes the links between pixels of different pieces.
 pub fn cut(links: &mut Plane<u8>, piece: impl Fn(usize, usize) -> u32 + Sync) {
     let whole = std::mem::replace(links, Plane::filled(links.size(), 0));

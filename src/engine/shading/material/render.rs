@@ -2,8 +2,14 @@
 //! Floor 3.
 
 use super::{
-    Model, Shading, ashikhmin, ashikhmin_environment::EnvironmentSamples, hemisphere, lit_sphere,
-    mirror, painter::PainterTerms, phong::PhongTerms, second_look::SecondLook, toon,
+    Model, Shading, ashikhmin,
+    ashikhmin_environment::EnvironmentSamples,
+    hemisphere, lit_sphere,
+    mirror::{self, FollowedTile},
+    painter::PainterTerms,
+    phong::PhongTerms,
+    second_look::SecondLook,
+    toon,
 };
 use crate::math::{fast, srgb};
 use crate::raster::planar::{BRIGHTEST, PixelRow};
@@ -104,6 +110,9 @@ impl Shading {
             if let Some(samples) = &mut worker.samples {
                 samples.follow_tile(self, surface, inside);
             }
+            if scene.row_step() == 1 {
+                worker.followed = FollowedTile::of(self, surface, &features, inside);
+            }
             let looked_at = scene.row_step();
             for (row, y) in rows.step_by(looked_at) {
                 surface_row.move_to(y as usize);
@@ -157,6 +166,8 @@ struct RowShader<'a> {
     places: Option<Arc<BallPlaces>>,
     /// For an Ashikhmin material in an environment.
     samples: Option<EnvironmentSamples>,
+    /// For a mirror or a refraction with bounces.
+    followed: Option<FollowedTile>,
     relief: RowRelief,
     light: Light3,
 }
@@ -176,6 +187,7 @@ impl<'a> RowShader<'a> {
             lights,
             terms,
             samples,
+            followed: None,
             relief: RowRelief::default(),
             light: [[0.0; TILE]; 3],
         }
@@ -183,7 +195,8 @@ impl<'a> RowShader<'a> {
 
     /// Linear light along a row.
     fn light(&mut self, surface_row: &SurfaceRow) -> &Light3 {
-        let Self { shading, lights, terms, painter, places, samples, relief, light } = self;
+        let Self { shading, lights, terms, painter, places, samples, followed, relief, light } =
+            self;
         relief.leave_row();
         lights.iter_mut().for_each(|lit| lit.turn(surface_row));
         *light = [[0.0; TILE]; 3];
@@ -201,7 +214,9 @@ impl<'a> RowShader<'a> {
             Model::LitSphere => {
                 lit_sphere::shade(shading, surface_row, places.as_deref(), relief, light);
             }
-            Model::Mirror | Model::Refraction => mirror::shade(shading, surface_row, light),
+            Model::Mirror | Model::Refraction => {
+                mirror::shade(shading, surface_row, followed.as_ref(), light);
+            }
             Model::DiffuseEnvironment => hemisphere::diffuse(shading, surface_row, light),
             Model::AmbientOcclusion => hemisphere::occlusion(shading, surface_row, light),
             Model::Painter => {

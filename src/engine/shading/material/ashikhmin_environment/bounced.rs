@@ -177,7 +177,7 @@ impl BouncedLight {
     /// axis.
     pub fn at(&self, surface: &Surface, (x, y): (usize, usize)) -> Vec3 {
         let mut quarters = [(Vec3::ZERO, 0.0f32); PHASES];
-        let joined = joined(surface, (x, y));
+        let joined = links::joined_around(surface.smooth_links_plane(), (x, y));
         for (i, _) in joined.into_iter().enumerate().filter(|(_, joined)| *joined) {
             let (dx, dy) = (i as i32 % 3 - 1, i as i32 / 3 - 1);
             let share = ((2 - dx.abs()) * (2 - dy.abs())) as f32;
@@ -193,40 +193,4 @@ impl BouncedLight {
             .fold((Vec3::ZERO, 0.0), |(all, n), (sum, weight)| (all + sum / weight, n + 1.0f32));
         sum / count.max(1.0)
     }
-}
-
-/// Which of the nine pixels around one, row by row, links join to it without crossing a contour;
-/// itself too.
-fn joined(surface: &Surface, (x, y): (usize, usize)) -> [bool; 9] {
-    let linked = surface.smooth_links_plane();
-    let here = linked.at(x, y);
-    if here == 15
-        && (1..linked.width() - 1).contains(&x)
-        && (1..linked.size().height as usize - 1).contains(&y)
-    {
-        let across = links::LEFT | links::RIGHT;
-        let rows = [linked.at(x, y - 1), linked.at(x, y + 1)];
-        if rows.iter().all(|bits| bits & across == across) {
-            return [true; 9];
-        }
-    }
-    let has = |dx: i32, dy: i32, bit: u8| {
-        linked.get(x as i32 + dx, y as i32 + dy).is_some_and(|bits| bits & bit != 0)
-    };
-    let side = |dx: i32, dy: i32| match (dx, dy) {
-        (-1, 0) => here & links::LEFT != 0,
-        (1, 0) => here & links::RIGHT != 0,
-        (_, -1) => here & links::UP != 0,
-        _ => here & links::DOWN != 0,
-    };
-    std::array::from_fn(|i| {
-        let (dx, dy) = (i as i32 % 3 - 1, i as i32 / 3 - 1);
-        let across = if dx < 0 { links::LEFT } else { links::RIGHT };
-        let down = if dy < 0 { links::UP } else { links::DOWN };
-        match (dx, dy) {
-            (0, 0) => true,
-            (0, _) | (_, 0) => side(dx, dy),
-            _ => side(dx, 0) && has(dx, 0, down) || side(0, dy) && has(0, dy, across),
-        }
-    })
 }
