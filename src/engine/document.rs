@@ -71,7 +71,7 @@ pub use scale::{DocumentReducer, ReducedSurface, SurfaceReduction};
 pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
 
-use crate::paint::{Scene, Selection};
+use crate::paint::{EffectLight, Scene, Selection};
 use crate::{math::Size, raster::Asset, surface::Surface};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -98,6 +98,8 @@ pub struct Document {
     pub active_selection: Option<Arc<Selection>>,
     /// Lines that what is dragged snaps to; not part of the picture.
     pub guides: Arc<Guides>,
+    /// The light of effects that have none of their own.
+    pub effect_light: EffectLight,
     /// What strokes are drawn along; not part of the picture.
     pub assistants: Arc<Vec<Assistant>>,
 }
@@ -115,6 +117,7 @@ impl Document {
             selections: Vec::new(),
             active_selection: None,
             guides: Arc::default(),
+            effect_light: EffectLight::default(),
             assistants: Arc::default(),
         }
     }

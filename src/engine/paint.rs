@@ -10,6 +10,7 @@ mod curve;
 mod dab;
 mod dab_walker;
 pub mod dynamics;
+pub mod effect;
 pub mod fill;
 pub mod filter;
 pub mod form_drawing;
@@ -50,6 +51,7 @@ pub use brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
 };
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
+pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;
 pub use filter::{LiveFilter, PictureFilter};
 pub use form_drawing::{DrawingHand, FormDrawing, FormPattern};

@@ -10,6 +10,7 @@
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `adjustments` | what adjustment layers do |
+//! | `effects` | shadows, glows and other effects of layers |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
 //! | `alpha_channels` | selections, the channels besides the colors |
 //! | `marks` | guides, and the colors of layers in the list |
@@ -31,6 +32,7 @@ mod colors;
 mod compare;
 pub(super) mod cursor;
 pub(super) mod descriptor;
+mod effects;
 mod export;
 mod fill;
 mod filled;
@@ -56,6 +58,7 @@ use crate::document::{Document, LayerLabel};
 use crate::math::Rect;
 use crate::paint::ColorAdjustment;
 use blocks::ArtboardBackground;
+use effects::RecordEffects;
 use fill::LayerFill;
 use outline::VectorPaths;
 
@@ -108,8 +111,10 @@ pub struct LayerRecord {
     pub adjustment: Option<ColorAdjustment>,
     /// It is an artboard.
     pub ground: Option<ArtboardBackground>,
-    /// Whether any of its effects is switched on, where it has some.
-    pub effects: Option<bool>,
+    /// Its effects, and what is left out of them.
+    pub effects: Option<RecordEffects>,
+    /// Its mask hides its effects, too.
+    pub masks_effects: bool,
     /// It is a shape, whose pixels show its vector mask.
     pub is_shape: bool,
     /// A line is drawn around its shape.
@@ -163,6 +168,7 @@ impl Default for LayerRecord {
             adjustment: None,
             ground: None,
             effects: None,
+            masks_effects: false,
             is_shape: false,
             stroked: false,
             unfilled: false,
@@ -209,6 +215,12 @@ fn signature(records: &[LayerRecord]) -> u32 {
         );
         if let Some(adjustment) = &r.adjustment {
             hasher.update(format!("{adjustment:?}").as_bytes());
+        }
+        if let Some(effects) = &r.effects {
+            hasher.update(format!("{effects:?}").as_bytes());
+        }
+        if r.fill_opacity < 255 {
+            hasher.update(&[r.fill_opacity]);
         }
         if let Some(mask) = &r.mask {
             hasher.update(format!("{:?}{}", mask.rect, mask.outside).as_bytes());

@@ -20,6 +20,7 @@
 //! | `masks` | layer masks |
 //! | `transforms` | where the frames of layers lie |
 //! | `selections` | selections |
+//! | `effects` | effects of layers, and their light |
 //! | `guides` | guides and assistants |
 //! | `pictures` | the files that layers name, each decoded once |
 //! | `version` | which version a document needs |
@@ -28,6 +29,7 @@
 mod adjustments;
 mod brush;
 mod brush_options;
+mod effects;
 mod form_drawings;
 mod guides;
 mod images;
@@ -160,6 +162,9 @@ pub fn read_unshaped(
     };
     let layers = root.get("layers");
     let (selections, active) = (root.get("selections"), root.get("active_selection"));
+    let effect_light = root
+        .get("effect_light")
+        .map_or(Ok(Default::default()), |node| effects::read_light(&node))?;
     let guides = root.get("guides").map_or(Ok(Guides::default()), |node| guides::read(&node))?;
     let assistants =
         root.get("assistants").map_or(Ok(Vec::new()), |node| guides::read_assistants(&node))?;
@@ -208,6 +213,7 @@ pub fn read_unshaped(
         layers,
         selections,
         active_selection,
+        effect_light,
         guides: Arc::new(guides),
         assistants: Arc::new(assistants),
     };
@@ -373,6 +379,7 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
     let is_second = is_of_second_version(document)
         || selections::is_needed(document, list)
         || has_unwrapped(document)
+        || effects::is_needed(document)
         || guides::is_needed(document);
     out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
@@ -382,6 +389,7 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
     }
     out.object("surface", surface);
     selections::write(&mut out, document, list);
+    effects::write_light(&mut out, document.effect_light);
     guides::write(&mut out, document);
     out
 }

@@ -3,6 +3,7 @@
 
 mod adjustments;
 mod edit;
+mod effects;
 mod file;
 mod filters;
 mod guides;

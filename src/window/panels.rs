@@ -11,6 +11,7 @@ pub mod brushes;
 pub mod colors;
 mod crop;
 pub mod curve;
+pub mod effects;
 pub mod fill;
 mod form_drawing;
 pub mod history;

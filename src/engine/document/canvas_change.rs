@@ -223,6 +223,7 @@ impl Document {
                 .map(|own| carried.of(own))
                 .filter(shows),
             guides: Arc::new(self.guides.transformed(&change.map)),
+            effect_light: self.effect_light,
             assistants: Arc::new(
                 self.assistants.iter().filter_map(|own| own.transformed(&change.map)).collect(),
             ),

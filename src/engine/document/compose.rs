@@ -2,6 +2,8 @@
 //! composes what the other sides of its contour pixels see (`far_side`). Floor 4. `prepare`
 //! selects the layers, `content` renders them, `raster::blend` mixes the pixels.
 
+mod effects;
+
 use super::far_side::{FarScene, FarTile};
 use super::floats::FloatTiles;
 use super::layer::adjustment::{AdjustedPlace, Adjustment};
@@ -55,8 +57,11 @@ impl Composer<'_> {
             Some(far) => mask::coverage_on_far_side(node, far),
             None => mask::coverage(node, self.at),
         };
-        if coverage.is_none() && !self.is_sought_in(node) {
+        if coverage.is_none() && node.effects.is_none() && !self.is_sought_in(node) {
             return ComposeFlow::Continue(());
+        }
+        if let Some(effects) = &node.effects {
+            return self.with_effects(node, effects, onto, &coverage, atop);
         }
         match node.layer.content.role() {
             Role::Adjusts(_) => self.adjustment(node, onto, &coverage, atop),
@@ -82,9 +87,7 @@ impl Composer<'_> {
         coverage: &TileCoverage,
         atop: bool,
     ) -> ComposeFlow {
-        let mix =
-            Mix { mode: node.layer.blend, linear: node.layer.blend_linear, atop, ..Mix::default() }
-                .on(self.at);
+        let mix = self.own_mix(node, atop);
         let painted = self.content(node)?;
         if node.clipped.is_empty() {
             if let Some(paint) = painted.as_paint() {
@@ -103,6 +106,12 @@ impl Composer<'_> {
         self.clipped(node, &mut own)?;
         self.blend(onto, mix, TilePaint::Planar(&own), &coverage.opacity_only());
         ComposeFlow::Continue(())
+    }
+
+    /// How a layer's own color is mixed.
+    fn own_mix(&self, node: &PreparedLayer, atop: bool) -> Mix {
+        let Layer { blend: mode, blend_linear: linear, .. } = *node.layer;
+        Mix { mode, linear, atop, ..Mix::default() }.on(self.at)
     }
 
     /// As many transparent pixels as are composed.
@@ -278,8 +287,11 @@ impl Composer<'_> {
     /// Whether this node hides everything beneath it in the tile.
     fn is_covering(&self, node: &PreparedLayer) -> bool {
         let layer = &node.layer;
-        let may_hide =
-            layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
+        let may_hide = layer.blend == BlendMode::Normal
+            && layer.opacity >= 1.0
+            && layer.fill_opacity >= 1.0
+            && layer.mask.is_none()
+            && node.effects.is_none();
         if layer.content.filter().is_some() {
             // It replaces what is there by what it has composed itself.
             return may_hide && !layer.blend_linear;
@@ -345,3 +357,6 @@ fn adjust_far_side(
         pixels,
     );
 }
+
+#[cfg(test)]
+mod tests;

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The tiles of the canvas in which `new` may look different from `old`.
 pub fn diff(old: &Document, new: &Document) -> BTreeSet<TileAt> {
-    if !old.scene().is_same(&new.scene()) {
+    if !old.scene().is_same(&new.scene()) || old.effect_light != new.effect_light {
         return TileAt::covering(new.size.rect()).collect();
     }
     let mut diff = Diff {
@@ -161,6 +161,7 @@ impl Diff<'_> {
                 return self.report_both(old, new);
             };
             let unmoved = Arc::new(Layer { liquify: old.liquify.clone(), ..Layer::clone(new) });
+            let tiles = self.around(new, tiles);
             return self.report_tiles(tiles) | self.compare_layers(old, &unmoved, beneath);
         }
         if let (Some(a), Some(b)) = (&old.mask, &new.mask)
@@ -172,6 +173,7 @@ impl Diff<'_> {
             // If a mask was painted on, only some of its tiles differ.
             let Some(tiles) = a.changed_tiles(b) else { return self.report_both(old, new) };
             let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
+            let tiles = self.around(new, tiles);
             return self.report_tiles(tiles) | self.compare_layers(old, &unmasked, beneath);
         }
         if let (Some(a), Some(b)) = (old.content.group(), new.content.group())
@@ -200,6 +202,7 @@ impl Diff<'_> {
             Changed::Wholly => self.report_both(old, new),
             // Paint was displaced when it was taken to the canvas.
             Changed::Tiles(tiles) if matches!(new.content, Content::Pixels(_)) => {
+                let tiles = self.around(new, tiles);
                 self.report_tiles(tiles)
             }
             Changed::Tiles(tiles) => {
@@ -221,11 +224,30 @@ impl Diff<'_> {
         version: Version,
         report: impl FnOnce(&mut Self) -> bool,
     ) -> bool {
-        let Some(warp) = self.warp(layer, version) else { return report(self) };
+        let warp = self.warp(layer, version);
+        if warp.is_none() && layer.effects.is_empty() {
+            return report(self);
+        }
         let before = std::mem::take(&mut self.changed);
         let is_any = report(self);
         let own = std::mem::replace(&mut self.changed, before);
-        self.report_tiles(warp.showing(&own.into_iter().collect::<Vec<_>>())) | is_any
+        let own: Vec<TileAt> = own.into_iter().collect();
+        let shown = warp.map_or_else(|| own.clone(), |warp| warp.showing(&own));
+        let shown = self.around(layer, shown);
+        self.report_tiles(shown) | is_any
+    }
+
+    /// Tiles of a layer, with those that its effects change with them.
+    fn around(&self, layer: &Layer, tiles: Vec<TileAt>) -> Vec<TileAt> {
+        if layer.effects.is_empty() || tiles.is_empty() {
+            return tiles;
+        }
+        if layer.has_aligned_effects() {
+            return TileAt::covering(self.scene.size.rect()).collect();
+        }
+        let reach = layer.effects_reach_px(self.document.effect_light, &self.scene);
+        let near = tiles.iter().flat_map(|at| TileAt::covering(at.rect().grown(reach)));
+        near.collect::<BTreeSet<_>>().into_iter().collect()
     }
 
     /// What both versions of a layer see.
@@ -284,14 +306,19 @@ impl Diff<'_> {
         // Normal layers replace the canvas's surface.
         let touched =
             layer.content.touched(Some(&self.scene).filter(|_| !self.has_normals(layer.id)));
-        match touched {
-            Touched::Nowhere => false,
-            Touched::Canvas => self.report_rect(canvas),
-            Touched::Rects(rects) => {
-                rects.into_iter().fold(false, |changed, rect| self.report_rect(rect) | changed)
+        let touched = match touched {
+            Touched::Nowhere => return false,
+            Touched::Canvas => return self.report_rect(canvas),
+            Touched::Rects(rects) if layer.effects.is_empty() => {
+                return rects
+                    .into_iter()
+                    .fold(false, |changed, rect| self.report_rect(rect) | changed);
             }
-            Touched::Tiles(tiles) => self.report_tiles(tiles),
-        }
+            Touched::Rects(rects) => rects.into_iter().flat_map(TileAt::covering).collect(),
+            Touched::Tiles(tiles) => tiles,
+        };
+        let tiles = self.around(&layer, touched);
+        self.report_tiles(tiles)
     }
 
     fn report_rect(&mut self, rect: Rect) -> bool {
@@ -328,6 +355,8 @@ fn is_alike(a: &Layer, b: &Layer) -> bool {
         && a.blend_linear == b.blend_linear
         && a.clip_below == b.clip_below
         && a.clip_to_surface == b.clip_to_surface
+        && a.fill_opacity == b.fill_opacity
+        && (Arc::ptr_eq(&a.effects, &b.effects) || a.effects == b.effects)
         && a.mask.is_some() == b.mask.is_some()
         && a.transform == b.transform
         && a.on == b.on

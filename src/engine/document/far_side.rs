@@ -135,6 +135,18 @@ impl<'c> FarTile<'c> {
         PackedTile { pixels: PackedPixels::Rows16(rows), opaque }
     }
 
+    /// The same for pixels in flight.
+    pub fn same_pixels(&self, tile: &PlanarTile) -> PlanarTile {
+        let (mut packed, corner) = (PlanarTile::of_rows(self.rows()), self.at.rect());
+        for (place, pixel) in self.places() {
+            let (x, y) = ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
+            if let Some(row) = tile.rows().get(y) {
+                packed.rows_mut()[place / TILE].set(place % TILE, row.pixel(x));
+            }
+        }
+        packed
+    }
+
     fn gathered(&self, pixel: impl Fn(usize, &ContourPixel) -> [u8; 4]) -> PackedTile {
         let mut bytes = vec![0; self.rows() * TILE * 4].into_boxed_slice();
         let mut opaque = true;

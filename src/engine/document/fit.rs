@@ -148,7 +148,7 @@ impl Total {
         self.layers += 1;
         // An empty group adds no depth.
         self.deepest = self.deepest.max(depth);
-        self.values += Self::A_LAYER;
+        self.values += Self::A_LAYER + marks::effect_values(layer);
         self.values +=
             layer.liquify.as_ref().map_or(0, |liquify| A_BLOCK * liquify.blocks().count());
         self.values += layer
@@ -214,6 +214,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
         at_most("letters of the name", layer.name.chars().count(), Layer::LONGEST_NAME)?;
     }
     check_range("opacity", layer.opacity, &Layer::OPACITY)?;
+    marks::effects(layer)?;
     layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
     layer.transform.as_ref().map_or(Ok(()), |transform| transform.fits())?;
     if layer.is_warped() && !layer.content.can_be_warped() {

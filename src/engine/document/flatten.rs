@@ -197,7 +197,10 @@ impl PreparedDocument {
     fn is_one_color(&self) -> bool {
         let [node] = &self.stack[..] else { return false };
         let is_whole = node.layer.mask.is_none() && mask::clip(node).is_none();
-        let is_alone = node.clipped.is_empty() && node.warp.is_none() && self.contours.is_none();
+        let is_alone = node.clipped.is_empty()
+            && node.warp.is_none()
+            && node.effects.is_none()
+            && self.contours.is_none();
         matches!(node.layer.content, Content::Fill(_)) && is_whole && is_alone
     }
 

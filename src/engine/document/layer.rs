@@ -5,6 +5,7 @@
 pub(super) mod adjustment;
 pub(super) mod cache;
 pub(super) mod content;
+pub(super) mod effects;
 mod live;
 pub(super) mod map;
 pub(super) mod marks;
@@ -29,7 +30,7 @@ pub use warp::LayerWarp;
 
 use crate::math::srgb::Color;
 use crate::math::{PlaneMap, Range, Size, UNIT};
-use crate::paint::Attachment;
+use crate::paint::{Attachment, LayerEffect};
 use crate::raster::{BlendMode, Lattice};
 use crate::shape::flats::lifted_ink::LiftedInk;
 use std::sync::Arc;
@@ -71,6 +72,10 @@ pub struct Layer {
     pub mask: Option<LayerMask>,
     /// A color by which it is found in the list.
     pub label: LayerLabel,
+    /// Shadows, glows and their like, the topmost of a kind first.
+    pub effects: Arc<Vec<LayerEffect>>,
+    /// The opacity of what it holds, not of its effects, `[0, 1]`.
+    pub fill_opacity: f32,
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
     /// Where the frame of content and mask lies on the canvas; absent: it is the canvas.
@@ -115,6 +120,8 @@ impl Layer {
             lock: LayerLock::None,
             mask: None,
             label: LayerLabel::None,
+            effects: Arc::default(),
+            fill_opacity: 1.0,
             clip_to_surface: true,
             transform: None,
             liquify: None,

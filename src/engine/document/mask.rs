@@ -33,6 +33,29 @@ pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
     }
 }
 
+/// The mask of a layer in a tile that may lie beyond the canvas: a picture's border is continued
+/// there, so that the border of the canvas is no edge. The opacity is no part of it.
+pub(super) fn coverage_around_canvas(node: &PreparedLayer, at: TileAt) -> TileCoverage {
+    let canvas = node.scene.size.rect();
+    if at.rect().intersect(canvas) == at.rect() {
+        return coverage(node, at).mask_only();
+    }
+    let mut covered = TileCoverage::FULL;
+    if let Some(surface) = clip(node) {
+        let plane = surface.coverage_plane();
+        covered = covered.times(tile_pixels(at, |x, y| {
+            if plane.get(x, y).is_some_and(|c| c > 0) { 1.0 } else { 0.0 }
+        }));
+    }
+    let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.is_active_on(&node.scene)) else {
+        return covered;
+    };
+    covered.times(tile_pixels(at, |x, y| {
+        let (x, y) = (x.clamp(0, canvas.x1 - 1), y.clamp(0, canvas.y1 - 1));
+        mask.at(&node.scene, node.curvature.as_deref(), x, y)
+    }))
+}
+
 /// The surface does not cut the node in this tile.
 pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
     clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), TileCover::Whole))

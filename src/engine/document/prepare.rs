@@ -3,6 +3,7 @@
 //! (`compose`).
 
 use super::filter_stage::{FilterStage, StoredTiles};
+use super::layer::effects::EffectTiles;
 use super::layer::on_canvas::on_canvas;
 use super::layer::warp::WarpTiles;
 use super::{
@@ -10,7 +11,7 @@ use super::{
     normals,
 };
 use crate::math::Size;
-use crate::paint::Scene;
+use crate::paint::{EffectLight, Scene};
 use crate::raster::TileAt;
 use crate::shading::radiance::BackdropStats;
 use crate::surface::{Contours, Curvature};
@@ -45,6 +46,8 @@ pub(super) struct PreparedLayer {
     pub far_curvature: Option<Arc<Curvature>>,
     /// What it shows, if it is a live layer or a group that is displaced.
     pub warp: Option<Arc<WarpTiles>>,
+    /// What its effects add, if it shows some.
+    pub effects: Option<Arc<EffectTiles>>,
     /// For a group: its layers, bottom first.
     pub children: Vec<PreparedLayer>,
     /// The run of layers clipped to this one, bottom first.
@@ -79,7 +82,8 @@ impl AdjustmentLayer {
 impl PreparedDocument {
     /// Resolves the layers and measures what adjustments refer to; `None` if canceled meanwhile.
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
-        let mut builder = StackBuilder { adjustments: Vec::new(), progress };
+        let light = document.effect_light;
+        let mut builder = StackBuilder { adjustments: Vec::new(), light, progress };
         let scope = Scope { beneath: Beneath::NOTHING, map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
@@ -146,6 +150,8 @@ impl Beneath<'_> {
 
 struct StackBuilder<'a> {
     adjustments: Vec<AdjustmentLayer>,
+    /// Of effects without a light of their own.
+    light: EffectLight,
     progress: &'a Progress,
 }
 
@@ -222,6 +228,13 @@ impl StackBuilder<'_> {
         {
             surface.region(&region);
         }
+        let effects = layer.cache.effects.tiles(
+            layer,
+            &visible_scene,
+            &within.map,
+            warp.as_ref(),
+            self.light,
+        );
         let curvature_on = |scene: &Scene| layer.mask.as_ref()?.curvature_on(scene);
         PreparedLayer {
             curvature: curvature_on(&visible_scene),
@@ -230,6 +243,7 @@ impl StackBuilder<'_> {
             warp: warp.map(|warp| {
                 layer.cache.warped.tiles(&visible_scene, &layer.content, &within.map, warp)
             }),
+            effects,
             layer: layer.clone(),
             scene: visible_scene,
             children,

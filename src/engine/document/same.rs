@@ -24,6 +24,9 @@ impl Document {
             .or_else(|| shape(self, other))
             .or_else(|| selections(self, other))
             .or_else(|| (self.guides != other.guides).then(|| "the guides".into()))
+            .or_else(|| {
+                (self.effect_light != other.effect_light).then(|| "the effects' light".into())
+            })
             .or_else(|| (self.assistants != other.assistants).then(|| "the assistants".into()))
     }
 }
@@ -191,6 +194,7 @@ fn meeting(a: &Layer, b: &Layer) -> Option<&'static str> {
         ("clipping", (a.clip_below, a.clip_to_surface) == (b.clip_below, b.clip_to_surface)),
         ("lock", a.lock == b.lock),
         ("label", a.label == b.label),
+        ("effects", a.effects == b.effects && a.fill_opacity == b.fill_opacity),
         ("transform", a.transform == b.transform),
         ("liquify", a.liquify == b.liquify),
         ("attachment", on(a) == on(b)),

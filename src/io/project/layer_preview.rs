@@ -28,7 +28,12 @@ pub fn render(
     let one = |item: &&PlanItem| {
         let encoded = match &item.shows {
             ItemContent::Layer(layer) => {
-                let kind = PreviewKind { masked: item.mask.is_none(), whole_rim: item.whole_rim };
+                let has_some = !item.effects.is_empty() || item.fill_opacity < 1.0;
+                let kind = PreviewKind {
+                    masked: item.mask.is_none(),
+                    whole_rim: item.whole_rim,
+                    effects: !has_some && has_effects(layer),
+                };
                 render_preview(file, &seen, layer, kind, progress)?
             }
             ItemContent::Composed { document, layers } => {
@@ -91,11 +96,13 @@ impl<'d> SeenLayers<'d> {
     }
 
     /// A paint layer's pixels, where nothing hides any of them from other programs.
-    fn bare<'a>(&self, layer: &'a Layer, masked: bool) -> Option<&'a TileGrid> {
+    fn bare<'a>(&self, layer: &'a Layer, masked: bool, effects: bool) -> Option<&'a TileGrid> {
         let is_moved = self.moved.contains(&layer.id);
         let has_surface = self.document.surface.is_some();
-        let is_cut =
-            is_moved || (masked && layer.mask.is_some()) || (has_surface && layer.clip_to_surface);
+        let is_cut = effects
+            || is_moved
+            || (masked && layer.mask.is_some())
+            || (has_surface && layer.clip_to_surface);
         match &layer.content {
             Content::Pixels(pixels) if !is_cut => Some(&pixels.tiles),
             _ => None,
@@ -113,13 +120,16 @@ fn render_preview(
     progress: &Progress,
 ) -> Cancelable<EncodedPixels> {
     let document = seen.document;
-    if let Some(tiles) = seen.bare(layer, kind.masked) {
+    if let Some(tiles) = seen.bare(layer, kind.masked, kind.effects) {
         return pixels_of(file, document, layer, tiles).map(Some);
     }
     let render = || {
         let plain = seen.singles.isolate_layer(layer.id, |layer| {
             (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
             layer.mask = layer.mask.take().filter(|_| kind.masked);
+            if !kind.effects {
+                (layer.effects, layer.fill_opacity) = (Arc::default(), 1.0);
+            }
         });
         let tiles =
             plain.and_then(|plain| flatten_preview(&plain, &[layer.id], kind.whole_rim, progress));
@@ -149,6 +159,11 @@ fn flatten_preview(
     }
 }
 
+/// Whether a layer looks otherwise than what it holds: it has effects, or its fill is transparent.
+fn has_effects(layer: &Layer) -> bool {
+    !layer.effects.is_empty() || layer.fill_opacity < 1.0
+}
+
 fn is_16_bit(tiles: &TileGrid) -> bool {
     tiles.is_16_bit_in(tiles.bounds())
 }
@@ -159,13 +174,17 @@ pub fn cache_previews(document: &Document, previews: &BTreeMap<LayerId, EncodedP
     let (scene, seen) = (document.scene(), SeenLayers::of(document));
     for (_, layer) in document.walk() {
         if let Some(encoded) = previews.get(&layer.id) {
-            let bare = seen.bare(layer, true);
+            // Some formats have its effects in its picture, others beside it.
+            if has_effects(layer) {
+                continue;
+            }
+            let bare = seen.bare(layer, true, false);
             // Another format rounded what it shows.
             if bare.is_some_and(|tiles| is_16_bit(tiles) != pixels::is_16_bit(encoded.file.bytes()))
             {
                 continue;
             }
-            let kind = PreviewKind { masked: true, whole_rim: false };
+            let kind = PreviewKind { masked: true, whole_rim: false, effects: false };
             layer.cache.preview.get(&scene, &seen.by(layer), &kind, || Some(encoded.clone()));
             // Nothing hides any of its pixels, so they are its preview.
             if bare.is_some() {

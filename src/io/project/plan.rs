@@ -19,6 +19,9 @@
 use crate::document::{
     Content, Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role,
 };
+use crate::math::srgb::Color;
+use crate::paint::effect::EffectFill;
+use crate::paint::{EffectKind, EffectPlace, LayerEffect};
 use crate::raster::{BlendMode, Plane};
 use crate::surface::Surface;
 use std::sync::Arc;
@@ -35,6 +38,10 @@ pub struct PlanItem {
     pub clipped: bool,
     /// A mask that is not part of the pixels, if the format has masks.
     pub mask: Option<LayerMask>,
+    /// Effects that are not part of the pixels, if the format has words for them.
+    pub effects: Arc<Vec<LayerEffect>>,
+    /// The opacity of the fill, where that is not part of the pixels.
+    pub fill_opacity: f32,
     /// Its picture covers the surface's rim wholly: a mask around it is the surface's edge.
     pub whole_rim: bool,
     pub shows: ItemContent,
@@ -51,6 +58,8 @@ pub struct FormatSupport {
     pub says: fn(BlendMode) -> bool,
     /// Whether it has a word for an adjustment of what lies beneath.
     pub adjusts: fn(&Content) -> bool,
+    /// Whether it has words for an effect.
+    pub has_effect: fn(&LayerEffect) -> bool,
 }
 
 impl FormatSupport {
@@ -59,12 +68,14 @@ impl FormatSupport {
         masks: false,
         says: BlendMode::is_said_by_openraster,
         adjusts: |_| false,
+        has_effect: |_| false,
     };
     pub const PHOTOSHOP: FormatSupport = FormatSupport {
         clipping: true,
         masks: true,
         says: BlendMode::is_said_by_photoshop,
         adjusts: |content| matches!(content, Content::Adjustment(live) if live.params().is_said_by_photoshop()),
+        has_effect: LayerEffect::is_said_by_photoshop,
     };
 }
 
@@ -195,11 +206,12 @@ impl Planner<'_> {
             // No group around both: some programs take a group of such a file for opaque.
             return vec![
                 hidden_parts(&base.name, parts),
-                PlanItem { shows: composed, ..item(base) },
+                PlanItem { shows: composed, ..without_effects(item(base)) },
             ];
         }
         let items = vec![hidden_parts(&base.name, parts), picture(base.name.clone(), composed)];
-        vec![PlanItem { shows: ItemContent::Stack { isolated: true, items }, ..item(base) }]
+        let shows = ItemContent::Stack { isolated: true, items };
+        vec![PlanItem { shows, ..without_effects(item(base)) }]
     }
 
     /// The document with one layer's opacity and blend mode reset.
@@ -217,7 +229,37 @@ impl Planner<'_> {
             Role::Paints => ItemContent::Layer(layer.clone()),
         };
         let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
-        PlanItem { shows, mask, ..item(layer) }
+        self.with_word_for_effects(layer, PlanItem { shows, mask, ..item(layer) })
+    }
+
+    /// An item with its effects in its pixels, where the format has no words for them.
+    fn with_word_for_effects(&self, layer: &Layer, item: PlanItem) -> PlanItem {
+        if self.has_words_for_effects(layer) { item } else { without_effects(item) }
+    }
+
+    fn has_words_for_effects(&self, layer: &Layer) -> bool {
+        let all_said = layer.effects.iter().all(|effect| (self.words.has_effect)(effect));
+        all_said && (self.words.clipping || (layer.effects.is_empty() && layer.fill_opacity >= 1.0))
+    }
+
+    /// Whether a layer looks the same with its effects in its pixels.
+    fn can_hold_effects(&self, layer: &Layer) -> bool {
+        let shown = layer.shown_effects();
+        // Black that is multiplied is black that covers.
+        let is_plain = |effect: &LayerEffect| {
+            let s = &effect.settings;
+            let is_black = s.blend == BlendMode::Multiply && s.color == Color::BLACK;
+            effect.kind != EffectKind::Bevel
+                && (s.blend == BlendMode::Normal
+                    || (is_black && effect.fill() == EffectFill::Color))
+        };
+        let is_alone = |effect: &LayerEffect| {
+            effect.place() == EffectPlace::Within && layer.fill_opacity >= 1.0 || is_plain(effect)
+        };
+        shown.iter().all(is_alone)
+            && (layer.blend == BlendMode::Normal
+                || layer.fill_opacity >= 1.0
+                    && shown.iter().all(|effect| effect.place() == EffectPlace::Within))
     }
 
     fn has_word_for(&self, mask: &LayerMask) -> bool {
@@ -228,13 +270,15 @@ impl Planner<'_> {
         let parts = self.scope(&group.layers);
         if group.pass_through {
             let shows = ItemContent::Stack { isolated: false, items: parts };
-            return PlanItem { opacity: 1.0, blend: BlendMode::Normal, shows, ..item(layer) };
+            let own = self.with_word_for_effects(layer, item(layer));
+            return PlanItem { opacity: 1.0, blend: BlendMode::Normal, shows, ..own };
         }
+        let is_baked = !self.has_words_for_effects(layer);
         let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
         let items = match &layer.mask {
-            _ if mask.is_some() => parts,
-            None => parts,
-            Some(_) => {
+            _ if mask.is_some() && !is_baked => parts,
+            None if !is_baked => parts,
+            _ => {
                 let composed = ItemContent::Composed {
                     document: self.plain(layer.id),
                     layers: vec![layer.id],
@@ -242,7 +286,9 @@ impl Planner<'_> {
                 vec![hidden_parts(&layer.name, parts), picture(layer.name.clone(), composed)]
             }
         };
-        PlanItem { shows: ItemContent::Stack { isolated: true, items }, mask, ..item(layer) }
+        let mask = mask.filter(|_| !is_baked);
+        let own = self.with_word_for_effects(layer, item(layer));
+        PlanItem { shows: ItemContent::Stack { isolated: true, items }, mask, ..own }
     }
 
     /// A visible run that cannot be shown without composing it with what lies beneath.
@@ -257,9 +303,15 @@ impl Planner<'_> {
             Role::Shapes(_) => false,
             Role::Groups(group) if group.pass_through && !clips => {
                 let is_faded = base.opacity < 1.0 || base.mask.is_some();
-                is_faded || runs(&group.layers).iter().any(|run| self.is_composed_with_beneath(run))
+                let is_baked = !self.has_words_for_effects(base);
+                is_faded
+                    || is_baked
+                    || runs(&group.layers).iter().any(|run| self.is_composed_with_beneath(run))
             }
-            _ => !self.can_express_blending(base),
+            _ => {
+                let is_baked = clips || !self.has_words_for_effects(base);
+                !self.can_express_blending(base) || (is_baked && !self.can_hold_effects(base))
+            }
         }
     }
 
@@ -276,6 +328,7 @@ impl Planner<'_> {
     fn can_express_blending(&self, layer: &Layer) -> bool {
         !layer.blend_linear
             && (self.words.says)(layer.blend)
+            && (self.has_words_for_effects(layer) || self.can_hold_effects(layer))
             && (!matches!(layer.content.role(), Role::Adjusts(_))
                 || self.can_express_adjustment(layer))
     }
@@ -338,6 +391,8 @@ fn item(layer: &Layer) -> PlanItem {
         label: layer.label,
         clipped: false,
         mask: None,
+        effects: layer.effects.clone(),
+        fill_opacity: layer.fill_opacity,
         whole_rim: false,
         shows: ItemContent::Stack { isolated: true, items: Vec::new() },
     }
@@ -353,9 +408,16 @@ fn picture(name: String, shows: ItemContent) -> PlanItem {
         label: LayerLabel::None,
         clipped: false,
         mask: None,
+        effects: Arc::default(),
+        fill_opacity: 1.0,
         whole_rim: false,
         shows,
     }
+}
+
+/// The same with its effects in its pixels.
+fn without_effects(item: PlanItem) -> PlanItem {
+    PlanItem { effects: Arc::default(), fill_opacity: 1.0, ..item }
 }
 
 /// The layers that a composed picture shows, themselves hidden.

@@ -3,9 +3,9 @@
 
 use super::colors::Colors;
 use super::cursor::ByteCursor;
-use super::descriptor::{self, DescriptorObject};
+use super::descriptor;
 use super::outline::VectorPaths;
-use super::{LayerRecord, RecordSection, adjustments, fill, marks};
+use super::{LayerRecord, RecordSection, adjustments, effects, fill, marks};
 use crate::math::Rect;
 use crate::math::srgb::Color;
 use crate::paint::ColorAdjustment;
@@ -65,7 +65,9 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => {
             record.note_conversion("its smart object became pixels")
         }
-        b"lfx2" | b"lmfx" | b"lrFX" => effects(record, key, data),
+        key if effects::KEYS.contains(key) || *key == effects::OLD => {
+            effects::take(&mut record.effects, *key, data, colors);
+        }
         b"vstk" => read_stroke(record, &mut data),
         &adjustments::NEWER => {
             // Only brightness and contrast have newer numbers.
@@ -103,22 +105,6 @@ fn section(record: &mut LayerRecord, mut data: ByteCursor) {
     }
 }
 
-/// Effects count where one is switched on.
-fn effects(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
-    let said =
-        if key == *b"lrFX" { None } else { data.u32().and_then(|_| descriptor::read(&mut data)) };
-    let is_off = |effects: &DescriptorObject| {
-        let is_there = |object: &DescriptorObject| object.is_set("enab");
-        effects.is_false("masterFXSwitch") || !effects.has_any(&is_there)
-    };
-    // The old block repeats what a new one says, where there is one.
-    match (said, key == *b"lrFX") {
-        (Some(effects), _) => record.effects = Some(!is_off(&effects)),
-        (None, true) => record.effects = record.effects.or(Some(true)),
-        (None, false) => record.effects = Some(true),
-    }
-}
-
 /// The line around a shape, and whether it is filled.
 fn read_stroke(record: &mut LayerRecord, data: &mut ByteCursor) {
     record.is_shape = true;
@@ -133,6 +119,7 @@ fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
         b"knko" if data.u8().is_some_and(|v| v != 0) => {
             record.leave_out("its knockout is left out")
         }
+        b"lmgm" | b"vmgm" if data.u8() == Some(1) => record.masks_effects = true,
         b"clbl" if data.u8() == Some(0) => {
             record.leave_out(
                 "in other programs the layers clipped to it are blended with what is beneath it",

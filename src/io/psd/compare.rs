@@ -6,7 +6,7 @@
 //!
 //! * alike, and nothing left out: the layers alone;
 //! * alike, though something was left out: the file's picture is hidden above them;
-//! * nearly alike, and nothing but adjustments can be the reason: the same, with a note;
+//! * nearly alike, and nothing but adjustments and effects can be the reason: the same, with a note;
 //! * unlike: the file's picture is shown, and the layers are hidden beneath it, in a group.
 
 use super::filled;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// hundredth of the pixels.
 const ALIKE_MEAN: f64 = 1.0;
 const ALIKE_P99: usize = 8;
-/// Those of pictures that are near enough for live adjustments, whose formulas are fitted.
+/// Those of pictures that are near enough for live adjustments and effects, whose formulas are fitted.
 const NEAR_MEAN: f64 = 3.0;
 const NEAR_P99: usize = 16;
 /// Names of what is added.
@@ -95,9 +95,10 @@ pub fn check_against_merged(
         return document;
     }
     let Difference { mean, most, .. } = difference;
-    if difference.is_near() && !is_less && has_adjustments(&document) {
+    if difference.is_near() && !is_less && has_fitted(&document) {
         notes.push(format!(
-            "its adjustments differ from the file's own picture by {mean:.1} of 255 on average, {most} at most; \
+            "its adjustments and effects differ from the file's own picture by {mean:.1} of 255 on average, \
+             {most} at most; \
              that is hidden above them as “{PICTURE}”"
         ));
         return with_picture(document, &merged, false);
@@ -120,8 +121,12 @@ pub fn check_against_merged(
     with_picture(Document { layers: vec![Arc::new(layers)], ..document }, &merged, true)
 }
 
-fn has_adjustments(document: &Document) -> bool {
-    document.walk().iter().any(|(_, layer)| matches!(layer.content, Content::Adjustment(_)))
+/// Whether there are adjustments or effects, whose formulas are fitted.
+fn has_fitted(document: &Document) -> bool {
+    let is_fitted = |layer: &Layer| {
+        matches!(layer.content, Content::Adjustment(_)) || layer.effects.iter().any(|e| e.on)
+    };
+    document.walk().iter().any(|(_, layer)| is_fitted(layer))
 }
 
 fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Document {

@@ -1,6 +1,10 @@
 //! Photoshop's descriptors: nested lists of named values; names, numbers, texts and lists are kept.
 //! Floor 5. Not here: what the names mean (readers of presets, fills and effects).
 
+mod write;
+
+pub use write::DescriptorWriter;
+
 use super::cursor::ByteCursor;
 
 /// Depth of objects within objects; no real file needs more.
@@ -83,18 +87,6 @@ impl DescriptorObject {
             DescriptorValue::Object(object) => Some(object),
             _ => None,
         }
-    }
-
-    /// This, or an object anywhere within it, is so.
-    pub fn has_any(&self, is_so: &impl Fn(&DescriptorObject) -> bool) -> bool {
-        let within = |value: &DescriptorValue| match value {
-            DescriptorValue::Object(object) => object.has_any(is_so),
-            DescriptorValue::List(list) => list.iter().any(
-                |value| matches!(value, DescriptorValue::Object(object) if object.has_any(is_so)),
-            ),
-            _ => false,
-        };
-        is_so(self) || self.0.iter().any(|(_, value)| within(value))
     }
 
     /// The objects of a list.

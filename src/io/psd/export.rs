@@ -3,10 +3,10 @@
 //! them again.
 
 use super::isolation::can_be_isolated;
-use super::write::{encode_file, on_white};
+use super::write::{FileMarks, encode_file, on_white};
 use super::{
     LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, adjustments,
-    alpha_channels, cursor, marks, signature, verify,
+    alpha_channels, cursor, effects, marks, signature, verify,
 };
 use crate::document::EncodedPixels;
 use crate::document::{
@@ -81,7 +81,13 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
         );
     }
     let guides = marks::guides_to_write(document);
-    let bytes = encode_file(document.size, &records, &merged, (&selections, &guides), &ours);
+    let bytes = encode_file(
+        document.size,
+        &records,
+        &merged,
+        FileMarks { selections: &selections, guides: &guides, light: document.effect_light },
+        &ours,
+    );
     if bytes.len() > LONGEST_BYTES {
         let reason = format!(
             "a Photoshop file has at most 2 GB, not {}",
@@ -277,6 +283,8 @@ fn record(item: &PlanItem) -> LayerRecord {
         lock_alpha: item.lock != LayerLock::None,
         lock_all: item.lock == LayerLock::All,
         label: marks::nearest_label(item.label),
+        effects: effects::as_read(&item.effects),
+        fill_opacity: (item.fill_opacity * 255.0).round() as u8,
         ..LayerRecord::default()
     }
 }

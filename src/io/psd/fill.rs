@@ -6,6 +6,7 @@ use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use crate::math::srgb::{self, Color};
 use crate::math::{Rect, Size, Vec2, vec2};
+use crate::paint::effect::RampStyle;
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::surface::Operator;
 
@@ -20,26 +21,16 @@ pub enum LayerFill {
 /// A gradient and how it lies on what it fills.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GradientFill {
-    way: GradientStyle,
+    pub way: RampStyle,
     /// Counter-clockwise, as seen.
-    degrees: f32,
+    pub degrees: f32,
     /// Relative to the length that just fills, which is 1.
-    scale: f32,
+    pub scale: f32,
     /// Offset of the middle, in shares of what is filled.
-    offset: Vec2,
+    pub offset: Vec2,
     /// It fills the layer, not the canvas.
     pub aligned: bool,
-    stops: Vec<GradientStop>,
-}
-
-/// How a gradient runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum GradientStyle {
-    Linear,
-    Radial,
-    Angle,
-    Reflected,
-    Diamond,
+    pub stops: Vec<GradientStop>,
 }
 
 /// Which pattern, and how it lies.
@@ -75,7 +66,7 @@ pub fn read(key: [u8; 4], mut data: ByteCursor, colors: &Colors) -> Option<Layer
 }
 
 /// A percentage as a share.
-fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
+pub fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
     object.number(name).map_or(absent, |percent| percent / 100.0)
 }
 
@@ -138,13 +129,14 @@ fn of_hue(h: f32, s: f32, v: f32) -> [f32; 3] {
     })
 }
 
-fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill> {
+/// A ramp and how it lies, as fills and effects say it; `None` of noise.
+pub fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill> {
     let way = match said.word("Type")? {
-        b"Rdl " => GradientStyle::Radial,
-        b"Angl" => GradientStyle::Angle,
-        b"Rflc" => GradientStyle::Reflected,
-        b"Dmnd" => GradientStyle::Diamond,
-        _ => GradientStyle::Linear,
+        b"Rdl " => RampStyle::Radial,
+        b"Angl" => RampStyle::Angle,
+        b"Rflc" => RampStyle::Reflected,
+        b"Dmnd" => RampStyle::Diamond,
+        _ => RampStyle::Linear,
     };
     let offset = said.object("Ofst");
     let along = |name: &str| offset.map_or(0.0, |offset| share(offset, name, 0.0));
@@ -249,7 +241,7 @@ impl GradientFill {
     /// As a gradient of this program, on the rectangle that it fills; `None` where it is not
     /// straight.
     pub fn live(&self, rect: Rect) -> Option<Gradient> {
-        if self.way != GradientStyle::Linear {
+        if self.way != RampStyle::Linear {
             return None;
         }
         let (middle, half) = self.line(rect);
@@ -266,13 +258,7 @@ impl GradientFill {
 
     /// Its middle, and from there to its end.
     fn line(&self, rect: Rect) -> (Vec2, Vec2) {
-        let (w, h) = (rect.width() as f32, rect.height() as f32);
-        let middle =
-            vec2(rect.x0 as f32 + w / 2.0, rect.y0 as f32 + h / 2.0) + self.offset * vec2(w, h);
-        let (sin, cos) = self.degrees.to_radians().sin_cos();
-        // The line ends where it meets the rectangle's border.
-        let reach = (w / 2.0 / cos.abs().max(1e-6)).min(h / 2.0 / sin.abs().max(1e-6));
-        (middle, vec2(cos, -sin) * reach * self.scale)
+        RampStyle::line(rect, self.degrees, self.scale, self.offset)
     }
 
     /// Straight RGBA of the canvas.
@@ -281,7 +267,7 @@ impl GradientFill {
         let mut out = Vec::with_capacity(size.area() * 4);
         for y in 0..size.height as usize {
             for x in 0..size.width as usize {
-                out.extend(self.at(self.place(line, vec2(x as f32 + 0.5, y as f32 + 0.5))));
+                out.extend(self.at(self.way.place(line, vec2(x as f32 + 0.5, y as f32 + 0.5))));
             }
         }
         out
@@ -290,23 +276,8 @@ impl GradientFill {
     /// The color of a pixel.
     pub fn color_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
         let [r, g, b, a] =
-            self.at(self.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
+            self.at(self.way.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
         Some(Color { r, g, b, a })
-    }
-
-    /// Position of a point on the ramp; `line`: the middle, and from there to the end.
-    fn place(&self, (middle, half): (Vec2, Vec2), at: Vec2) -> f32 {
-        let reach = half.length().max(1e-6);
-        let along = half / reach;
-        let from = at - middle;
-        let (u, v) = (from.dot(along) / reach, from.dot(vec2(-along.y, along.x)) / reach);
-        match self.way {
-            GradientStyle::Linear => (u + 1.0) / 2.0,
-            GradientStyle::Reflected => u.abs(),
-            GradientStyle::Radial => from.length() / reach,
-            GradientStyle::Diamond => u.abs() + v.abs(),
-            GradientStyle::Angle => (-v.atan2(u) / std::f32::consts::TAU).rem_euclid(1.0),
-        }
     }
 
     fn at(&self, t: f32) -> [u8; 4] {

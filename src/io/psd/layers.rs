@@ -18,10 +18,6 @@ use std::path::Path;
 const FARTHEST: i32 = 1_000_000;
 /// Pixels that vector masks may draw together: some seconds.
 const DRAWN_PX: u64 = 1 << 33;
-/// Modes in which a fill's opacity and a layer's differ.
-const FILLED_OTHERWISE: [[u8; 4]; 8] =
-    [*b"idiv", *b"lbrn", *b"div ", *b"lddg", *b"vLit", *b"lLit", *b"hMix", *b"diff"];
-
 /// A record whose channels are still to be read.
 struct PendingRecord {
     record: LayerRecord,
@@ -120,15 +116,12 @@ impl<'a> RecordReader<'a> {
         while let Some((key, data)) = block(&mut extra, large) {
             blocks::take(&mut record, key, data, self.colors);
         }
-        if record.effects == Some(true) {
-            record.leave_out("its effects are left out");
+        for what in record.effects.as_ref().map_or(Vec::new(), |effects| effects.lost.clone()) {
+            record.leave_out(what);
         }
-        if record.fill_opacity < 255 {
-            if FILLED_OTHERWISE.contains(&record.blend) {
-                record.leave_out("the opacity of its fill became the opacity of the layer");
-            }
-            let both = u32::from(record.opacity) * u32::from(record.fill_opacity);
-            record.opacity = ((both + 127) / 255) as u8;
+        let has_effects = record.effects.as_ref().is_some_and(|effects| !effects.list.is_empty());
+        if has_effects && record.masks_effects && masks.is_some() {
+            record.leave_out("in other programs its mask hides its effects, too");
         }
         Some(PendingRecord { record, channels, masks })
     }

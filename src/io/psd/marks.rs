@@ -1,12 +1,17 @@
-//! Aids that are not part of the picture: guides, and the label colors of layers. Floor 5.
+//! What belongs to a document besides its layers: guides, the label colors of layers, and the
+//! light of effects. Floor 5.
 
 use super::cursor::ByteCursor;
 use super::header::resource;
 use crate::document::{Document, Guides, LayerLabel};
 use crate::math::COORDINATE;
+use crate::paint::EffectLight;
 
 /// The grid and the guides.
 const GUIDES: u16 = 1032;
+/// The light of effects.
+const EFFECT_ANGLE: u16 = 1037;
+const EFFECT_ALTITUDE: u16 = 1049;
 /// A step of a guide's place, px.
 const STEPS_A_PX: f32 = 32.0;
 /// Default distance between the lines of the grid, in the same steps.
@@ -38,6 +43,23 @@ pub fn label_block(label: LayerLabel) -> [u8; 8] {
 pub fn label(mut data: ByteCursor) -> LayerLabel {
     let number = data.u16().map_or(0, usize::from);
     LABELS.get(number).copied().unwrap_or(LayerLabel::None)
+}
+
+/// The light of effects: its direction and its height, degrees.
+pub fn effect_light(resources: ByteCursor) -> EffectLight {
+    let degrees = |id| ByteCursor::new(resource(resources, id)?).i32().map(|v| v as f32);
+    let plain = EffectLight::default();
+    let light = EffectLight {
+        angle: degrees(EFFECT_ANGLE).unwrap_or(plain.angle),
+        altitude: degrees(EFFECT_ALTITUDE).unwrap_or(plain.altitude),
+    };
+    light.clamp_to_ranges()
+}
+
+/// The resources that hold it, in whole degrees.
+pub fn effect_light_resources(light: EffectLight) -> [(u16, Vec<u8>); 2] {
+    [(EFFECT_ANGLE, light.angle), (EFFECT_ALTITUDE, light.altitude)]
+        .map(|(id, degrees)| (id, (degrees.round() as i32).to_be_bytes().to_vec()))
 }
 
 /// The guides as the format holds them: to a 32nd of a pixel.

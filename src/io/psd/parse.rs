@@ -11,6 +11,7 @@ use super::pattern::{self, PatternResource};
 use super::{ICC_PROFILE, LayerRecord, OURS, marks};
 use crate::Budget;
 use crate::document::Guides;
+use crate::paint::EffectLight;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -27,6 +28,8 @@ pub struct ParsedPsd<'a> {
     /// The picture that the file holds of all its layers; absent where it is damaged.
     pub merged: Option<Merged>,
     pub patterns: Vec<PatternResource>,
+    /// The light of effects that have none of their own.
+    pub effect_light: EffectLight,
     /// And how many were left out.
     pub guides: (Guides, usize),
     /// What could not be read.
@@ -85,12 +88,14 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         ));
     }
     let guides = marks::guides(resources);
+    let effect_light = marks::effect_light(resources);
     Ok(ParsedPsd {
         header,
         ours: resource(resources, OURS),
         records,
         merged,
         patterns,
+        effect_light,
         guides,
         damage,
         held_bytes,

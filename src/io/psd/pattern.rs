@@ -14,6 +14,7 @@ use crate::math::Size;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatternResource {
     id: String,
+    name: String,
     size: Size,
     /// Straight sRGB.
     rgba: Vec<u8>,
@@ -57,19 +58,28 @@ fn pattern(
     data: ByteCursor,
     spend: &mut impl FnMut(u64) -> Result<()>,
 ) -> Result<Option<PatternResource>> {
-    let Some((id, mode, size, body)) = head(data) else { return Ok(None) };
+    let Some(PatternHead { id, name, mode, size, body }) = head(data) else { return Ok(None) };
     spend(size.area() as u64)?;
-    Ok(rgba(body, mode, size).map(|rgba| PatternResource { id, size, rgba }))
+    Ok(rgba(body, mode, size).map(|rgba| PatternResource { id, name, size, rgba }))
 }
 
-/// Its name, what its colors are, its size, and what follows.
-fn head(mut data: ByteCursor) -> Option<(String, Mode, Size, ByteCursor)> {
+/// What stands before the channels of a pattern.
+struct PatternHead<'a> {
+    id: String,
+    name: String,
+    mode: Mode,
+    size: Size,
+    body: ByteCursor<'a>,
+}
+
+fn head(mut data: ByteCursor<'_>) -> Option<PatternHead<'_>> {
     data.u32()?;
     let mode = Mode::of(u16::try_from(data.u32()?).ok()?)?;
     let (height, width) = (u32::from(data.u16()?), u32::from(data.u16()?));
-    data.unicode()?;
+    let name = data.unicode()?;
     let id = String::from_utf8_lossy(data.pascal(1)?).into_owned();
-    (width > 0 && height > 0).then_some((id, mode, Size::new(width, height), data))
+    let size = Size::new(width, height);
+    (width > 0 && height > 0).then_some(PatternHead { id, name, mode, size, body: data })
 }
 
 fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
@@ -133,12 +143,22 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
 impl PatternResource {
     #[cfg(test)]
     pub fn gray(id: &str, size: Size, values: &[u8]) -> Self {
-        Self { id: id.into(), size, rgba: values.iter().flat_map(|v| [*v, *v, *v, 255]).collect() }
+        Self {
+            id: id.into(),
+            name: id.into(),
+            size,
+            rgba: values.iter().flat_map(|v| [*v, *v, *v, 255]).collect(),
+        }
     }
 
     /// Its name in fills and brushes.
     pub fn id(&self) -> &str {
         &self.id
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// `(size, straight sRGB)`.

@@ -30,6 +30,12 @@ fn read_back(bytes: &[u8]) -> ProjectContents {
     read(Path::new("a.psd"), bytes, &Budget::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// No selections, no guides, and the light of effects as it begins.
+fn no_marks() -> write::FileMarks<'static> {
+    static GUIDES: Guides = Guides { vertical: Vec::new(), horizontal: Vec::new() };
+    write::FileMarks { selections: &[], guides: &GUIDES, light: Default::default() }
+}
+
 /// The file with our own resource under a number that nobody knows, as a program leaves it that
 /// does.
 fn without_ours(bytes: &[u8]) -> Vec<u8> {
@@ -346,8 +352,7 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
         [vec![mark(RecordSection::End); 100], vec![leaf], vec![mark(RecordSection::Group); 100]]
             .concat();
     let size = Size::new(4, 4);
-    let back =
-        read_back(&write::encode_file(size, &deep, &[0; 64], (&[], &Guides::default()), &[]));
+    let back = read_back(&write::encode_file(size, &deep, &[0; 64], no_marks(), &[]));
     assert!(back.notes.iter().any(|note| note.contains("nested too deep")), "{:?}", back.notes);
     let depth = |path: &str| path.split('.').count();
     let walk = back.document.walk();
@@ -358,7 +363,7 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
     let mask =
         Some(RecordMask { rect: Rect::EMPTY, outside: 9, values: Vec::new(), disabled: false });
     let masked = vec![LayerRecord { mask, ..LayerRecord::default() }; 50];
-    let bytes = write::encode_file(size, &masked, &[0; 64], (&[], &Guides::default()), &[]);
+    let bytes = write::encode_file(size, &masked, &[0; 64], no_marks(), &[]);
     let budget = Budget { document_px: 100, ..Budget::default() };
     let said = read(Path::new("a.psd"), &bytes, &budget).err().unwrap().to_string();
     assert!(said.contains("hold more than 100 pixels"), "{said}");

@@ -4,12 +4,15 @@
 use super::blocks::ArtboardBackground;
 use super::colors::{Mode, StraightPixels};
 use super::compare::check_against_merged;
+use super::effects::RecordEffects;
 use super::parse::{ParsedPsd, parse};
 use super::pattern::PatternResource;
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks, signature};
 use crate::Budget;
 use crate::document::{Content, Document, Group, Guides, Layer, LayerLock, LayerMask, MaskKind};
 use crate::math::Size;
+use crate::paint::LayerEffect;
+use crate::paint::effect::EffectPattern;
 use crate::pixels;
 use crate::project::archive::Archive;
 use crate::project::manifest::Manifest;
@@ -96,7 +99,9 @@ pub(super) fn build_document(
             "{lost} of its guides are left out: there are too many, or they are too far away"
         ));
     }
-    let document = Document { layers, selections, guides: guides.into(), ..Document::empty(size) };
+    let effect_light = parsed.effect_light;
+    let guides = guides.into();
+    let document = Document { layers, selections, guides, effect_light, ..Document::empty(size) };
     (document, is_less)
 }
 
@@ -279,6 +284,9 @@ impl TreeBuilder<'_> {
         if known == Some(BlendMode::Dissolve) && record.visible {
             record.note_conversion("it dissolves in a different pattern than in other programs");
         }
+        let found = record.effects.take().map(|effects| self.with_patterns(effects));
+        let (effects, lost) = found.unwrap_or_default();
+        lost.into_iter().for_each(|what| record.leave_out(what));
         self.is_less |= !record.lost.is_empty();
         for what in record.lost.iter().chain(&record.converted) {
             self.notes.push(format!("“{}”: {what}", record.name));
@@ -294,10 +302,32 @@ impl TreeBuilder<'_> {
                 (false, false) => LayerLock::None,
             },
             label: record.label,
+            effects: Arc::new(effects),
+            fill_opacity: f32::from(record.fill_opacity) / 255.0,
             mask: record.mask.as_ref().map(|mask| self.mask(mask)),
             clip_to_surface: false,
             ..Layer::new(record.name, content)
         }
+    }
+
+    /// Effects with the pictures of their patterns, and what is left out of them.
+    fn with_patterns(&self, effects: RecordEffects) -> (Vec<LayerEffect>, Vec<&'static str>) {
+        let RecordEffects { mut list, patterns, mut lost, .. } = effects;
+        for (number, id) in patterns {
+            let found = self.patterns.iter().find(|pattern| pattern.id() == id);
+            let made = found.and_then(|pattern| {
+                let (size, rgba) = pattern.picture();
+                EffectPattern::new(pattern.name(), size, rgba.to_vec())
+            });
+            let Some(effect) = list.get_mut(number) else { continue };
+            if made.is_none() && effect.on {
+                lost.push(
+                    "the pattern of an effect is not in the file, is damaged or is too large",
+                );
+            }
+            effect.pattern = made.map(Arc::new);
+        }
+        (list, lost)
     }
 
     fn mask(&self, mask: &RecordMask) -> LayerMask {

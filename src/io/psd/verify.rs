@@ -107,7 +107,8 @@ fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static s
         ((read.lock_alpha, read.lock_all) == (meant.lock_alpha, meant.lock_all), "the lock"),
         (read.label == meant.label, "the label"),
         (read.adjustment == meant.adjustment, "the adjustment"),
-        // Effects, fills, outlines: none is written.
+        (read.effects == meant.effects, "the effects"),
+        // Fills, outlines: none is written.
         (read == meant, "something that was not put there"),
     ];
     fields.into_iter().find(|(is_same, _)| !is_same).map(|(_, what)| what)

@@ -5,22 +5,33 @@ use super::channel::pack;
 use super::{
     ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO,
 };
-use super::{adjustments, alpha_channels, marks};
+use super::{adjustments, alpha_channels, effects, marks};
 use crate::document::{Guides, LayerLabel, NamedSelection};
 use crate::math::{Rect, Size};
+use crate::paint::EffectLight;
 
 /// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
 
-/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` follow it as
-/// channels, `ours` is our own resource.
+/// What belongs to a document besides its layers.
+#[derive(Clone, Copy)]
+pub struct FileMarks<'a> {
+    /// They become channels.
+    pub selections: &'a [NamedSelection],
+    pub guides: &'a Guides,
+    /// Of effects without a light of their own.
+    pub light: EffectLight,
+}
+
+/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `ours` is our own resource.
 pub fn encode_file(
     size: Size,
     records: &[LayerRecord],
     merged: &[u8],
-    (selections, guides): (&[NamedSelection], &Guides),
+    marks: FileMarks,
     ours: &[u8],
 ) -> Vec<u8> {
+    let selections = marks.selections;
     let mut out = MAGIC.to_vec();
     short(&mut out, 1);
     out.extend([0; 6]);
@@ -31,7 +42,7 @@ pub fn encode_file(
     // RGB, and no table of colors.
     short(&mut out, 3);
     long(&mut out, 0);
-    section(&mut out, &resources(selections, guides, ours));
+    section(&mut out, &resources(marks, ours));
     let mut layers = Vec::new();
     section(&mut layers, &layer_info(records));
     // No mask of all layers.
@@ -84,7 +95,7 @@ fn unicode(out: &mut Vec<u8>, text: &str) {
     units.iter().for_each(|unit| short(out, *unit));
 }
 
-fn resources(selections: &[NamedSelection], guides: &Guides, ours: &[u8]) -> Vec<u8> {
+fn resources(kept: FileMarks, ours: &[u8]) -> Vec<u8> {
     let mut resolution = Vec::new();
     for _ in 0..2 {
         // Fixed point; shown per inch, lengths in inches.
@@ -101,8 +112,9 @@ fn resources(selections: &[NamedSelection], guides: &Guides, ours: &[u8]) -> Vec
     long(&mut version, 1);
     let mut out = Vec::new();
     let profile = crate::srgb_profile::own_srgb();
-    let mut named = alpha_channels::resources(selections);
-    named.extend(marks::guides_resource(guides));
+    let mut named = alpha_channels::resources(kept.selections);
+    named.extend(marks::guides_resource(kept.guides));
+    named.extend(marks::effect_light_resources(kept.light));
     let own = [
         (RESOLUTION, &resolution[..]),
         (ICC_PROFILE, &profile),
@@ -207,6 +219,13 @@ fn header(out: &mut Vec<u8>, record: &LayerRecord, channels: &[(i16, Vec<u8>)], 
     }
     if record.label != LayerLabel::None {
         block(&mut extra, b"lclr", &marks::label_block(record.label));
+    }
+    if record.fill_opacity < 255 {
+        block(&mut extra, b"iOpa", &[record.fill_opacity, 0, 0, 0]);
+    }
+    let listed = record.effects.as_ref().map_or(&[][..], |effects| &effects.list);
+    for (key, data) in effects::blocks(listed) {
+        block(&mut extra, &key, &data);
     }
     for (key, data) in record.adjustment.iter().flat_map(adjustments::blocks) {
         block(&mut extra, &key, &data);

@@ -1,6 +1,7 @@
 //! Reads and writes adjustments of colors and filters by the parameters that they show. Floor 5. Each
 //! is an object of its own within a layer: its kind, and what differs from how it begins.
 
+use super::effects::contour;
 use super::images::stops;
 use super::value::RecipeValue;
 use crate::json::{Fields, JsonNode, JsonObject, object};
@@ -97,19 +98,7 @@ impl ParameterVisitor for ParameterReader<'_> {
     }
 
     fn curve(&mut self, name: ParameterName, value: &mut ToneCurve) {
-        self.take(name.key, value, |node| {
-            let items = node.list(ToneCurve::MOST_POINTS)?;
-            let point = |item: &JsonNode| item.numbers(2, 2, 0.0..=255.0).map(|p| [p[0], p[1]]);
-            let points: Vec<[f32; 2]> = items.iter().map(point).collect::<Result<_>>()?;
-            let curve = ToneCurve::new(points.clone());
-            if curve.points() == points {
-                Ok(curve)
-            } else {
-                Err(node.refusal(
-                    "needs two points or more, the first number of each at least 1 above the last",
-                ))
-            }
-        });
+        self.take(name.key, value, contour);
     }
 
     fn stops(&mut self, name: ParameterName, value: &mut Vec<GradientStop>) {

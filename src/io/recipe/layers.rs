@@ -3,7 +3,9 @@
 
 use super::LayerReader;
 use super::value::RecipeValue;
-use super::{form_drawings, images, liquify, masks, normals, shading, strokes, transforms};
+use super::{
+    effects, form_drawings, images, liquify, masks, normals, shading, strokes, transforms,
+};
 use crate::document::{
     Attachment, Content, Group, InkLayer, Layer, LayerLabel, LayerLock, Live, PixelLayer,
     SelectionList,
@@ -68,6 +70,8 @@ impl LayerReader<'_> {
         let lock = fields.one_of("lock", &LayerLock::ALL, LayerLock::None)?;
         let label = fields.one_of("label", &LayerLabel::ALL, LayerLabel::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
+        let effects = fields.get("effects").map_or(Ok(Vec::new()), |node| effects::read(&node))?;
+        let fill_opacity = fields.number("fill_opacity", 1.0, Layer::OPACITY)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
         let transform = fields
             .get("transform")
@@ -86,6 +90,8 @@ impl LayerReader<'_> {
             return Err(warped.as_ref().unwrap_or(node).refusal(why));
         }
         let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
+        let effects = Arc::new(effects);
+        let layer = Layer { effects, fill_opacity, ..layer };
         Ok(Layer { label, mask, clip_to_surface, transform, liquify, on, ..layer })
     }
 
@@ -173,6 +179,7 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     out.word("lock", &LayerLock::ALL, layer.lock, LayerLock::None);
     out.word("label", &LayerLabel::ALL, layer.label, LayerLabel::None);
     out.flag("clip_to_surface", layer.clip_to_surface, true);
+    effects::write(&mut out, layer);
     if let Some(mask) = &layer.mask {
         out.set("mask", masks::write(mask));
     }

@@ -14,7 +14,8 @@ use crate::math::range::{STOPS, clamp_to_range};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
     Adjust, Brush, ColorAdjustment, DrawingHand, FormDrawing, FormPattern, Gradient, GradientStop,
-    ImageFilter, LiveAdjustment, LiveFilter, PictureFilter, PlacedImage, Placement, Text,
+    ImageFilter, LayerEffect, LiveAdjustment, LiveFilter, PictureFilter, PlacedImage, Placement,
+    Text,
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
@@ -26,6 +27,7 @@ use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
+use std::sync::Arc;
 use values::set_mask;
 
 actions! {
@@ -34,6 +36,10 @@ actions! {
         "name" Name { name: String }
         "visible" Visible { on: bool }
         "opacity" Opacity { to: f32 }
+        /// Of what the layer holds, not of its effects.
+        "fill opacity" FillOpacity { to: f32 }
+        /// All of its effects, the topmost of a kind first.
+        "effects" Effects { effects: Vec<LayerEffect> }
         "blend" Blend { mode: BlendMode }
         "linear" BlendLinear { on: bool }
         "clip" ClipBelow { on: bool }
@@ -124,6 +130,8 @@ impl Property {
             Property::Visible { on: true } => "Show layer",
             Property::Visible { on: false } => "Hide layer",
             Property::Opacity { .. } => "Opacity",
+            Property::FillOpacity { .. } => "Fill opacity",
+            Property::Effects { .. } => "Effects",
             Property::Blend { .. } | Property::BlendLinear { .. } => "Blend mode",
             Property::ClipBelow { .. } => "Clip to layer below",
             Property::Locked { .. } => "Lock layer",
@@ -194,6 +202,13 @@ impl Property {
             Property::Transformed { transform } => layer.transform.clone_from(transform),
             Property::Unliquified {} => layer.liquify = None,
             Property::Opacity { to } => layer.opacity = clamp_to_range(*to, &Layer::OPACITY),
+            Property::FillOpacity { to } => {
+                layer.fill_opacity = clamp_to_range(*to, &Layer::OPACITY);
+            }
+            Property::Effects { effects } => {
+                let fitted = effects.iter().take(LayerEffect::MOST).cloned();
+                layer.effects = Arc::new(fitted.map(LayerEffect::clamp_to_ranges).collect());
+            }
             Property::Blend { mode } => layer.blend = *mode,
             Property::BlendLinear { on } => layer.blend_linear = *on,
             Property::ClipBelow { on } => layer.clip_below = *on,

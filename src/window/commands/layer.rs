@@ -134,6 +134,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     submenu("New shading layer", super::shading::COMMANDS),
     submenu("New adjustment layer", super::adjustments::LAYERS),
     submenu("New filter layer", super::filters::LAYERS),
+    submenu("Effects", super::effects::COMMANDS),
     LINE,
     row(
         "Give it a shape…",

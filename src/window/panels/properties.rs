@@ -3,7 +3,8 @@
 
 use super::setter::LayerSetter;
 use super::{
-    adjustment, attachment, colors, form_drawing, mask, material, options, ramp, strokes, text,
+    adjustment, attachment, colors, effects, form_drawing, mask, material, options, ramp, strokes,
+    text,
 };
 use crate::document::{Content, DetailSource, Document, Histogram, Layer, NormalLayer, Progress};
 use crate::file_purpose::FilePurpose;
@@ -92,6 +93,9 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
     let on_mask = session.active().is_some_and(|open| open.on_mask);
     if let Some(document) = session.shown_document() {
         attachment(ui, document, layer, &mut setter);
+    }
+    if let Some(document) = session.shown_document() {
+        effects::show(ui, document, layer, &mut setter);
     }
     common(ui, layer, has_surface, on_mask, &mut setter);
 }

@@ -2,15 +2,18 @@
 //! Floor 4.
 
 use super::Fit;
+use crate::document::Layer;
 use crate::math::range::{STOPS, at_most, check_range};
 use crate::math::{COORDINATE, NumberSetting, TURNS, UNIT, Vec2};
 use crate::paint::adjustment::ToneCurve;
+use crate::paint::effect::EffectSettings;
 use crate::paint::grain::{BrushGrain, GrainSpace};
 use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
     Adjust, Brush, BrushMode, ColorAdjustment, ColorJitter, DrawingHand, FormDrawing, FormPattern,
-    Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke, StrokeSelection, Tip,
+    Gradient, LayerEffect, PlacedImage, Placement, Sample, Stabilizer, Stroke, StrokeSelection,
+    Tip,
 };
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
@@ -84,6 +87,23 @@ fn numbers<T>(all: &T, table: &'static [NumberSetting<T>]) -> Fit {
     table
         .iter()
         .try_for_each(|setting| check_range(setting.label, (setting.get)(all), &setting.range))
+}
+
+/// Whether a file can hold the effects of a layer.
+pub fn effects(layer: &Layer) -> Fit {
+    at_most("effects", layer.effects.len(), LayerEffect::MOST)?;
+    check_range("the opacity of the fill", layer.fill_opacity, &Layer::OPACITY)?;
+    layer.effects.iter().try_for_each(|effect| {
+        at_most("stops of a ramp", effect.stops.len(), Gradient::MOST_STOPS)?;
+        numbers(&effect.settings, EffectSettings::SETTINGS)
+    })
+}
+
+/// The values that the effects of a layer take.
+pub fn effect_values(layer: &Layer) -> usize {
+    let one =
+        |effect: &LayerEffect| 60 + A_STOP * effect.stops.len() + 3 * effect.contour.points().len();
+    layer.effects.iter().map(one).sum()
 }
 
 /// The new strokes that are not among the old ones, by pointer.

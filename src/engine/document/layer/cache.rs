@@ -1,7 +1,10 @@
 //! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles
 //! are cached in `live`.
 
-use super::{Layer, LayerMap, normals::Combination, on_canvas::CanvasCache, warp::WarpCache};
+use super::{
+    Layer, LayerMap, effects::EffectCache, normals::Combination, on_canvas::CanvasCache,
+    warp::WarpCache,
+};
 use crate::document::filter_stage::StoredTiles;
 use crate::document::memory_use::MemoryCount;
 use crate::math::Size;
@@ -21,6 +24,8 @@ pub struct LayerCache {
     pub(in crate::document) on_canvas: CanvasCache,
     /// The composed tiles that are displaced.
     pub(in crate::document) warped: WarpCache,
+    /// What its effects were computed from, and they themselves.
+    pub(in crate::document) effects: EffectCache,
     /// For a normal layer: the surface with its detail.
     pub(in crate::document) combined: Memo<Combination, Arc<Surface>>,
     /// The greatest luminance.
@@ -45,6 +50,8 @@ impl LayerCache {
 pub struct PreviewKind {
     /// Its mask.
     pub masked: bool,
+    /// Its effects, and the opacity of its fill.
+    pub effects: bool,
     /// The rim of the surface as if that covered it wholly.
     pub whole_rim: bool,
 }

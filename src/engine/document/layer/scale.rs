@@ -10,7 +10,7 @@ use super::mask::{DerivedMask, MaskKind};
 use super::transform::{LayerTransform, scaled_matrix};
 use crate::math::srgb::{quantize, quantize16};
 use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
-use crate::paint::{Placement, Sample, Selection, Stroke, StrokeAttachment};
+use crate::paint::{LayerEffect, Placement, Sample, Selection, Stroke, StrokeAttachment};
 use crate::raster::tile::sixteen_bit;
 use crate::raster::warp::{warped_plane_onto, warped_tile};
 use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
@@ -125,7 +125,8 @@ impl CanvasScale {
             layer.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(self.from))?;
         let filter = layer.transform.as_ref().map_or(filter, |own| own.filter);
         let transform = Some(LayerTransform::of_map(&own.then(&self.map()), filter, self.to)?);
-        Some(Layer { content, transform, cache: Default::default(), ..layer.clone() })
+        let effects = self.effects(layer);
+        Some(Layer { content, transform, effects, cache: Default::default(), ..layer.clone() })
     }
 
     pub fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
@@ -146,7 +147,8 @@ impl CanvasScale {
             if self.is_draft { scaled.drafted().unwrap_or(scaled) } else { scaled }
         };
         let content = known.map_or_else(scaled, |known| known.content.clone());
-        let mut next = Layer { content, cache: Default::default(), ..layer.clone() };
+        let effects = self.effects(layer);
+        let mut next = Layer { content, effects, cache: Default::default(), ..layer.clone() };
         let transform = layer.transform.as_ref().map(|transform| transform.scaled(self.per_axis));
         next.transform =
             transform.map(|transform| if self.is_draft { transform.drafted() } else { transform });
@@ -161,6 +163,13 @@ impl CanvasScale {
             | None => {}
         }
         next
+    }
+
+    fn effects(&self, layer: &Layer) -> Arc<Vec<LayerEffect>> {
+        if layer.effects.is_empty() {
+            return layer.effects.clone();
+        }
+        Arc::new(layer.effects.iter().map(|effect| effect.scaled(self.length)).collect())
     }
 
     /// Curvature is per pixel, so the factor it is multiplied by is a length.

@@ -117,6 +117,17 @@ pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f3
 }
 
 impl BlendMode {
+    /// The gray that changes nothing, in the modes in which the opacity of a layer's fill thins its
+    /// color before it is blended; in others it is an opacity.
+    pub fn neutral_fill(self) -> Option<f32> {
+        match self {
+            BlendMode::ColorBurn | BlendMode::LinearBurn => Some(1.0),
+            BlendMode::ColorDodge | BlendMode::LinearDodge | BlendMode::Difference => Some(0.0),
+            BlendMode::VividLight | BlendMode::LinearLight | BlendMode::HardMix => Some(0.5),
+            _ => None,
+        }
+    }
+
     /// Its name in documents.
     pub fn name(self) -> &'static str {
         self.row().name

@@ -1,5 +1,6 @@
 //! Adjustments as Photoshop's blocks. Floor 5.
 
+use super::super::descriptor::DescriptorWriter;
 use crate::math::srgb::Color;
 use crate::paint::adjustment::{
     BlackWhite, BrightnessContrast, ChannelMixer, Curves, GradientMap, HslShift, HueSaturation,
@@ -220,64 +221,4 @@ fn gradient_map(own: &GradientMap) -> Vec<u8> {
     out.extend([0x80, 0].repeat(4));
     out.extend([0; 4]);
     out
-}
-
-/// A descriptor after its version: named values of a few kinds.
-#[derive(Default)]
-struct DescriptorWriter {
-    count: u32,
-    values: Vec<u8>,
-}
-
-impl DescriptorWriter {
-    /// Names of four letters are written without their length.
-    fn name(&mut self, name: &str) {
-        self.count += 1;
-        put_name(&mut self.values, name);
-    }
-
-    fn whole(&mut self, name: &str, value: f32) {
-        self.name(name);
-        self.values.extend(b"long");
-        self.values.extend((value.round() as i32).to_be_bytes());
-    }
-
-    fn flag(&mut self, name: &str, value: bool) {
-        self.name(name);
-        self.values.extend(b"bool");
-        self.values.push(u8::from(value));
-    }
-
-    fn color(&mut self, name: &str, color: Color) {
-        self.name(name);
-        self.values.extend(b"Objc");
-        let mut inner = DescriptorWriter::default();
-        for (name, byte) in [("Rd  ", color.r), ("Grn ", color.g), ("Bl  ", color.b)] {
-            inner.name(name);
-            inner.values.extend(b"doub");
-            inner.values.extend(f64::from(byte).to_be_bytes());
-        }
-        inner.put(&mut self.values, "RGBC");
-    }
-
-    /// An object: no name, its class, its values.
-    fn put(self, out: &mut Vec<u8>, class: &str) {
-        out.extend([0, 0, 0, 1, 0, 0]);
-        put_name(out, class);
-        out.extend(self.count.to_be_bytes());
-        out.extend(self.values);
-    }
-
-    fn done(self) -> Vec<u8> {
-        const VERSION: u32 = 16;
-        let mut out = VERSION.to_be_bytes().to_vec();
-        self.put(&mut out, "null");
-        out
-    }
-}
-
-fn put_name(out: &mut Vec<u8>, name: &str) {
-    let length = if name.len() == 4 { 0 } else { name.len() as u32 };
-    out.extend(length.to_be_bytes());
-    out.extend(name.as_bytes());
 }

@@ -162,24 +162,27 @@ fn knockout_blend_if_and_channels_that_are_left_alone_are_told() {
 }
 
 #[test]
-fn effects_count_where_one_is_switched_on() {
+fn effects_are_live_and_shown_where_they_are_switched_on() {
     let effects = |master: bool, shadow: bool| {
-        let values = [("masterFXSwitch", flag(master)), ("DrSh", objc(&[("enab", flag(shadow))]))];
+        let shadow = objc(&[("enab", flag(shadow)), ("present", flag(true))]);
+        let values = [("masterFXSwitch", flag(master)), ("DrSh", shadow)];
         [&[0; 4][..], &descriptor(&values)].concat()
     };
-    for (master, shadow, is_told) in
-        [(true, true, true), (true, false, false), (false, true, false)]
-    {
+    for (master, shadow) in [(true, true), (true, false), (false, true)] {
         let mut made = plain(4, 4, [100; 3]);
         // The old block repeats them.
         made.layers.as_mut().unwrap()[0].blocks =
             vec![(b"lrFX", vec![0; 4]), (b"lfx2", effects(master, shadow))];
-        assert_eq!(
-            opened(&made).notes.iter().any(|note| note.contains("effects")),
-            is_told,
-            "{master} {shadow}"
-        );
+        let opened = opened(&made);
+        let all = opened.document.walk();
+        let layer = all.iter().map(|(_, layer)| layer).find(|layer| !layer.effects.is_empty());
+        let on: Vec<bool> = layer.unwrap().effects.iter().map(|effect| effect.on).collect();
+        assert_eq!(on, [master && shadow]);
     }
+    let mut made = plain(4, 4, [100; 3]);
+    made.layers.as_mut().unwrap()[0].blocks = vec![(b"lrFX", vec![0; 4])];
+    let notes = opened(&made).notes.join("\n");
+    assert!(notes.contains("its effects are left out"), "{notes}");
 }
 
 /// A rectangle's knots, as shares of the canvas: left, top, right, bottom.

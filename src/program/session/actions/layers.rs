@@ -16,8 +16,8 @@ use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live, Progre
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{
-    ColorAdjustment, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment, LiveFilter,
-    PictureFilter, Text,
+    ColorAdjustment, EffectLight, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment,
+    LiveFilter, PictureFilter, Text,
 };
 use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
@@ -78,6 +78,8 @@ actions! {
         "pixel colors" PixelColors { layer: LayerPath }
         /// A layer that adjusts the colors beneath it.
         "add adjustment" AddAdjustment { adjustment: ColorAdjustment }
+        /// The light of all effects without one of their own.
+        "effect light" EffectLight { light: EffectLight, done: bool }
         /// The paint of layers is adjusted for good, within the selection; shown only, until it is
         /// `done`.
         "adjust" Adjust { layer: LayerPaths, adjustment: ColorAdjustment, done: bool }
@@ -179,6 +181,9 @@ impl LayerAction {
                 return session.say(why);
             }
             return looks::give_material(open, name, part.as_deref(), *done);
+        }
+        if let LayerAction::EffectLight { light, done } = self {
+            return light_effects(open, *light, *done);
         }
         if let LayerAction::Adjust { layer, adjustment, done } = self {
             return adjust(session, layer, adjustment, *done);
@@ -370,6 +375,7 @@ impl LayerAction {
             | LayerAction::OnMask { .. }
             | LayerAction::Adjust { .. }
             | LayerAction::Filter { .. }
+            | LayerAction::EffectLight { .. }
             | LayerAction::Material { .. }
             | LayerAction::Unadjust {}
             | LayerAction::TakeAlong { .. }
@@ -422,6 +428,18 @@ fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) 
         None => {}
     }
     Ok(())
+}
+
+/// Another light of effects: a step, or a preview of one.
+fn light_effects(open: &mut OpenDocument, light: EffectLight, done: bool) {
+    const LABEL: &str = "Light of effects";
+    let effect_light = light.clamp_to_ranges();
+    let next = Document { effect_light, ..open.document().clone() };
+    if done {
+        open.commit(LABEL, next);
+    } else {
+        open.show(LABEL, next);
+    }
 }
 
 /// The paint of layers adjusted: a step, or a preview of one. Layers that are no paint, or locked,

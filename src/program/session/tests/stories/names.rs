@@ -52,6 +52,7 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         Name { .. } => &["name"],
         Visible { .. } => &["visibility"],
         Opacity { .. } => &["opacity"],
+        Effects { .. } | FillOpacity { .. } => &["effects"],
         Blend { .. } | BlendLinear { .. } => &["blend mode"],
         ClipBelow { .. } | ClipToSurface { .. } => &["clipping"],
         Locked { .. } => &["lock"],

@@ -11,9 +11,10 @@ use crate::math::{DVec2, Range, Size};
 use crate::paint::adjustment::{
     ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
 };
+use crate::paint::effect::{EffectField, EffectPattern};
 use crate::paint::{
-    Adjust, BrushMode, ColorAdjustment, DrawingHand, GradientStop, PictureFilter, Placement, Text,
-    TextAlign, TextStyle,
+    Adjust, BrushMode, ColorAdjustment, DrawingHand, EffectKind, EffectLight, GradientStop,
+    LayerEffect, PictureFilter, Placement, Text, TextAlign, TextStyle,
 };
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
@@ -29,6 +30,7 @@ use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::surface::{Anchor, NoiseRelief, Operator};
 use crate::tools::Symmetry;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 impl Dice {
     /// A number of a range, or of the useful part of it.
@@ -139,6 +141,55 @@ impl Drawn for PictureFilter {
         let mut filter = dice.one_of(&PictureFilter::all());
         filter.visit(&mut ParameterDice(dice));
         filter
+    }
+}
+
+/// Each setting with a chance, mostly near where it begins.
+impl Drawn for LayerEffect {
+    fn drawn(dice: &mut Dice) -> Self {
+        let mut effect = LayerEffect::new(dice.one_of(&EffectKind::ALL).0);
+        effect.on = dice.is(85);
+        for field in effect.kind.fields() {
+            if dice.is(60) {
+                continue;
+            }
+            let all = &mut effect.settings;
+            match field {
+                EffectField::Number(number) => {
+                    let (low, high) = (*number.range.start(), number.range.end().min(40.0));
+                    (number.set)(all, dice.in_range(low..=high, low..=high));
+                }
+                EffectField::Flag(flag) => (flag.set)(all, dice.is(50)),
+                EffectField::Color(color) => {
+                    (color.set)(all, dice.value(dice.word, "color"));
+                }
+                EffectField::Choice(choice) => {
+                    (choice.set)(all, dice.below((choice.choices)().len()));
+                }
+                EffectField::Stops => {
+                    let mut drawn = ParameterDice(dice);
+                    drawn.stops(ParameterName { key: "", label: "", hint: "" }, &mut effect.stops);
+                }
+                EffectField::Contour => {
+                    let mut drawn = ParameterDice(dice);
+                    drawn
+                        .curve(ParameterName { key: "", label: "", hint: "" }, &mut effect.contour);
+                }
+                EffectField::Pattern => {
+                    let size = Size::new(1 + dice.below(5) as u32, 1 + dice.below(5) as u32);
+                    let rgba = (0..size.area() * 4).map(|_| dice.number() as u8).collect();
+                    effect.pattern = EffectPattern::new("drawn", size, rgba).map(Arc::new);
+                }
+            }
+        }
+        effect
+    }
+}
+
+impl Drawn for EffectLight {
+    fn drawn(dice: &mut Dice) -> Self {
+        let angle = dice.in_range(-180.0..=180.0, EffectLight::ANGLE);
+        EffectLight { angle, altitude: dice.in_range(0.0..=90.0, EffectLight::ALTITUDE) }
     }
 }
 
