@@ -24,8 +24,8 @@ use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
 use super::sample::SAMPLES;
+use super::sample_pictures::SamplePictures;
 use super::settings::{Settings, SettingsFile};
-use super::start_pictures::StartPictures;
 use super::swatches::Swatches;
 use super::theme;
 use super::thumbnails::Thumbnails;
@@ -51,7 +51,7 @@ pub struct MainWindow {
     second_view: SecondView,
     thumbnails: Thumbnails,
     swatches: Swatches,
-    start: StartPictures,
+    samples: SamplePictures,
     pub(super) jobs: Jobs<MainWindow>,
     /// The last one is shown.
     pub(super) dialogs: Vec<Dialog>,
@@ -123,7 +123,7 @@ impl MainWindow {
             second_view: SecondView::default(),
             thumbnails: Thumbnails::new(ctx),
             swatches: Swatches::default(),
-            start: StartPictures::default(),
+            samples: SamplePictures::default(),
             jobs: Jobs::new(ctx),
             dialogs: Vec::new(),
             messages,
@@ -255,7 +255,7 @@ impl MainWindow {
             &mut self.thumbnails.trouble,
             &mut self.thumbnails.moods.trouble,
             &mut self.swatches.trouble,
-            &mut self.start.trouble,
+            &mut self.samples.trouble,
         ];
         self.messages
             .extend(troubles.into_iter().filter_map(Option::take).map(|error| with_advice(&error)));

@@ -1,16 +1,18 @@
 //! The start screen, while no document is open: what to begin with, recent files and samples with
-//! their pictures. Floor 7. Not here: making the pictures (`start_pictures`).
+//! their pictures. Floor 7. Not here: making the pictures (`file_pictures`, `sample_pictures`).
 
 use crate::commands::find_command;
+use crate::file_pictures::FilePictures;
 use crate::icons::Icon;
 use crate::keymap::{Keymap, key_text};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::sample::SAMPLES;
-use crate::start_pictures::{StartCard, StartPictures};
+use crate::sample_pictures::SamplePictures;
 use crate::tools::ToolKind;
 use eframe::egui::{
-    Align2, Color32, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind,
-    TextStyle, TextWrapMode, Ui, UiBuilder, Vec2, WidgetInfo, WidgetText, pos2, vec2,
+    Align2, Color32, Context, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
+    StrokeKind, TextStyle, TextWrapMode, TextureHandle, Ui, UiBuilder, Vec2, WidgetInfo,
+    WidgetText, pos2, vec2,
 };
 use std::path::PathBuf;
 
@@ -30,11 +32,34 @@ const BEGINNINGS: [(&str, &str, &str, Icon); 3] = [
     ("Open maps…", "Open normal maps", "A shape that was made elsewhere", Icon::Normals),
 ];
 
+/// What a card with a picture opens.
+#[derive(Clone)]
+enum StartCard {
+    File(PathBuf),
+    /// By its place among the samples.
+    Sample(usize),
+}
+
+/// Who makes the pictures.
+pub struct StartPictures<'a> {
+    pub files: &'a mut FilePictures,
+    pub samples: &'a mut SamplePictures,
+}
+
+impl StartPictures<'_> {
+    fn of(&mut self, ctx: &Context, card: &StartCard) -> Option<&TextureHandle> {
+        match card {
+            StartCard::File(file) => self.files.of(ctx, file),
+            StartCard::Sample(index) => self.samples.of(ctx, *index),
+        }
+    }
+}
+
 pub fn show(
     ui: &mut Ui,
     area: Rect,
     (recent, keymap): (&[PathBuf], &Keymap),
-    pictures: &mut StartPictures,
+    mut pictures: StartPictures<'_>,
     requests: &mut UiRequests,
 ) {
     let width = COLUMN_PT.min(area.width() - 4.0 * GAP_PT).max(200.0);
@@ -53,9 +78,9 @@ pub fn show(
             );
             beginnings(ui, keymap, requests);
             let files: Vec<StartCard> = recent.iter().cloned().map(StartCard::File).collect();
-            cards(ui, "Recent", &files, pictures, requests);
+            cards(ui, "Recent", &files, &mut pictures, requests);
             let samples: Vec<StartCard> = (0..SAMPLES.len()).map(StartCard::Sample).collect();
-            cards(ui, "Samples", &samples, pictures, requests);
+            cards(ui, "Samples", &samples, &mut pictures, requests);
             ui.add_space(2.0 * GAP_PT);
         });
     });
@@ -96,7 +121,7 @@ fn cards(
     ui: &mut Ui,
     title: &str,
     cards: &[StartCard],
-    pictures: &mut StartPictures,
+    pictures: &mut StartPictures<'_>,
     requests: &mut UiRequests,
 ) {
     if cards.is_empty() {
@@ -118,7 +143,7 @@ fn card(
     ui: &mut Ui,
     card: &StartCard,
     width_pt: f32,
-    pictures: &mut StartPictures,
+    pictures: &mut StartPictures<'_>,
     requests: &mut UiRequests,
 ) {
     let (name, about, request) = match card {
@@ -137,11 +162,12 @@ fn card(
         frame(ui, rect, &response, &name);
         let room = Rect::from_min_max(rect.min, rect.max - vec2(0.0, NAME_PT)).shrink(8.0);
         match pictures.of(ui.ctx(), card) {
-            Some((texture, size)) => {
+            Some(texture) => {
+                let size = texture.size_vec2();
                 let scale = (room.width() / size.x).min(room.height() / size.y);
                 let at = Rect::from_center_size(room.center(), size * scale);
                 let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                ui.painter().image(texture, at, uv, Color32::WHITE);
+                ui.painter().image(texture.id(), at, uv, Color32::WHITE);
             }
             None => {
                 let at = Rect::from_center_size(room.center(), Vec2::splat(28.0));

@@ -6,6 +6,7 @@ use crate::jobs::JobKind;
 use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
 use crate::panels;
+use crate::panels::start::StartPictures;
 use crate::requests::UiRequests;
 use crate::theme::ACCENT;
 use crate::widgets::{tab, tab_width_pt};
@@ -65,9 +66,9 @@ impl MainWindow {
             let is_coming = self.jobs.under_way.iter().any(|job| job.kind == JobKind::Working);
             if self.session.open_documents.is_empty() && !is_coming {
                 let about = (&*self.settings.recent, &self.settings.keymap);
-                panels::start::show(ui, area, about, &mut self.start, requests);
-            } else {
-                self.start.forget();
+                let pictures =
+                    StartPictures { files: &mut self.menu.pictures, samples: &mut self.samples };
+                panels::start::show(ui, area, about, pictures, requests);
             }
             panels::text::type_on_canvas(ui, &self.session, requests);
             self.show_steps(ui);
