@@ -325,8 +325,8 @@ fn painters_light(bencher: Bencher, what: &str) {
         });
 }
 
-/// The shadow of one lamp on the same.
-#[divan::bench(args = [6, 16, 32], sample_count = 20, sample_size = 1)]
+/// The shadow of one lamp on the same; with four rays as while it is dragged.
+#[divan::bench(args = [4, 16, 32], sample_count = 20, sample_size = 1)]
 fn shadow_of_a_lamp(bencher: Bencher, rays: u32) {
     let (pool, scene, mut step) = (pool(2), balls(HD), 0u32);
     let surface = scene.surface.as_deref().expect("a surface");
@@ -334,7 +334,7 @@ fn shadow_of_a_lamp(bencher: Bencher, rays: u32) {
         step += 1;
         let angle = 0.05 * step as f32;
         let place = LampPlace::Afar(vec3(angle.cos(), angle.sin(), 0.75));
-        let lamp = ShadowLamp { place, radius: 0.13, reach_px: 220.0, rays };
+        let lamp = ShadowLamp { place, radius: 0.13, reach_px: 220.0, rays, is_coarse: rays == 4 };
         pool.install(|| surface.shadow(&lamp, 1))
     });
 }

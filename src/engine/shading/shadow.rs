@@ -26,6 +26,8 @@ number_settings! {
         color: Color = Color::BLACK;
         /// Rays to each lamp.
         rays: u32 = 32;
+        /// Whether shadows are computed at half the size, for a moment; documents never say so.
+        is_coarse: bool = false;
     }
 }
 
@@ -33,7 +35,7 @@ impl Shadows {
     /// What `rays` may be.
     pub const RAYS: std::ops::RangeInclusive<u32> = 1..=crate::surface::shadow::MOST_RAYS;
     /// Rays while a lamp is dragged.
-    const FEW_RAYS: u32 = 6;
+    const FEW_RAYS: u32 = 4;
     /// The lamps of one layer that cast shadows: the first ones.
     pub const MOST_LAMPS: usize = 8;
 
@@ -49,7 +51,7 @@ impl Shadows {
 
     /// The same for a moment while the user drags, cheaper.
     pub fn drafted(&self) -> Self {
-        Self { rays: self.rays.min(Self::FEW_RAYS), ..*self }
+        Self { rays: self.rays.min(Self::FEW_RAYS), is_coarse: true, ..*self }
     }
 
     /// The same on a canvas `factor` times as large.
@@ -80,7 +82,8 @@ impl Shadows {
             LightKind::Directional { direction } => LampPlace::Afar(direction),
             LightKind::Point { position } => LampPlace::At(position),
         };
-        ShadowLamp { place, radius: self.softness, reach_px: self.reach, rays: self.rays }
+        let Self { softness: radius, reach: reach_px, rays, is_coarse, .. } = *self;
+        ShadowLamp { place, radius, reach_px, rays, is_coarse }
     }
 
     /// The opacity of the shadow on the page at a pixel off the surface: the mean of what is hidden

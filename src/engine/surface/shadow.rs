@@ -38,6 +38,8 @@ pub struct ShadowLamp {
     pub reach_px: f32,
     /// How many rays go to its disc.
     pub rays: u32,
+    /// Whether they look at a map of half the size all the way, for a moment.
+    pub is_coarse: bool,
 }
 
 /// The position of a lamp.
@@ -136,7 +138,7 @@ impl ShadowLamp {
             LampPlace::At(v) => (1, v),
         };
         let bits = [v.x, v.y, v.z, self.radius, self.reach_px].map(f32::to_bits);
-        ShadowKey { kind, bits, rays: self.rays }
+        ShadowKey { kind, bits, rays: self.rays, is_coarse: self.is_coarse }
     }
 }
 
@@ -146,6 +148,7 @@ pub(in crate::surface) struct ShadowKey {
     kind: u8,
     bits: [u32; 5],
     rays: u32,
+    is_coarse: bool,
 }
 
 /// How much of a ray is hidden, `[0, 1]`, by what stands highest above it.

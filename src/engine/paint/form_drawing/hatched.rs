@@ -46,8 +46,13 @@ impl<'s> FormTone<'s> {
         let side = surface.size().longer_side();
         let light = settings.light.normalize_or(Vec3::Z);
         let (radius, reach, rays) = LAMP;
-        let lamp =
-            ShadowLamp { place: LampPlace::Afar(light), radius, reach_px: reach * side, rays };
+        let lamp = ShadowLamp {
+            place: LampPlace::Afar(light),
+            radius,
+            reach_px: reach * side,
+            rays,
+            is_coarse: false,
+        };
         Self {
             settings,
             normals: surface.smooth_normals(settings.smooth),

@@ -6,6 +6,7 @@
 //! the third size. Wide blurs are taken of smaller maps.
 
 use super::ShareMap;
+use super::heights::halved;
 use crate::math::{Size, fast};
 use crate::raster::{Plane, blur};
 use crate::surface::Surface;
@@ -37,39 +38,60 @@ impl HeapSize for ContactShade {
     }
 }
 
-/// Heights blurred, in a smaller map.
+/// A map blurred, of its own size or half of it.
 struct Blurred {
     sigma_px: f32,
-    /// Pixels of the map to one of the smaller one, along a side.
-    step: usize,
+    is_half: bool,
     map: Plane<f32>,
 }
 
 impl Blurred {
-    /// How much of the page there is nearby.
-    fn page(surface: &Surface, sigma_px: f32) -> Self {
-        let page = surface.coverage_plane().map(|c| 1.0 - f32::from(c) / 255.0);
-        let step = step_of(sigma_px);
-        Self { sigma_px, step, map: blur::gaussian(&smaller(&page, step), sigma_px / step as f32) }
+    /// Of a map that is `step` times as small as the whole one.
+    fn of(map: &Plane<f32>, step: usize, sigma_px: f32, half: Size) -> Self {
+        let blurred = blur::gaussian(map, sigma_px / step as f32);
+        let map = if step > 2 { enlarged(&blurred, step / 2, half) } else { blurred };
+        Self { sigma_px, is_half: step > 1, map }
     }
 
-    /// G_σ h of every pixel of a row.
+    /// The blurred map at every pixel of a row.
     fn row(&self, y: usize, row: &mut [f32], between: &mut Vec<f32>) {
-        let step = self.step as f32;
-        let place = |at: usize, count: usize| {
-            let v = ((at as f32 + 0.5) / step - 0.5).max(0.0);
-            let first = (v as usize).min(count - 1);
-            (first, (first + 1).min(count - 1), v - first as f32)
-        };
-        let (above, below, down) = place(y, self.map.height());
-        let (above, below) = (self.map.row(above), self.map.row(below));
-        between.clear();
-        between.extend(above.iter().zip(below).map(|(a, b)| a + (b - a) * down));
-        for (x, value) in row.iter_mut().enumerate() {
-            let (left, right, along) = place(x, between.len());
-            *value = between[left] + (between[right] - between[left]) * along;
+        if !self.is_half {
+            return row.copy_from_slice(self.map.row(y));
         }
+        let (above, below, down) = place(y, 2, self.map.height());
+        between.clear();
+        let rows = self.map.row(above).iter().zip(self.map.row(below));
+        between.extend(rows.map(|(a, b)| a + (b - a) * down));
+        enlarge_row(between, row);
     }
+}
+
+/// The pixels before and after pixel `at` of a map, in one `step` times as small, and the share of
+/// the second.
+fn place(at: usize, step: usize, count: usize) -> (usize, usize, f32) {
+    let v = ((at as f32 + 0.5) / step as f32 - 0.5).max(0.0);
+    let first = (v as usize).min(count - 1);
+    (first, (first + 1).min(count - 1), v - first as f32)
+}
+
+/// A map `step` times as large, up to a size.
+fn enlarged(map: &Plane<f32>, step: usize, size: Size) -> Plane<f32> {
+    let columns: Vec<(usize, usize, f32)> =
+        (0..size.width as usize).map(|x| place(x, step, map.width())).collect();
+    let (mut large, width) = (Plane::filled(size, 0.0), size.width.max(1) as usize);
+    large.values_mut().par_chunks_mut(width).enumerate().for_each_init(
+        Vec::new,
+        |between, (y, row)| {
+            let (above, below, down) = place(y, step, map.height());
+            between.clear();
+            let rows = map.row(above).iter().zip(map.row(below));
+            between.extend(rows.map(|(a, b)| a + (b - a) * down));
+            for (value, (left, right, along)) in row.iter_mut().zip(&columns) {
+                *value = between[*left] + (between[*right] - between[*left]) * along;
+            }
+        },
+    );
+    large
 }
 
 /// The step of the smaller map for a blur.
@@ -77,66 +99,141 @@ fn step_of(sigma_px: f32) -> usize {
     1 << ((sigma_px / FINE_PX).log2().max(0.0) as u32).min(6)
 }
 
-/// The mean of each `step` × `step` pixels; fewer at the border.
-fn smaller(map: &Plane<f32>, step: usize) -> Plane<f32> {
-    let side = |n: usize| n.div_ceil(step) as u32;
-    Plane::from_fn(Size::new(side(map.width()), side(map.height())), |x, y| {
-        let (x1, y1) = (((x + 1) * step).min(map.width()), ((y + 1) * step).min(map.height()));
-        let rows = (y * step..y1).map(|y| map.row(y)[x * step..x1].iter().sum::<f32>());
-        rows.sum::<f32>() / ((x1 - x * step) * (y1 - y * step)) as f32
-    })
-}
-
 impl ContactShade {
     pub(super) fn of(surface: &Surface, largest_px: f32) -> Self {
         let heights = surface.heights();
-        let (map, page) =
-            (&heights.upright.whole, Blurred::page(surface, SIZES[LARGE] * largest_px));
-        let mut by_step: Vec<(usize, Plane<f32>)> = Vec::new();
-        let blurred: Vec<Blurred> = SIZES
-            .iter()
-            .map(|share| {
-                let sigma_px = (share * largest_px).max(0.5);
-                let step = step_of(sigma_px);
-                if step == 1 {
-                    return Blurred { sigma_px, step, map: blur::gaussian(map, sigma_px) };
-                }
-                let (known, from) =
-                    by_step.last().map_or((1, map), |(known, plane)| (*known, plane));
-                let coarse = if known == step { from.clone() } else { smaller(from, step / known) };
-                let blurred = blur::gaussian(&coarse, sigma_px / step as f32);
-                by_step.push((step, coarse));
-                Blurred { sigma_px, step, map: blurred }
-            })
-            .collect();
+        let map = &heights.upright;
+        let sigmas = SIZES.map(|share| (share * largest_px).max(0.5));
+        let steps = sigmas.map(step_of);
+        let page_of = || {
+            let page = halved_page(surface);
+            let smaller = Halves::of(&page, steps[LARGE].max(2) / 2);
+            Blurred::of(smaller.last(&page), steps[LARGE].max(2), sigmas[LARGE], page.size())
+        };
+        let (page, blurred) = rayon::join(page_of, || {
+            let halves = Halves::of(&map.half, steps[3] / 2);
+            let of = |i: usize| {
+                let from =
+                    if steps[i] == 1 { &map.whole } else { halves.at(&map.half, steps[i] / 2) };
+                Blurred::of(from, steps[i], sigmas[i], map.half.size())
+            };
+            [0, 1, 2, 3].map(of)
+        });
+        Self::sum(&map.whole, &blurred, &page)
+    }
+
+    fn sum(map: &Plane<f32>, blurred: &[Blurred; 4], page: &Blurred) -> Self {
         let width = map.width().max(1);
-        let (mut higher, mut lower) =
-            (Plane::filled(map.size(), 0.0), Plane::filled(map.size(), 0.0));
+        let (mut higher, mut lower) = (Plane::filled(map.size(), 0), Plane::filled(map.size(), 0));
         let rows =
             higher.values_mut().par_chunks_mut(width).zip(lower.values_mut().par_chunks_mut(width));
         rows.enumerate().for_each_init(
-            || (vec![0.0; width], Vec::new()),
-            |(row, between), (y, (higher, lower))| {
+            || ([const { Vec::new() }; 3].map(|_: Vec<f32>| vec![0.0; width]), Vec::new()),
+            |([row, up, down], between), (y, (higher, lower))| {
+                up.fill(0.0);
+                page.row(y, down, between);
                 for (i, size) in blurred.iter().enumerate() {
                     size.row(y, row, between);
-                    let lower = if i < LARGE { None } else { Some(&mut *lower) };
-                    add(map.row(y), row, 1.0 / size.sigma_px, higher, lower);
+                    let per_px = 1.0 / size.sigma_px;
+                    add_higher(map.row(y), row, per_px, up);
+                    if i >= LARGE {
+                        add_lower(map.row(y), row, 0.5 * per_px, down);
+                    }
                 }
-                page.row(y, row, between);
-                lower.iter_mut().zip(row).for_each(|(sum, page)| *sum += *page);
+                round(up, higher);
+                round(down, lower);
             },
         );
-        let shares = |plane: Plane<f32>| ShareMap::from_plane(plane.map(|v| v.min(MOST)), MOST);
-        Self { higher: shares(higher), lower: shares(lower) }
+        Self {
+            higher: ShareMap::from_steps(higher, MOST),
+            lower: ShareMap::from_steps(lower, MOST),
+        }
     }
 }
 
-fn add(h: &[f32], blurred: &[f32], per_px: f32, higher: &mut [f32], lower: Option<&mut [f32]>) {
-    for ((sum, h), blurred) in higher.iter_mut().zip(h).zip(blurred) {
-        *sum += fast::max(blurred - h, 0.0) * per_px;
+/// A map at a half, a quarter … of its size.
+struct Halves(Vec<Plane<f32>>);
+
+impl Halves {
+    /// Down to a `step`-th.
+    fn of(map: &Plane<f32>, step: usize) -> Self {
+        let mut halves: Vec<Plane<f32>> = Vec::new();
+        for _ in 0..step.max(1).ilog2() {
+            halves.push(halved(halves.last().unwrap_or(map)));
+        }
+        Self(halves)
     }
-    for ((sum, h), blurred) in lower.into_iter().flatten().zip(h).zip(blurred) {
-        *sum += 0.5 * fast::max(h - blurred, 0.0) * per_px;
+
+    /// The one that is `step` times as small as `map`, which it is made of.
+    fn at<'a>(&'a self, map: &'a Plane<f32>, step: usize) -> &'a Plane<f32> {
+        (step.max(1).ilog2() as usize).checked_sub(1).map_or(map, |i| &self.0[i])
+    }
+
+    fn last<'a>(&'a self, map: &'a Plane<f32>) -> &'a Plane<f32> {
+        self.0.last().unwrap_or(map)
+    }
+}
+
+/// The share of the page in each two by two pixels.
+fn halved_page(surface: &Surface) -> Plane<f32> {
+    let coverage = surface.coverage_plane();
+    let side = |n: usize| n.div_ceil(2).max(1) as u32;
+    let mut page = Plane::filled(Size::new(side(coverage.width()), side(coverage.height())), 1.0);
+    let width = page.width();
+    page.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        let last = coverage.height().saturating_sub(1);
+        let rows = [2 * y, 2 * y + 1].map(|y| coverage.row(y.min(last)));
+        let pairs = rows[0].chunks(2).zip(rows[1].chunks(2));
+        for (page, (above, below)) in row.iter_mut().zip(pairs) {
+            let sum = |pair: &[u8]| u32::from(pair[0]) + u32::from(pair[pair.len() - 1]);
+            *page = 1.0 - (sum(above) + sum(below)) as f32 * (1.0 / 1020.0);
+        }
+    });
+    page
+}
+
+crate::widest! {
+    /// A row twice as long, linear between pixel centers.
+    fn enlarge_row(half: &[f32], row: &mut [f32]) {
+        let last = half.len().saturating_sub(1);
+        let (pairs, rest) = row.as_chunks_mut::<2>();
+        for (i, pair) in pairs.iter_mut().enumerate().take(1) {
+            *pair = [half[0], 0.75 * half[0] + 0.25 * half[(i + 1).min(last)]];
+        }
+        let inner = last.saturating_sub(1).min(pairs.len().saturating_sub(1));
+        if let (Some(pairs), [left @ .., _, _], [_, own @ .., _], [_, _, right @ ..]) =
+            (pairs.get_mut(1..=inner), half, half, half)
+        {
+            for (pair, ((left, own), right)) in pairs.iter_mut().zip(left.iter().zip(own).zip(right)) {
+                *pair = [0.25 * left + 0.75 * own, 0.75 * own + 0.25 * right];
+            }
+        }
+        for (i, pair) in pairs.iter_mut().enumerate().skip(inner + 1) {
+            let own = half[i.min(last)];
+            *pair = [0.25 * half[i.saturating_sub(1)] + 0.75 * own, 0.75 * own + 0.25 * half[(i + 1).min(last)]];
+        }
+        if let [value] = rest {
+            *value = 0.25 * half[last.saturating_sub(1)] + 0.75 * half[last];
+        }
+    }
+
+    fn add_higher(h: &[f32], blurred: &[f32], per_px: f32, sum: &mut [f32]) {
+        for ((sum, h), blurred) in sum.iter_mut().zip(h).zip(blurred) {
+            *sum += fast::max(blurred - h, 0.0) * per_px;
+        }
+    }
+
+    fn add_lower(h: &[f32], blurred: &[f32], per_px: f32, sum: &mut [f32]) {
+        for ((sum, h), blurred) in sum.iter_mut().zip(h).zip(blurred) {
+            *sum += fast::max(h - blurred, 0.0) * per_px;
+        }
+    }
+
+    /// To steps of a `MOST` / 65535th.
+    fn round(values: &[f32], steps: &mut [u16]) {
+        for (step, v) in steps.iter_mut().zip(values) {
+            *step = fast::whole(fast::min(*v, MOST) * (65535.0 / MOST)) as u16;
+        }
     }
 }
 

@@ -4,8 +4,9 @@
 use super::ShareMap;
 use super::heights::turned;
 use super::seen;
-use crate::math::Size;
+use crate::math::{Size, fast};
 use crate::raster::Plane;
+use rayon::prelude::*;
 
 /// What a ray counts where it is hidden wholly.
 pub(super) const WHOLE: f32 = 1000.0;
@@ -46,15 +47,28 @@ impl HiddenCounts {
     /// What each pixel sees of the lamp that so many rays go to.
     pub fn visible_shares(self, rays: u32) -> ShareMap {
         let per_count = 1.0 / (WHOLE * rays as f32);
-        let turned = self.turned.map(|plane| turned(&plane));
-        let mut counts = match (self.upright, turned) {
-            (Some(a), Some(b)) => a.updated(|x, y, v| v + b.at(x, y)),
-            (a, b) => a.or(b).unwrap_or_else(|| Plane::filled(self.size, 0)),
+        let (mut counts, turned) = match (self.upright, self.turned.map(|plane| turned(&plane))) {
+            (Some(a), b) => (a, b),
+            (None, Some(b)) => (b, None),
+            (None, None) => return ShareMap::full(self.size),
         };
-        let steps: Vec<u16> = (0..=(WHOLE * rays as f32) as u32)
-            .map(|count| (seen(count as f32 * per_count) * f32::from(u16::MAX) + 0.5) as u16)
-            .collect();
-        counts = counts.updated(|_, _, v| steps.get(usize::from(v)).copied().unwrap_or(0));
+        let width = counts.width().max(1);
+        counts.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            if let Some(turned) = &turned {
+                row.iter_mut().zip(turned.row(y)).for_each(|(a, b)| *a += b);
+            }
+            see_row(row, per_count);
+        });
         ShareMap::from_steps(counts, 1.0)
+    }
+}
+
+crate::widest! {
+    /// Counts to shares that are seen, in steps of a 65535th.
+    fn see_row(row: &mut [u16], per_count: f32) {
+        for v in row {
+            let hidden = fast::min(f32::from(*v) * per_count, 1.0);
+            *v = fast::whole(seen(hidden) * 65535.0) as u16;
+        }
     }
 }

@@ -2,8 +2,10 @@
 //! a pixel takes those of the four pixels around it, by their distance and by how near their
 //! heights are to its own, so that nothing leaks over an edge.
 
+use super::counts::WHOLE;
 use super::heights::HeightMap;
-use crate::math::fast;
+use super::sweep::NearBand;
+use crate::math::{Size, fast};
 use crate::raster::Plane;
 use rayon::prelude::*;
 
@@ -15,31 +17,53 @@ const STEP_PX: f32 = 6.0;
 /// The least weight, so that a pixel whose neighbors are all far off takes the nearest.
 const LEAST: f32 = 1e-6;
 
-/// What is counted of a group of rays.
-pub(super) struct GroupCounts {
-    /// Of its near ray.
-    pub near: Plane<u16>,
-    /// The sum of its far rays; empty if they are part of `near`.
-    pub far: Option<FarCounts>,
-    /// How many rays it stands for.
-    pub rays: u32,
-}
-
-/// The far rays of a group.
+/// The far rays of groups.
 pub(super) struct FarCounts {
-    pub sum: Plane<u16>,
-    /// Whether the plane is half the size.
+    /// The sum of each group's.
+    pub groups: Vec<Plane<u16>>,
+    /// Whether the planes are half the size.
     pub is_half: bool,
 }
 
-/// Adds max(near, far) of each group to the counts, a row after another.
-pub(super) fn add(heights: &HeightMap, groups: &[GroupCounts], counts: &mut Plane<u16>) {
-    let width = counts.width().max(1);
-    counts.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-        for (chunk, counts) in row.chunks_mut(CHUNK).enumerate() {
-            add_chunk(heights, groups, (chunk * CHUNK, y), counts);
-        }
-    });
+impl FarCounts {
+    /// The sum of all groups.
+    pub fn total(&self) -> Plane<u16> {
+        let Some((first, others)) = self.groups.split_first() else {
+            return Plane::filled(Size::new(0, 0), 0);
+        };
+        let (mut total, width) = (first.clone(), first.width().max(1));
+        total.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            for other in others {
+                row.iter_mut().zip(other.row(y)).for_each(|(sum, v)| *sum += v);
+            }
+        });
+        total
+    }
+}
+
+/// Adds max(near, far) of each group to the counts of a row. `far`: and the sum of all groups;
+/// `near`: of each group, and how many rays it stands for.
+pub(super) fn add_row(
+    heights: &HeightMap,
+    far: (&FarCounts, &Plane<u16>),
+    near: &[(NearBand, u32)],
+    y: usize,
+    counts: &mut [u16],
+) {
+    for (chunk, counts) in counts.chunks_mut(CHUNK).enumerate() {
+        let whole = Merge { heights, far: far.0, total: far.1, near, y, chunk };
+        add_chunk(&whole, counts);
+    }
+}
+
+/// A chunk of a row.
+struct Merge<'a> {
+    heights: &'a HeightMap,
+    far: &'a FarCounts,
+    total: &'a Plane<u16>,
+    near: &'a [(NearBand, u32)],
+    y: usize,
+    chunk: usize,
 }
 
 /// `HALF` pixels of a row of half the size, one to the left of `x` on, and one more; those of the
@@ -70,14 +94,36 @@ type NeighborShares = [[[f32; HALF]; 4]; 2];
 const SIDES: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
 
 crate::widest! {
-    fn add_chunk(heights: &HeightMap, groups: &[GroupCounts], at: (usize, usize), counts: &mut [u16]) {
-        let mut weights = [[[0.0; HALF]; 4]; 2];
-        if groups.iter().any(|group| group.far.as_ref().is_some_and(|far| far.is_half)) {
-            weigh(heights, at, counts.len(), &mut weights);
+    fn add_chunk(merge: &Merge, counts: &mut [u16]) {
+        let (x0, width) = (merge.chunk * CHUNK, counts.len());
+        let has_near = merge.near.iter().any(|near| near.0.chunk(merge.y, merge.chunk).is_some());
+        let bounds = merge.bounds(width);
+        // Most pixels lie in the light.
+        if !has_near && bounds.1 == 0 {
+            return;
         }
-        let mut sums = [[0.0; HALF]; 2];
-        for group in groups {
-            add_group(group, &weights, at, counts.len(), &mut sums);
+        let is_even = bounds.0 == bounds.1 && (!has_near || bounds.1 == 0);
+        let mut shares = [[[0.0; HALF]; 4]; 2];
+        if merge.far.is_half && !is_even {
+            weigh(merge.heights, (x0, merge.y), width, &mut shares);
+        }
+        let mut sums = [[f32::from(bounds.0); HALF]; 2];
+        if !is_even {
+            sums = merge.enlarged(merge.total, &shares, width);
+        }
+        for (i, (near, rays)) in merge.near.iter().enumerate() {
+            let Some(near) = near.chunk(merge.y, merge.chunk) else { continue };
+            let far = match merge.far.groups.get(i) {
+                Some(far) if !is_even => merge.enlarged(far, &shares, width),
+                _ => [[0.0; HALF]; 2],
+            };
+            let (near, each) = (split_by_parity(near, 0, width), *rays as f32 * (WHOLE / NearBand::WHOLE));
+            for odd in 0..2 {
+                for x in 0..HALF {
+                    let more = f32::from(near[odd][x]) * each - far[odd][x];
+                    sums[odd][x] += fast::max(more, 0.0);
+                }
+            }
         }
         let mut added = [0; CHUNK];
         for i in 0..HALF {
@@ -86,6 +132,55 @@ crate::widest! {
             }
         }
         counts.iter_mut().zip(&added).for_each(|(sum, added)| *sum += added);
+    }
+}
+
+impl Merge<'_> {
+    /// The least and the most of all far counts around the chunk.
+    #[inline(always)]
+    fn bounds(&self, width: usize) -> (u16, u16) {
+        let (x0, mut least, mut most) = (self.chunk * CHUNK, u16::MAX, 0);
+        let mut take = |row: &[u16]| {
+            for v in row {
+                least = least.min(*v);
+                most = most.max(*v);
+            }
+        };
+        if self.far.is_half {
+            let (above, below, _) = rows_around(self.y, self.total.height());
+            for y in [above, below] {
+                take(&around(self.total.row(y), x0 / 2)[..HALF + 2]);
+            }
+        } else {
+            take(&self.total.row(self.y)[x0..x0 + width]);
+        }
+        (least, most)
+    }
+
+    /// Far counts of every pixel of the chunk, even and odd ones.
+    #[inline(always)]
+    fn enlarged(
+        &self,
+        counts: &Plane<u16>,
+        shares: &NeighborShares,
+        width: usize,
+    ) -> [[f32; HALF]; 2] {
+        let x0 = self.chunk * CHUNK;
+        if !self.far.is_half {
+            return split_by_parity(counts.row(self.y), x0, width).map(|half| half.map(f32::from));
+        }
+        let (above, below, _) = rows_around(self.y, counts.height());
+        let rows = [above, below].map(|y| around(counts.row(y), x0 / 2));
+        let mut far = [[0.0; HALF]; 2];
+        for (odd, far) in far.iter_mut().enumerate() {
+            for (c, (is_below, is_right)) in SIDES.into_iter().enumerate() {
+                let (row, shares) = (&rows[usize::from(is_below)], &shares[odd][c]);
+                for i in 0..HALF {
+                    far[i] += shares[i] * f32::from(row[i + odd + usize::from(is_right)]);
+                }
+            }
+        }
+        far
     }
 }
 
@@ -123,54 +218,6 @@ fn weigh(heights: &HeightMap, (x0, y): (usize, usize), width: usize, weights: &m
             for i in 0..HALF {
                 weights[i] /= all[i];
             }
-        }
-    }
-}
-
-/// Adds what a group counts to a chunk.
-#[inline(always)]
-fn add_group(
-    group: &GroupCounts,
-    weights: &NeighborShares,
-    (x0, y): (usize, usize),
-    width: usize,
-    sums: &mut [[f32; HALF]; 2],
-) {
-    let (near, rays) = (split_by_parity(group.near.row(y), x0, width), group.rays as f32);
-    let mut far = [[0.0; HALF]; 2];
-    match &group.far {
-        Some(FarCounts { sum, is_half: true }) => {
-            let (above, below, _) = rows_around(y, sum.height());
-            let rows = [above, below].map(|y| around(sum.row(y), x0 / 2));
-            let mut lit = 0;
-            for (even, odd) in near[0].iter().zip(&near[1]) {
-                lit |= even | odd;
-            }
-            for (above, below) in rows[0].iter().zip(&rows[1]) {
-                lit |= above | below;
-            }
-            // Most pixels lie in the light.
-            if lit == 0 {
-                return;
-            }
-            for (odd, far) in far.iter_mut().enumerate() {
-                for (c, (is_below, is_right)) in SIDES.into_iter().enumerate() {
-                    let (row, weights) = (&rows[usize::from(is_below)], &weights[odd][c]);
-                    for i in 0..HALF {
-                        far[i] += weights[i] * f32::from(row[i + odd + usize::from(is_right)]);
-                    }
-                }
-            }
-        }
-        Some(FarCounts { sum, is_half: false }) => {
-            let whole = split_by_parity(sum.row(y), x0, width);
-            far = whole.map(|half| half.map(f32::from));
-        }
-        None => {}
-    }
-    for (odd, sums) in sums.iter_mut().enumerate() {
-        for i in 0..HALF {
-            sums[i] += fast::max(f32::from(near[odd][i]) * rays, far[odd][i]);
         }
     }
 }

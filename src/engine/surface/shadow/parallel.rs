@@ -4,8 +4,8 @@
 
 use super::counts::HiddenCounts;
 use super::heights::{HeightMap, HeightMaps};
-use super::merge::{self, FarCounts, GroupCounts};
-use super::sweep::Sweep;
+use super::merge::{self, FarCounts};
+use super::sweep::{NearBand, Sweep};
 use super::{Aim, LampPlace, LampRay, MOST_RAYS, ShadowLamp};
 use crate::math::vec2;
 use crate::raster::Plane;
@@ -23,8 +23,8 @@ const HALF_SOFT_PX: f32 = 2.5;
 const SAME_PX: f32 = 1.0;
 /// But so many have reaches of their own.
 const LEAST_RAYS: u32 = 8;
-/// The pixels of maps that are held at a time, at most, unless there are more threads.
-const HELD_PX: usize = 1 << 25;
+/// Rows whose near parts are computed at a time.
+const BAND: usize = 128;
 
 /// Rays that are one where they are close together.
 pub(super) struct RayGroup {
@@ -37,7 +37,7 @@ pub(super) struct RayGroup {
 /// The rays to a lamp.
 pub(super) struct RayGroups {
     pub groups: Vec<RayGroup>,
-    /// Where the near part ends.
+    /// Where the near part ends, px; 0 if there is none.
     pub near_px: f32,
     /// How many rays there are, with those that meet nothing.
     pub count: u32,
@@ -60,8 +60,14 @@ impl RayGroups {
         // More rays than this would end less than a pixel from each other.
         let wide = super::BETWEEN_RAYS * lamp.radius * lamp.reach_px / SAME_PX;
         let count = lamp.rays.clamp(1, MOST_RAYS).min(((wide * wide) as u32).max(LEAST_RAYS));
-        let near_px = (SOFT_PX / lamp.radius.max(1e-6)).min(NEAR_SHARE * lamp.reach_px).max(1.0);
         let rays = ShadowLamp { rays: count, ..*lamp }.rays(highest);
+        if lamp.is_coarse {
+            let alone =
+                |ray: LampRay| RayGroup { is_turned: is_turned(&ray), near: ray, far: vec![ray] };
+            let groups = rays.into_iter().map(alone).collect();
+            return Self { groups, near_px: 0.0, count, is_half: true };
+        }
+        let near_px = (SOFT_PX / lamp.radius.max(1e-6)).min(NEAR_SHARE * lamp.reach_px).max(1.0);
         let few = ShadowLamp { rays: count.min(GROUPS), reach_px: near_px, ..*lamp };
         let near = few.rays(highest);
         let mut groups: Vec<RayGroup> = near
@@ -91,43 +97,58 @@ impl RayGroups {
 
     /// How much of the lamp is hidden from every pixel.
     pub fn counts(&self, heights: &HeightMaps) -> HiddenCounts {
-        let size = heights.upright.whole.size();
-        let mut counts = HiddenCounts::new(size);
-        let held = (HELD_PX / size.area().max(1)).max(rayon::current_num_threads());
+        let mut counts = HiddenCounts::new(heights.upright.whole.size());
         for turned in [false, true] {
             let groups: Vec<&RayGroup> =
                 self.groups.iter().filter(|group| group.is_turned == turned).collect();
-            for groups in groups.chunks(held) {
-                let map = heights.way(turned);
-                let counted: Vec<GroupCounts> = groups
-                    .par_iter()
-                    .map(|group| self.count(map, heights.highest, group))
-                    .collect();
-                merge::add(map, &counted, counts.of(turned));
+            if !groups.is_empty() {
+                self.add(heights.way(turned), heights.highest, &groups, counts.of(turned));
             }
         }
         counts
     }
 
-    /// What is hidden from a group.
-    fn count(&self, map: &HeightMap, highest: f32, group: &RayGroup) -> GroupCounts {
-        let (near, far) = rayon::join(
-            || {
-                let mut near = Plane::filled(map.whole.size(), 0);
-                sweep(&map.whole, highest, &group.near, 1.0, 0.0).add(&mut near);
-                near
-            },
-            || {
-                let (heights, px) = if self.is_half { (&map.half, 2.0) } else { (&map.whole, 1.0) };
-                let mut sum = Plane::filled(heights.size(), 0);
-                for ray in &group.far {
-                    let sweep = sweep(heights, highest, ray, px, self.near_px);
-                    Sweep { is_fading: true, ..sweep }.add(&mut sum);
+    /// Adds what is hidden from groups of rays that sweep one map, a band of rows after another.
+    fn add(&self, map: &HeightMap, highest: f32, groups: &[&RayGroup], counts: &mut Plane<u16>) {
+        let far = FarCounts {
+            groups: groups.par_iter().map(|group| self.far(map, highest, group)).collect(),
+            is_half: self.is_half,
+        };
+        let near: Vec<(Sweep, Plane<bool>, u32)> = groups
+            .iter()
+            .filter(|_| self.near_px > 0.0)
+            .map(|group| {
+                let sweep = sweep(&map.whole, highest, &group.near, 1.0, 0.0);
+                let rising = map.slopes.rising(sweep.way, self.near_px, sweep.least_slope());
+                (sweep, rising, group.far.len() as u32)
+            })
+            .collect();
+        let (width, total) = (map.whole.width(), far.total());
+        let bands = counts.values_mut().par_chunks_mut((width * BAND).max(1)).enumerate();
+        bands.for_each_init(
+            || near.iter().map(|near| (NearBand::new(width), near.2)).collect::<Vec<_>>(),
+            |bands, (band, counts)| {
+                let rows = band * BAND..band * BAND + counts.len() / width.max(1);
+                for ((near, _), (sweep, rising, _)) in bands.iter_mut().zip(&near) {
+                    near.clear(rows.clone());
+                    sweep.add_near(rising, near);
                 }
-                FarCounts { sum, is_half: self.is_half }
+                for (y, row) in rows.zip(counts.chunks_mut(width.max(1))) {
+                    merge::add_row(map, (&far, &total), bands, y, row);
+                }
             },
         );
-        GroupCounts { near, far: Some(far), rays: group.far.len() as u32 }
+    }
+
+    /// What is hidden from the far rays of a group.
+    fn far(&self, map: &HeightMap, highest: f32, group: &RayGroup) -> Plane<u16> {
+        let (heights, px) = if self.is_half { (&map.half, 2.0) } else { (&map.whole, 1.0) };
+        let mut sum = Plane::filled(heights.size(), 0);
+        for ray in &group.far {
+            let sweep = sweep(heights, highest, ray, px, self.near_px);
+            Sweep { is_fading: true, ..sweep }.add(&mut sum);
+        }
+        sum
     }
 }
 

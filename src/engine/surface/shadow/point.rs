@@ -39,8 +39,8 @@ pub(super) fn add(heights: &HeightMaps, ray: &LampRay, counts: &mut HiddenCounts
     let Aim::To(lamp) = ray.aim else { return };
     for (is_turned, is_up) in [(false, false), (false, true), (true, false), (true, true)] {
         let (map, lamp) = match is_turned {
-            false => (&heights.upright.whole, lamp),
-            true => (&heights.turned.whole, vec3(lamp.y, lamp.x, lamp.z)),
+            false => (&heights.way(false).whole, lamp),
+            true => (&heights.way(true).whole, vec3(lamp.y, lamp.x, lamp.z)),
         };
         let farthest = if is_up { lamp.y } else { map.height() as f32 - 1.0 - lamp.y };
         if farthest > UNDER {

@@ -9,8 +9,9 @@
 //! that go farther along x sweep the turned map.
 
 use super::counts::WHOLE;
+use super::heights::BlockSlopes;
 use super::sliding::{Keys, LANES, LIMIT, MOST_ROWS, ROW_BITS, SlidingKeys, higher, key};
-use super::{fade, hidden, width_at};
+use super::{BUMP_REACH_PX, fade, hidden, width_at};
 use crate::math::{Vec2, fast, simd::prefetch};
 use crate::raster::Plane;
 
@@ -57,8 +58,123 @@ struct ParallelLines<'a> {
     /// Where what is met begins to fade, and where it is gone, px.
     fading_px: (f32, f32),
     steps_per_px: f32,
+    px_per_step: f32,
     /// What stands lower than this above a ray hides nothing of it, as a key.
     least_above: i32,
+}
+
+/// Counts of the near part of a few rows, a byte each, and where there are any.
+pub(super) struct NearBand {
+    rows: std::ops::Range<usize>,
+    width: usize,
+    values: Vec<u8>,
+    /// Of each row, the chunks of `CHUNK` pixels that are not all 0.
+    taken: Vec<bool>,
+}
+
+impl NearBand {
+    /// What a ray counts where it is hidden wholly.
+    pub const WHOLE: f32 = 250.0;
+    pub const CHUNK: usize = 64;
+
+    pub fn new(width: usize) -> Self {
+        Self { rows: 0..0, width, values: Vec::new(), taken: Vec::new() }
+    }
+
+    fn chunks(&self) -> usize {
+        self.width.div_ceil(Self::CHUNK)
+    }
+
+    /// Empties it for other rows.
+    pub fn clear(&mut self, rows: std::ops::Range<usize>) {
+        let chunks = self.chunks();
+        for (values, taken) in
+            self.values.chunks_mut(self.width.max(1)).zip(self.taken.chunks(chunks.max(1)))
+        {
+            for (values, taken) in values.chunks_mut(Self::CHUNK).zip(taken) {
+                if *taken {
+                    values.fill(0);
+                }
+            }
+        }
+        self.values.resize(rows.len() * self.width, 0);
+        self.taken.clear();
+        self.taken.resize(rows.len() * chunks, false);
+        self.rows = rows;
+    }
+
+    /// A chunk of a row, if there is anything in it.
+    #[inline(always)]
+    pub fn chunk(&self, y: usize, chunk: usize) -> Option<&[u8]> {
+        let row = y.checked_sub(self.rows.start)?;
+        let first = chunk * Self::CHUNK;
+        let taken = *self.taken.get(row * self.chunks() + chunk)?;
+        taken.then(|| {
+            &self.values
+                [row * self.width + first..row * self.width + (first + Self::CHUNK).min(self.width)]
+        })
+    }
+}
+
+/// Where what is hidden is put.
+trait Counts {
+    /// How much a ray counts that is hidden wholly.
+    const WHOLE: f32;
+
+    /// Adds counts to those of row `y` from column `x` on that lie in the picture.
+    fn add(&mut self, y: usize, x: i64, added: &[f32; GROUP]);
+
+    fn prefetch(&self, y: usize, columns: std::ops::Range<usize>);
+}
+
+impl Counts for Plane<u16> {
+    const WHOLE: f32 = WHOLE;
+
+    #[inline(always)]
+    fn add(&mut self, y: usize, x: i64, shares: &[f32; GROUP]) {
+        let mut added = [0; GROUP];
+        for i in 0..GROUP {
+            added[i] = fast::whole(shares[i] * WHOLE) as u16;
+        }
+        add_counts(&added, x, self.row_mut(y));
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, y: usize, columns: std::ops::Range<usize>) {
+        prefetch(&self.row(y)[columns]);
+    }
+}
+
+impl Counts for NearBand {
+    const WHOLE: f32 = Self::WHOLE;
+
+    #[inline(always)]
+    fn add(&mut self, y: usize, x: i64, shares: &[f32; GROUP]) {
+        let (chunks, row) = (self.chunks(), y - self.rows.start);
+        let mut added = [0; GROUP];
+        for i in 0..GROUP {
+            added[i] = fast::whole(shares[i] * Self::WHOLE) as u8;
+        }
+        let values = &mut self.values[row * self.width..(row + 1) * self.width];
+        let taken = &mut self.taken[row * chunks..(row + 1) * chunks];
+        for x in [x, x + GROUP as i64 - 1] {
+            let chunk = usize::try_from(x).ok().and_then(|x| taken.get_mut(x / Self::CHUNK));
+            chunk.into_iter().for_each(|taken| *taken = true);
+        }
+        let inside = usize::try_from(x).ok().and_then(|x| values.get_mut(x..)?.first_chunk_mut());
+        if let Some(sums) = inside {
+            let sums: &mut [u8; GROUP] = sums;
+            *sums = added;
+            return;
+        }
+        for (x, added) in (x..).zip(added) {
+            let sum = usize::try_from(x).ok().and_then(|x| values.get_mut(x));
+            sum.into_iter().for_each(|sum| *sum = added);
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, _: usize, _: std::ops::Range<usize>) {}
 }
 
 /// What is kept from row to row of a strip.
@@ -73,29 +189,71 @@ struct Kept {
 impl Sweep<'_> {
     /// Adds how much a ray is hidden from every pixel.
     pub fn add(&self, counts: &mut Plane<u16>) {
-        let (lines, all) = self.lines();
+        let (lines, all) = self.lines(self.heights.height());
         let is_far = all > lines.unfaded;
-        let waiting = if is_far { lines.unfaded } else { lines.skipped };
-        let mut kept = Kept {
-            near: SlidingKeys::of(lines.unfaded - lines.skipped),
-            far: is_far.then(|| SlidingKeys::of(all - lines.unfaded)),
-            waiting: vec![[0; LANES]; waiting.max(1)],
-        };
-        let (width, height) = (self.heights.width() as f32, self.heights.height() as f32);
-        // The lines of the first and of the last row.
-        let end = lines.slope * height;
-        let first = ((-end).min(0.0) - 2.0).floor() as i64;
-        let last = ((-end).max(0.0) + width + 2.0) as i64;
-        for line in (first..last).step_by(BETWEEN) {
+        let mut kept = Kept::of(&lines, all);
+        for line in self.strips(&lines, 0..self.heights.height()) {
+            let rows = lines.rows_inside(line, 0..self.heights.height());
+            let run = Run { line, first: rows.start, rows };
             match is_far {
-                true => add_far_strip(&lines, line, &mut kept, counts),
-                false => add_near_strip(&lines, line, &mut kept, counts),
+                true => add_far_strip(&lines, &run, &mut kept, counts),
+                false => add_whole_strip(&lines, &run, &mut kept, counts),
             }
         }
     }
 
-    /// And how many rows there are up to the last one that is looked at.
-    fn lines(&self) -> (ParallelLines<'_>, usize) {
+    /// The same for the rows of a band, where `rising` blocks say that there may be anything.
+    pub fn add_near(&self, rising: &Plane<bool>, band: &mut NearBand) {
+        let height = self.heights.height();
+        let rows = match self.way.y > 0.0 {
+            true => height - band.rows.end..height - band.rows.start,
+            false => band.rows.clone(),
+        };
+        let (lines, reach) = self.lines(rows.len());
+        let mut kept = Kept::of(&lines, reach);
+        for line in self.strips(&lines, rows.clone()) {
+            let mut inside = lines.rows_inside(line, rows.clone());
+            while let Some(first) = inside.find(|r| lines.is_rising(line, *r, rising)) {
+                // A few rows without anything are sooner passed over than begun again.
+                let mut end = first + 1;
+                for r in inside.clone() {
+                    if r >= end + reach {
+                        break;
+                    }
+                    if lines.is_rising(line, r, rising) {
+                        end = r + 1;
+                    }
+                }
+                inside.start = end;
+                let run = Run { line, first, rows: first.saturating_sub(reach)..end };
+                add_near_strip(&lines, &run, &mut kept, band);
+            }
+        }
+    }
+
+    /// What rises less steeply on all of the way hides nothing, px a px.
+    pub fn least_slope(&self) -> f32 {
+        // Of `hidden`: what stands above a ray, and half of the ray's width less, exceeds the bias.
+        let widened = self.spread * (1.0 + self.rise * self.rise);
+        self.rise - widened - 0.5 / BUMP_REACH_PX - 0.01
+    }
+
+    /// The first lines of the strips that meet rows.
+    fn strips(
+        &self,
+        lines: &ParallelLines,
+        rows: std::ops::Range<usize>,
+    ) -> impl Iterator<Item = i64> + use<> {
+        // The lines of the first and of the last row.
+        let ends = [rows.start, rows.end].map(|r| -lines.slope * r as f32);
+        let first = (ends[0].min(ends[1]) - 2.0).floor() as i64;
+        let last = (ends[0].max(ends[1]) + self.heights.width() as f32 + 2.0) as i64;
+        // Strips of all bands lie alike.
+        (first.div_euclid(BETWEEN as i64) * BETWEEN as i64..last).step_by(BETWEEN)
+    }
+
+    /// For so many rows; and how many there are up to the last one that is looked at.
+    fn lines(&self, rows: usize) -> (ParallelLines<'_>, usize) {
         let length = self.px / self.way.y.abs().max(1e-3);
         let skipped = ((self.from_px / length) as usize).min(MOST_ROWS / 2);
         // Nothing is higher than the highest.
@@ -104,7 +262,7 @@ impl Sweep<'_> {
         let rows_to = |px: f32| (fast::min(px / length, needed) as usize).clamp(skipped + 1, most);
         let all = rows_to(self.to_px);
         let unfaded = if self.is_fading { rows_to(0.5 * self.to_px) } else { all };
-        let top = self.highest + self.heights.height() as f32 * self.rise * length;
+        let top = self.highest + (rows + all) as f32 * self.rise * length;
         let steps_per_px = fast::min(STEPS_PER_PX, ((LIMIT >> (ROW_BITS + 1)) - 2) as f32 / top);
         let least = -0.5 * width_at(self.to_px + length, self.rise, self.spread);
         let lines = ParallelLines {
@@ -118,10 +276,31 @@ impl Sweep<'_> {
             unfaded,
             fading_px: (0.5 * self.to_px, self.to_px),
             steps_per_px,
+            px_per_step: 1.0 / steps_per_px,
             least_above: key(fast::max(least * steps_per_px, -1e5) as i32 - 1, 0),
         };
         (lines, all)
     }
+}
+
+impl Kept {
+    fn of(lines: &ParallelLines, all: usize) -> Self {
+        let is_far = all > lines.unfaded;
+        let waiting = if is_far { lines.unfaded } else { lines.skipped };
+        Self {
+            near: SlidingKeys::of(lines.unfaded - lines.skipped),
+            far: is_far.then(|| SlidingKeys::of(all - lines.unfaded)),
+            waiting: vec![[0; LANES]; waiting.max(1)],
+        }
+    }
+}
+
+/// Rows of a strip.
+struct Run {
+    line: i64,
+    rows: std::ops::Range<usize>,
+    /// The first one whose pixels are counted; those before only hide.
+    first: usize,
 }
 
 /// A row of a strip.
@@ -139,16 +318,25 @@ struct StripRow<'a> {
 }
 
 impl ParallelLines<'_> {
-    /// The rows of a strip that lie in the picture.
-    fn rows_inside(&self, line: i64) -> std::ops::Range<usize> {
-        let (width, height) = (self.heights.width() as f32, self.heights.height());
-        let inside = |r: usize| {
-            let x = line as f32 + self.slope * r as f32;
+    /// Those of some rows where a strip lies in the picture.
+    fn rows_inside(&self, line: i64, rows: std::ops::Range<usize>) -> std::ops::Range<usize> {
+        let width = self.heights.width() as f32;
+        let inside = |r: &usize| {
+            let x = line as f32 + self.slope * *r as f32;
             x > -(LANES as f32) - 1.0 && x < width + 1.0
         };
-        let Some(first) = (0..height).find(|r| inside(*r)) else { return 0..0 };
-        let last = (first..height).rfind(|r| inside(*r)).unwrap_or(first);
+        let Some(first) = rows.clone().find(inside) else { return 0..0 };
+        let last = (first..rows.end).rfind(inside).unwrap_or(first);
         first..last + 1
+    }
+
+    /// Whether something may stand on the way to the lamp from a strip's pixels of a row.
+    fn is_rising(&self, line: i64, r: usize, rising: &Plane<bool>) -> bool {
+        let (x0, block) = ((line as f32 + self.slope * r as f32) as i64, BlockSlopes::SIDE as i64);
+        let blocks = rising.row(self.row(r) / BlockSlopes::SIDE);
+        let at = |x: i64| (x.max(0) / block) as usize;
+        let last = (at(x0 + 2 + BETWEEN as i64) + 1).min(blocks.len());
+        blocks[at(x0).min(last)..last].contains(&true)
     }
 
     /// The number of a row, counted from the lamp's side, in the map.
@@ -158,13 +346,13 @@ impl ParallelLines<'_> {
     }
 
     #[inline(always)]
-    fn prefetch(&self, x0: i64, r: usize, counts: &Plane<u16>) {
+    fn prefetch<C: Counts>(&self, x0: i64, r: usize, counts: &C) {
         let (width, height) = (self.heights.width(), self.heights.height());
         if r < height {
             let first = (x0.max(0) as usize).min(width);
             let columns = first..(first + LANES).min(width);
             prefetch(&self.heights.row(self.row(r))[columns.clone()]);
-            prefetch(&counts.row(self.row(r))[columns]);
+            counts.prefetch(self.row(r), columns);
         }
     }
 
@@ -175,16 +363,18 @@ impl ParallelLines<'_> {
 
     /// `FAR`: looks at a second window, which fades.
     #[inline(always)]
-    fn add_strip<const FAR: bool>(&self, line: i64, kept: &mut Kept, counts: &mut Plane<u16>) {
+    fn add_strip<const FAR: bool, C: Counts>(&self, run: &Run, kept: &mut Kept, counts: &mut C) {
         let width = self.heights.width() as i64;
         kept.near.leave();
         kept.far.iter_mut().for_each(SlidingKeys::leave);
-        for (turn, r) in self.rows_inside(line).enumerate() {
-            let x = line as f32 + self.slope * r as f32;
+        for (turn, r) in run.rows.clone().enumerate() {
+            let x = run.line as f32 + self.slope * r as f32;
             let (x0, between) = (x.floor() as i64, x - x.floor());
             let (y, mut edge) = (self.row(r), [0.0; LANES + 1]);
             let row = self.heights.row(y);
-            self.prefetch(x0, r + AHEAD, counts);
+            if r + AHEAD < run.rows.end {
+                self.prefetch(x0, r + AHEAD, counts);
+            }
             let inside = usize::try_from(x0).ok().and_then(|x| row.get(x..)?.first_chunk());
             let h = inside.unwrap_or_else(|| {
                 for (x, h) in (x0..).zip(&mut edge) {
@@ -194,10 +384,10 @@ impl ParallelLines<'_> {
             });
             let gain = self.steps(turn as f32 * self.rise * self.length);
             let strip_row = StripRow { turn, h, gain, between, x0: x0 + 1 };
-            if turn > self.skipped {
+            if turn > self.skipped && r >= run.first {
                 let near = kept.near.highest();
                 let far = if FAR { kept.far.as_mut().map(SlidingKeys::highest) } else { None };
-                self.add_row::<FAR>(&strip_row, [near, far.unwrap_or(near)], counts.row_mut(y));
+                self.add_row::<FAR, C>(&strip_row, [near, far.unwrap_or(near)], (y, counts));
             }
             self.keep(&strip_row, kept);
         }
@@ -226,11 +416,11 @@ impl ParallelLines<'_> {
 
     /// Adds how much the ray is hidden from the pixels of a row.
     #[inline(always)]
-    fn add_row<const FAR: bool>(
+    fn add_row<const FAR: bool, C: Counts>(
         &self,
         row: &StripRow,
         [near, far]: [&Keys; 2],
-        counts: &mut [u16],
+        (y, counts): (usize, &mut C),
     ) {
         for first in (0..BETWEEN).step_by(GROUP) {
             let (mut own, mut above) = ([0; GROUP], 0);
@@ -264,19 +454,18 @@ impl ParallelLines<'_> {
                 }
             }
             // The pixel lies 1 − between right of its left line.
-            let ([left, right], mut added) = (&shares, [0; GROUP]);
+            let ([left, right], mut between) = (&shares, [0.0; GROUP]);
             for i in 0..GROUP {
-                let share = right[i] + (left[i] - right[i]) * row.between;
-                added[i] = fast::whole(share * WHOLE) as u16;
+                between[i] = right[i] + (left[i] - right[i]) * row.between;
             }
-            add_counts(&added, row.x0 + first as i64, counts);
+            counts.add(y, row.x0 + first as i64, &between);
         }
     }
 
     /// How much of a pixel's ray what stands highest hides, and how far away that is.
     #[inline(always)]
     fn hidden(&self, highest: i32, own: i32, turn: usize) -> (f32, f32) {
-        let above = (highest.wrapping_sub(own) >> ROW_BITS) as f32 / self.steps_per_px;
+        let above = (highest.wrapping_sub(own) >> ROW_BITS) as f32 * self.px_per_step;
         let rows = (turn as i32).wrapping_sub(highest) & MOST_ROWS as i32;
         let distance = rows as f32 * self.length;
         (hidden(above, distance, self.rise, self.spread), distance)
@@ -301,13 +490,18 @@ fn add_counts(added: &[u16; GROUP], x: i64, counts: &mut [u16]) {
 }
 
 crate::widest! {
-    /// Adds how much the ray is hidden from the pixels between the lines of a strip.
-    fn add_near_strip(lines: &ParallelLines, line: i64, kept: &mut Kept, counts: &mut Plane<u16>) {
-        lines.add_strip::<false>(line, kept, counts);
+    /// Adds how much the near part hides from the pixels between the lines of a strip.
+    fn add_near_strip(lines: &ParallelLines, run: &Run, kept: &mut Kept, band: &mut NearBand) {
+        lines.add_strip::<false, NearBand>(run, kept, band);
+    }
+
+    /// The same of a ray that does not fade.
+    fn add_whole_strip(lines: &ParallelLines, run: &Run, kept: &mut Kept, counts: &mut Plane<u16>) {
+        lines.add_strip::<false, Plane<u16>>(run, kept, counts);
     }
 
     /// The same with a second window, which fades.
-    fn add_far_strip(lines: &ParallelLines, line: i64, kept: &mut Kept, counts: &mut Plane<u16>) {
-        lines.add_strip::<true>(line, kept, counts);
+    fn add_far_strip(lines: &ParallelLines, run: &Run, kept: &mut Kept, counts: &mut Plane<u16>) {
+        lines.add_strip::<true, Plane<u16>>(run, kept, counts);
     }
 }

@@ -21,7 +21,7 @@ fn ball(x: f32, y: f32) -> f32 {
 }
 
 fn lamp(place: LampPlace) -> ShadowLamp {
-    ShadowLamp { place, radius: 0.13, reach_px: 220.0, rays: 32 }
+    ShadowLamp { place, radius: 0.13, reach_px: 220.0, rays: 32, is_coarse: false }
 }
 
 const SOME: [Vec3; 5] = [
@@ -255,9 +255,24 @@ fn shadows_move_evenly_while_the_lamp_turns() {
 }
 
 #[test]
+fn while_a_lamp_is_dragged_its_shadow_is_nearly_that_at_rest() {
+    let surface = surface_of(SIZE, 100.0, ball);
+    for direction in &SOME[..4] {
+        let at_rest = lamp(LampPlace::Afar(*direction));
+        let coarse = ShadowLamp { rays: 4, is_coarse: true, ..at_rest };
+        let (whole, draft) = (surface.shadow(&at_rest, 2), surface.shadow(&coarse, 2));
+        let pixels = || (0..180).flat_map(|y| (0..220).map(move |x| (x, y)));
+        let shade: f32 = pixels().map(|(x, y)| 1.0 - whole.at(x, y)).sum();
+        let off: f32 = pixels().map(|(x, y)| (whole.at(x, y) - draft.at(x, y)).abs()).sum();
+        assert!(off < 0.15 * shade + 40.0, "{direction}: {off} of {shade}");
+    }
+}
+
+#[test]
 fn any_number_of_threads_finds_the_same_shadow() {
     let surface = surface_of(SIZE, 100.0, ball);
-    let lamps = [LampPlace::Afar(SOME[0]), LampPlace::At(vec3(30.0, 150.0, 90.0))].map(lamp);
+    let [far, near] = [LampPlace::Afar(SOME[0]), LampPlace::At(vec3(30.0, 150.0, 90.0))].map(lamp);
+    let lamps = [far, near, ShadowLamp { rays: 4, is_coarse: true, ..far }];
     let made = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| lamps.map(|lamp| ShareMap::of_lamp(&surface.heights(), &lamp)))
