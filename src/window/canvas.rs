@@ -84,6 +84,8 @@ pub struct Canvas {
     areas_pt: BTreeMap<usize, Vec2>,
     /// The canvas pixel under the pointer.
     pub under: Option<Vec2>,
+    /// Where the canvas was last shown on the screen, and in which part of it.
+    shown_at: Option<(egui::Rect, Affine2)>,
     /// How long the last redraw took.
     pub took: Duration,
     pub is_busy: bool,
@@ -120,6 +122,7 @@ impl Canvas {
             area_pt: vec2(800.0, 600.0),
             areas_pt: BTreeMap::new(),
             under: None,
+            shown_at: None,
             took: Duration::ZERO,
             is_busy: false,
             trouble,
@@ -140,6 +143,13 @@ impl Canvas {
     /// What the pen reported in this frame.
     pub fn pens(&self) -> &[PenReport] {
         self.hand.reports()
+    }
+
+    /// The canvas point at a point of the screen, also beneath a dialog; `None` beside the canvas's
+    /// area, and where the surface is shown unwrapped.
+    pub fn canvas_at(&self, pos: Pos2) -> Option<Vec2> {
+        let (_, placed) = self.shown_at.filter(|(area, _)| area.contains(pos))?;
+        Some(placed.inverse().transform_point2(vec2(pos.x, pos.y)))
     }
 
     /// Draws the canvas and requests what the pen does.
@@ -173,6 +183,7 @@ impl Canvas {
         let middle = rect.center();
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();
+        self.shown_at = layout.is_none().then_some((rect, screen_from_canvas));
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
         let scale = view.zoom * ui.ctx().pixels_per_point();

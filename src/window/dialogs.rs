@@ -33,6 +33,7 @@ use super::usage::MemoryMeter;
 use crate::document::SurfaceSource;
 use crate::io::maps::ImportedSurface;
 use crate::io::recovery::LostSession;
+use crate::math::Vec2;
 use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
 use std::path::PathBuf;
@@ -104,6 +105,8 @@ pub struct DialogContext<'a> {
     pub preview: Option<egui::TextureId>,
     /// What the pen reported in this frame.
     pub pens: &'a [PenReport],
+    /// The place of the pointer on the canvas.
+    pub under: Option<Vec2>,
     pub memory: &'a mut MemoryMeter,
     pub pictures: &'a mut FilePictures,
     pub requests: &'a mut UiRequests,
@@ -123,13 +126,24 @@ impl Dialog {
             ui.spacing_mut().item_spacing.y = 7.0;
             self.content(ui, &mut context)
         });
-        let answer = if modal.should_close() && matches!(modal.inner, DialogAnswer::Open) {
+        let mut is_used = false;
+        if let (Dialog::Materials(materials), DialogAnswer::Open) = (&mut *self, &modal.inner) {
+            let is_beside =
+                modal.backdrop_response.contains_pointer() && !modal.response.contains_pointer();
+            let is_clicked = modal.backdrop_response.clicked();
+            let under = context.under.filter(|_| is_beside);
+            is_used = materials.follow(under, is_clicked, context.session, context.requests);
+        }
+        let closes = modal.should_close() && !is_used;
+        let answer = if closes && matches!(modal.inner, DialogAnswer::Open) {
             DialogAnswer::Close
         } else {
             modal.inner
         };
-        if let (Dialog::Adjust(adjust), DialogAnswer::Close) = (&*self, &answer) {
-            adjust.forget(context.requests);
+        match (&*self, &answer) {
+            (Dialog::Adjust(adjust), DialogAnswer::Close) => adjust.forget(context.requests),
+            (Dialog::Materials(materials), DialogAnswer::Close) => materials.forget(context.requests),
+            _ => {}
         }
         if let (Dialog::Filter(filter), DialogAnswer::Close) = (&*self, &answer) {
             filter.forget(context.requests);

@@ -284,11 +284,14 @@ impl MainWindow {
         let is_flat = self.session.active().is_some_and(|open| open.unwrap_settings().is_some());
         let is_seen = matches!(dialog, Dialog::Export(_)) && !is_flat;
         let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
+        let under =
+            ctx.input(|input| input.pointer.hover_pos()).and_then(|pos| self.canvas.canvas_at(pos));
         let context = DialogContext {
             session: &self.session,
             settings: &mut self.settings,
             preview,
             pens: self.canvas.pens(),
+            under,
             memory: &mut self.memory,
             pictures: &mut self.menu.pictures,
             requests,

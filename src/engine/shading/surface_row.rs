@@ -96,6 +96,12 @@ impl<'a> SurfaceRow<'a> {
         self.prefetch(y + 2);
     }
 
+    /// Moves on to a pixel of its own, anywhere: a row of one.
+    pub fn move_to_pixel(&mut self, x: usize, y: usize) {
+        (self.x0, self.width) = (x, 1);
+        self.move_to(y);
+    }
+
     /// Moves the normals of contour pixels to the middle of what their own side sees (MATH
     /// 10).
     fn turn_to_own_shares(&mut self) {

@@ -9,7 +9,7 @@ use super::{RecipeSource, read_value};
 use crate::document::parts::forms::visible_place;
 use crate::document::{Content, DerivedMask, Document, Group, Layer, LayerId, LayerMask};
 use crate::math::srgb::Color;
-use crate::math::vec3;
+use crate::math::{Size, vec3};
 use crate::shading::{Light, LightKind, Model, Shading};
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::{Budget, Error, Result, UserFiles};
@@ -54,7 +54,8 @@ impl PartMaterial {
     /// what is selected, or the whole surface.
     pub fn on(&self, document: &Document, part: Option<&str>) -> Result<(Document, LayerId)> {
         let lights = lights_of(document);
-        let mut layer = Layer::new(self.name.clone(), self.group(document, &lights)?);
+        let mut layer =
+            Layer::new(self.name.clone(), self.group(grained(document, part), &lights)?);
         layer.mask = match part {
             Some(part) => Some(self.mask_of(document, part)?),
             None => document.selection_as_mask(),
@@ -96,12 +97,13 @@ impl PartMaterial {
         read_value(&recipe, source)
     }
 
-    fn group(&self, document: &Document, lights: &[Light]) -> Result<Content> {
+    /// Its layers, at the lengths of a canvas.
+    fn group(&self, canvas: Size, lights: &[Light]) -> Result<Content> {
         let text = MATERIALS.iter().find(|(key, _)| *key == self.key).map_or("", |found| found.1);
         let mut file = parsed_file(&path(self.key), text)?;
         let mut layers = file.get_mut("layers").map(Value::take).unwrap_or_default();
         light(&mut layers, lights);
-        let layers = live_layers(&path(self.key), layers, document.size)?;
+        let layers = live_layers(&path(self.key), layers, canvas)?;
         Ok(Content::Group(Group { layers, pass_through: true }))
     }
 
@@ -113,6 +115,24 @@ impl PartMaterial {
             SurfaceRegion { contiguous: false, ..SurfaceRegion::new(RegionKind::Object, at) };
         Ok(LayerMask::new(DerivedMask::Region(region)))
     }
+}
+
+/// The canvas whose lengths a material takes on a part: grain is finer on small parts, by the root
+/// of their size, so that it is not coarse on them and yet is seen.
+fn grained(document: &Document, part: Option<&str>) -> Size {
+    /// The side of a part with the lengths of the whole canvas, as a share of the canvas.
+    const WHOLE: f32 = 0.92;
+    /// The least share of the lengths.
+    const LEAST: f32 = 0.2;
+    let size = document.size;
+    let areas = document.part_areas();
+    let Some((_, area)) = areas.iter().find(|(known, _)| Some(known.id.as_str()) == part) else {
+        return size;
+    };
+    let (low, high) = area.covered_box();
+    let sides = (high - low).max(crate::math::Vec2::ONE);
+    let share = (sides.x * sides.y).sqrt() / (WHOLE * size.longer_side().max(1.0));
+    size.scaled(share.sqrt().max(LEAST).min(1.0))
 }
 
 /// Whether a layer is a material of a part: the user may have changed its layers, not its name.
@@ -178,6 +198,7 @@ fn path(key: &str) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::parts::Part;
     use crate::document::{Progress, flatten};
 
     #[test]
@@ -202,6 +223,19 @@ mod tests {
             let read = read_value(&written, source).unwrap();
             assert_eq!(crate::recipe::write(&read), written, "{}", material.key);
         }
+    }
+
+    #[test]
+    fn grain_is_finer_on_a_small_part() {
+        let ball = PartMaterial::ball(Color::rgb(180, 120, 90)).unwrap();
+        let whole = grained(&ball, Some("ball"));
+        assert_eq!(whole, grained(&ball, None));
+        let part = (*ball.parts.list[0]).clone();
+        let matrix = crate::math::Affine2::from_scale(crate::math::Vec2::splat(0.25));
+        let small = Part { matrix: matrix * part.matrix, ..part };
+        let small = ball.with_parts(vec![Arc::new(small)]);
+        let side = grained(&small, Some("ball")).longer_side();
+        assert!((side / whole.longer_side() - 0.5).abs() < 0.02, "{side}");
     }
 
     #[test]

@@ -75,8 +75,8 @@ impl MainWindow {
             }
             WindowRequest::MaterialsDialog => {
                 let part = self.session.active().and_then(|open| open.part.clone());
-                self.dialogs
-                    .push(Dialog::Materials(Box::new(materials::MaterialsDialog::new(ctx, part))))
+                let dialog = materials::MaterialsDialog::new(ctx, &self.session, part);
+                self.dialogs.push(Dialog::Materials(Box::new(dialog)))
             }
             WindowRequest::Paste(to) => self.paste(to),
             WindowRequest::Palette => {

@@ -75,12 +75,14 @@ impl Shading {
         let rows = places.chunks_exact(TILE).zip(canvas.chunks_exact(TILE));
         for (row, (places, at)) in pixels.rows_mut().iter_mut().zip(rows) {
             if let Some((sheet, features, lights, terms)) = &mut lit {
-                let mut covered = [false; TILE];
+                let (mut covered, mut row_of_one) = ([false; TILE], None);
                 for (x, place) in places.iter().enumerate() {
                     if let Some((px, py)) = *place {
-                        let surface_row = SurfaceRow::new(sheet, features, px, py, 1);
-                        lights.iter_mut().for_each(|lit| lit.turn(&surface_row));
-                        terms.read(&surface_row, lights, x);
+                        let surface_row = row_of_one
+                            .get_or_insert_with(|| SurfaceRow::new(sheet, features, px, py, 1));
+                        surface_row.move_to_pixel(px, py);
+                        lights.iter_mut().for_each(|lit| lit.turn(surface_row));
+                        terms.read(surface_row, lights, x);
                         covered[x] = true;
                     }
                 }

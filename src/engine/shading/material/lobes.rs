@@ -33,23 +33,9 @@ pub fn add_incoming(
 /// Adds ρ tint to the light of a row, where a light is seen, and what its shadow leaves of it where
 /// it is not.
 pub fn add_lit(light: &mut Light3, tint: [f32; 3], rho: &RowValues, lit: &RowLight) {
-    match &lit.shadow {
-        Some(shadow) => add_lit_by(light, tint, rho, lit, &shadow.seen),
-        None => add(light, tint, rho),
-    }
-}
-
-/// The same of pixels that lie anywhere: `share` of the light is seen by each.
-pub fn add_lit_by(
-    light: &mut Light3,
-    tint: [f32; 3],
-    rho: &RowValues,
-    lit: &RowLight,
-    share: &RowValues,
-) {
     let Some(shadow) = &lit.shadow else { return add(light, tint, rho) };
     let (mut seen, mut hidden) = (*rho, *rho);
-    part(&mut seen, &mut hidden, share);
+    part(&mut seen, &mut hidden, &shadow.seen);
     add(light, tint, &seen);
     if shadow.left != [0.0; 3] {
         add(light, self::tint(tint, shadow.left), &hidden);

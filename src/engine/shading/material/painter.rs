@@ -45,6 +45,7 @@ struct LampRow {
 /// What the terms are made of, along a row of pixels that may lie anywhere.
 pub struct PainterTerms {
     contact: Arc<ContactShade>,
+    fixed: FixedTerms,
     is_scaled: bool,
     normal: [RowValues; 3],
     /// n in each pixel's own frame.
@@ -68,6 +69,7 @@ impl PainterTerms {
         let terms = [shading.ambient, shading.diffuse, shading.specular];
         Self {
             contact: surface.contact(shading.painter.contact_size),
+            fixed: FixedTerms::of(shading),
             is_scaled: terms.iter().any(|term| term.is_scaled()),
             normal: LEVEL_ROW,
             normal_seen: LEVEL_ROW,
@@ -118,6 +120,7 @@ impl PainterTerms {
         };
         Self {
             contact: self.contact.clone(),
+            fixed: self.fixed,
             is_scaled: self.is_scaled,
             normal: LEVEL_ROW,
             normal_seen: LEVEL_ROW,
@@ -152,12 +155,7 @@ impl PainterTerms {
             let toward = self.lamps.first().map_or(&LEVEL_ROW, |lamp| &lamp.toward);
             rim_row([&self.normal, &self.normal_seen, toward], &self.lower, &open, &mut rim);
         }
-        let with = Finish {
-            exposure: painter.exposure,
-            edge: painter.edge * Painter::EDGE,
-            rim: painter.rim_color.linear().map(|c| c * painter.rim * Painter::RIM),
-        };
-        finish_row(albedo, &even, [&edge, &rim], &shine, &with, light);
+        finish_row(albedo, &even, [&edge, &rim], &shine, &self.fixed.finish, light);
     }
 
     fn sums(&self, shading: &Shading, lights: &[RowLight]) -> Sums {
@@ -166,7 +164,7 @@ impl PainterTerms {
         contact_row(&self.higher, painter, &mut open);
         let (mut even, mut ambient) = ([[0.0; TILE]; 3], [1.0; TILE]);
         self.scale(shading.ambient.scaling, &self.kappa, &mut ambient);
-        even_row(&self.normal, &open, &ambient, &EvenLight::of(shading), &mut even);
+        even_row(&self.normal, &open, &ambient, &self.fixed.even, &mut even);
         let (mut edge, mut shine) = ([0.0; TILE], [[0.0; TILE]; 3]);
         let all: f32 = lights.iter().map(|lit| strongest(lit.radiance)).sum();
         for (lamp, lit) in self.lamps.iter().zip(lights) {
@@ -176,12 +174,13 @@ impl PainterTerms {
             let share = strongest(lit.radiance) / all.max(1e-6);
             edge_row(&key, &lamp.seen, share, &mut edge);
             let tint = painter.warmed(lit.radiance).map(|c| c * shading.diffuse.weight);
-            lobes::add_lit_by(&mut even, tint, &key, lit, &lamp.seen);
+            let left = lit.shadow.as_ref().map_or([1.0; 3], |shadow| shadow.left);
+            add_key_row(&key, &lamp.seen, tint, left, &mut even);
             if shading.specular.weight > 0.0 {
                 let mut gloss = [0.0; TILE];
                 shine_row(&self.normal_seen, &lamp.toward_seen, shading.shininess, &mut gloss);
                 self.scale(shading.specular.scaling, &lamp.kappa, &mut gloss);
-                let tint = lobes::tint(shading.specular.linear(), lit.radiance);
+                let tint = lobes::tint(self.fixed.specular, lit.radiance);
                 gloss.iter_mut().zip(&lamp.seen).for_each(|(gloss, seen)| *gloss *= seen);
                 lobes::add(&mut shine, tint, &gloss);
             }
@@ -212,7 +211,32 @@ fn strongest(radiance: [f32; 3]) -> f32 {
     radiance.into_iter().fold(0.0, f32::max)
 }
 
+/// What is the same for all pixels: colors are decoded once for many rows.
+#[derive(Clone, Copy)]
+struct FixedTerms {
+    even: EvenLight,
+    finish: Finish,
+    /// The color of the shine, linear.
+    specular: [f32; 3],
+}
+
+impl FixedTerms {
+    fn of(shading: &Shading) -> Self {
+        let painter = &shading.painter;
+        Self {
+            even: EvenLight::of(shading),
+            finish: Finish {
+                exposure: painter.exposure,
+                edge: painter.edge * Painter::EDGE,
+                rim: painter.rim_color.linear().map(|c| c * painter.rim * Painter::RIM),
+            },
+            specular: shading.specular.linear(),
+        }
+    }
+}
+
 /// Fill, bounce and light from everywhere, linear.
+#[derive(Clone, Copy)]
 struct EvenLight {
     fill: [f32; 3],
     bounce: [f32; 3],
@@ -232,6 +256,7 @@ impl EvenLight {
 }
 
 /// How the sums become light.
+#[derive(Clone, Copy)]
 struct Finish {
     exposure: f32,
     edge: f32,
@@ -256,6 +281,33 @@ fn knee(light: f32) -> f32 {
 #[inline(always)]
 fn back(key: Vec3) -> Vec3 {
     vec3(-key.x, BACK.1 - key.y, BACK.0)
+}
+
+/// v^p of each pixel.
+#[inline(always)]
+fn raise_row(values: &mut RowValues, p: f32) {
+    for v in values {
+        *v = fast::pow(*v, p);
+    }
+}
+
+/// The same where neighbors are often equal, as in a flat drawing.
+#[inline(always)]
+fn raise_colors(values: &mut RowValues, p: f32) {
+    const CHUNK: usize = 16;
+    for chunk in values.as_chunks_mut::<CHUNK>().0 {
+        let (first, mut uneven) = (chunk[0], 0);
+        for v in chunk.iter() {
+            uneven |= i32::from(*v != first);
+        }
+        if uneven == 0 {
+            *chunk = [fast::pow(first, p); CHUNK];
+        } else {
+            for v in chunk.iter_mut() {
+                *v = fast::pow(*v, p);
+            }
+        }
+    }
 }
 
 crate::widest! {
@@ -294,6 +346,22 @@ crate::widest! {
         }
     }
 
+    /// Adds the key where it is seen, and the share that a shadow leaves where it is not.
+    fn add_key_row(
+        key: &RowValues,
+        seen: &RowValues,
+        tint: [f32; 3],
+        left: [f32; 3],
+        light: &mut Light3,
+    ) {
+        for (c, light) in light.iter_mut().enumerate() {
+            let (least, more) = (tint[c] * left[c], tint[c] * (1.0 - left[c]));
+            for x in 0..TILE {
+                light[x] += key[x] * (least + more * seen[x]);
+            }
+        }
+    }
+
     /// Adds the turning edge, (4k(1 − k))².
     fn edge_row(key: &RowValues, seen: &RowValues, share: f32, edge: &mut RowValues) {
         for x in 0..TILE {
@@ -304,7 +372,7 @@ crate::widest! {
 
     /// How much more than a level part it shines: max(0, (n·half)^η − half_z^η).
     fn shine_row(normal: &[RowValues; 3], toward: &[RowValues; 3], power: f32, shine: &mut RowValues) {
-        let mut level = [0.0; TILE];
+        let (mut level, mut more, mut uneven) = ([0.0; TILE], 0, 0);
         for x in 0..TILE {
             // |ℓ + e|² = 2 + 2 ℓ_z.
             let per = 1.0 / fast::max(2.0 + 2.0 * toward[2][x], 1e-6).sqrt();
@@ -312,15 +380,36 @@ crate::widest! {
                 + normal[2][x] * (toward[2][x] + 1.0);
             shine[x] = fast::min(fast::max(n_h * per, 0.0), 1.0);
             level[x] = fast::min(fast::max((toward[2][x] + 1.0) * per, 0.0), 1.0);
+            more |= i32::from(shine[x] > level[x]);
+        }
+        // Most rows shine nowhere.
+        if more == 0 {
+            *shine = [0.0; TILE];
+            return;
         }
         for x in 0..TILE {
-            shine[x] = fast::max(fast::pow(shine[x], power) - fast::pow(level[x], power), 0.0);
+            uneven |= i32::from(level[x] != level[0]);
+        }
+        if uneven == 0 {
+            level = [fast::pow(level[0], power); TILE];
+        } else {
+            raise_row(&mut level, power);
+        }
+        raise_row(shine, power);
+        for x in 0..TILE {
+            shine[x] = fast::max(shine[x] - level[x], 0.0);
         }
     }
 
     /// How much of the rim's light there is; `of`: normals, normals as seen, and toward the key.
     fn rim_row(of: [&[RowValues; 3]; 3], lower: &RowValues, open: &RowValues, rim: &mut RowValues) {
-        let [normal, seen, key] = of;
+        let ([normal, seen, key], mut turned) = (of, 0);
+        for z in &seen[2] {
+            turned |= i32::from(1.0 - z > RIM_AT.0);
+        }
+        if turned == 0 {
+            return;
+        }
         for x in 0..TILE {
             let b = back(vec3(key[0][x], key[1][x], key[2][x]));
             let per = 1.0 / (b.x * b.x + b.y * b.y + b.z * b.z).sqrt();
@@ -342,10 +431,8 @@ crate::widest! {
         let [edge, rim] = terms;
         for c in 0..3 {
             let white = 1.0 / knee(LEVEL[c]);
-            let (mut rich, own) = ([0.0; TILE], &albedo[c]);
-            for x in 0..TILE {
-                rich[x] = fast::pow(own[x], RICH[c]);
-            }
+            let (mut rich, own) = (albedo[c], &albedo[c]);
+            raise_colors(&mut rich, RICH[c]);
             for x in 0..TILE {
                 let lit = knee(even[c][x] * with.exposure) * white;
                 let turned = fast::min(with.edge * edge[x], 1.0);

@@ -20,6 +20,8 @@ const LEAST_INK: u8 = 3;
 /// A line no farther from a flat than this, in any channel of 8 bits, is told from it only in its
 /// middle.
 const HARDLY_SEEN: u8 = 24;
+/// How wide the halo of a line may be, px.
+const HALO_PX: i32 = 2;
 /// Nothing, and no ink.
 const NOTHING: Pixel = [0; 4];
 
@@ -166,11 +168,15 @@ impl<'a> Lifting<'a> {
         let tone = colors[tone as usize].color;
         let is_line = lines.at(x, y) != NONE;
         if drawn[3] < 255 {
-            let is_ink = is_line || share_on_the_way(drawn, NOTHING, tone) > 0;
+            let is_ink =
+                is_line || share_on_the_way(drawn, NOTHING, tone) > 0 || self.is_halo((x, y));
             return (is_ink && drawn[3] > 0).then_some([NOTHING, drawn]);
         }
-        if !is_line && self.flat.at(x, y) == (y * self.flat.width() + x) as u32 + 1 {
+        if !is_line && self.is_area(x as i32, y as i32) {
             return None;
+        }
+        if !is_line && self.is_halo((x, y)) {
+            return Some([NOTHING, drawn]);
         }
         let (flat, ink) = self.beneath((x, y), drawn, tone).unwrap_or_default();
         if is_line && (flat[3] < 255 || color_distance(flat, tone) <= HARDLY_SEEN) {
@@ -182,6 +188,30 @@ impl<'a> Lifting<'a> {
         let least = if is_line && ink == 0 { 255 } else { ink };
         let line = (least..=255).find_map(|alpha| uncomposite(drawn, alpha, flat));
         Some([flat, line.unwrap_or(drawn)])
+    }
+
+    /// Whether a pixel lies between a line and nothing: where a drawing was made smaller or
+    /// compressed, its lines have such pixels around them, in colors of neither.
+    fn is_halo(&self, (x, y): (usize, usize)) -> bool {
+        let (x, y) = (x as i32, y as i32);
+        let is_line = |x: i32, y: i32| self.read.lines.get(x, y).is_some_and(|line| line != NONE);
+        let is_nothing = |x: i32, y: i32| {
+            let is_inside = self.read.lines.get(x, y).is_some();
+            is_inside && self.source.pixel(self.rect.x0 + x, self.rect.y0 + y)[3] == 0
+        };
+        let around = |reach: i32| {
+            (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)))
+        };
+        around(1).any(|(x, y)| is_line(x, y))
+            && around(HALO_PX).any(|(x, y)| is_nothing(x, y))
+            // Not where a flat color ends beside a line.
+            && !around(1).any(|(x, y)| self.is_area(x, y))
+    }
+
+    /// Whether a pixel is of a flat color alone.
+    fn is_area(&self, x: i32, y: i32) -> bool {
+        let index = self.flat.get(x, y).unwrap_or(0);
+        index > 0 && index as usize - 1 == y as usize * self.flat.width() + x as usize
     }
 
     /// The flat color under a pixel of a line, and how much of the pixel the ink takes, of 255:

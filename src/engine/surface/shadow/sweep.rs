@@ -118,18 +118,13 @@ impl NearBand {
 
 /// Where what is hidden is put.
 trait Counts {
-    /// How much a ray counts that is hidden wholly.
-    const WHOLE: f32;
-
-    /// Adds counts to those of row `y` from column `x` on that lie in the picture.
-    fn add(&mut self, y: usize, x: i64, added: &[f32; GROUP]);
+    /// Adds shares to those of row `y` from column `x` on that lie in the picture.
+    fn add(&mut self, y: usize, x: i64, shares: &[f32; GROUP]);
 
     fn prefetch(&self, y: usize, columns: std::ops::Range<usize>);
 }
 
 impl Counts for Plane<u16> {
-    const WHOLE: f32 = WHOLE;
-
     #[inline(always)]
     fn add(&mut self, y: usize, x: i64, shares: &[f32; GROUP]) {
         let mut added = [0; GROUP];
@@ -146,8 +141,6 @@ impl Counts for Plane<u16> {
 }
 
 impl Counts for NearBand {
-    const WHOLE: f32 = Self::WHOLE;
-
     #[inline(always)]
     fn add(&mut self, y: usize, x: i64, shares: &[f32; GROUP]) {
         let (chunks, row) = (self.chunks(), y - self.rows.start);

@@ -69,6 +69,37 @@ fn nothing_of_the_ink_is_left_in_the_flats_and_its_borders_have_one_tone() {
 }
 
 #[test]
+fn bright_pixels_around_an_outline_are_of_its_ink() {
+    // As a sharp filter leaves them where it makes a drawing smaller.
+    let (smooth, mut rgba) = (drawn([30.0, 22.0, 28.0]), Vec::new());
+    let is_bright = |x: i32, y: i32| {
+        smooth.pixel(x, y)[3] == 0
+            && [(1, 0), (-1, 0), (0, 1), (0, -1)]
+                .iter()
+                .any(|(dx, dy)| smooth.pixel(x + dx, y + dy)[3] > 0)
+    };
+    for (y, x) in pixels((120, 120)) {
+        let (x, y) = (x as i32, y as i32);
+        let [r, g, b, a] = smooth.pixel(x, y).map(u32::from);
+        let straight = |c: u32| ((c * 255 + a / 2) / a.max(1)) as u8;
+        let pixel = [straight(r), straight(g), straight(b), a as u8];
+        rgba.extend(if is_bright(x, y) { [255; 4] } else { pixel });
+    }
+    let drawing = TileGrid::from_straight_rgba(&rgba, 120, 120, 0, 0);
+    let lifted = LiftedInk::of(&drawing);
+    let mut bright = 0;
+    for (x, y) in pixels((120, 120)) {
+        let (x, y) = (x as i32, y as i32);
+        if drawing.pixel(x, y) == [255; 4] {
+            bright += 1;
+            assert_eq!(lifted.flats.pixel(x, y), [0; 4], "{x} {y}: nothing is left to be lit");
+            assert_eq!(lifted.lines.pixel(x, y), [255; 4], "{x} {y}");
+        }
+    }
+    assert!(bright > 200, "{bright}");
+}
+
+#[test]
 fn a_drawing_without_lines_keeps_all_of_it() {
     let flat: Vec<u8> = (0..64 * 64)
         .flat_map(|i| if i % 64 < 30 { [9, 9, 9, 255] } else { [200, 90, 9, 255] })
