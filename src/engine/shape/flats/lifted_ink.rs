@@ -202,7 +202,7 @@ impl<'a> Lifting<'a> {
         let around = |reach: i32| {
             (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)))
         };
-        around(1).any(|(x, y)| is_line(x, y))
+        around(HALO_PX).any(|(x, y)| is_line(x, y))
             && around(HALO_PX).any(|(x, y)| is_nothing(x, y))
             // Not where a flat color ends beside a line.
             && !around(1).any(|(x, y)| self.is_area(x, y))

@@ -128,7 +128,7 @@ impl ContactShade {
         let rows =
             higher.values_mut().par_chunks_mut(width).zip(lower.values_mut().par_chunks_mut(width));
         rows.enumerate().for_each_init(
-            || ([const { Vec::new() }; 3].map(|_: Vec<f32>| vec![0.0; width]), Vec::new()),
+            || (std::array::from_fn(|_| vec![0.0; width]), Vec::new()),
             |([row, up, down], between), (y, (higher, lower))| {
                 up.fill(0.0);
                 page.row(y, down, between);
