@@ -55,7 +55,7 @@ impl PartMaterial {
     pub fn on(&self, document: &Document, part: Option<&str>) -> Result<(Document, LayerId)> {
         let lights = lights_of(document);
         let mut layer =
-            Layer::new(self.name.clone(), self.group(grained(document, part), &lights)?);
+            Layer::new(self.name.clone(), self.group(scale_grain(document, part), &lights)?);
         layer.mask = match part {
             Some(part) => Some(self.mask_of(document, part)?),
             None => document.selection_as_mask(),
@@ -119,7 +119,7 @@ impl PartMaterial {
 
 /// The canvas whose lengths a material takes on a part: grain is finer on small parts, by the root
 /// of their size, so that it is not coarse on them and yet is seen.
-fn grained(document: &Document, part: Option<&str>) -> Size {
+fn scale_grain(document: &Document, part: Option<&str>) -> Size {
     /// The side of a part with the lengths of the whole canvas, as a share of the canvas.
     const WHOLE: f32 = 0.92;
     /// The least share of the lengths.
@@ -228,13 +228,13 @@ mod tests {
     #[test]
     fn grain_is_finer_on_a_small_part() {
         let ball = PartMaterial::ball(Color::rgb(180, 120, 90)).unwrap();
-        let whole = grained(&ball, Some("ball"));
-        assert_eq!(whole, grained(&ball, None));
+        let whole = scale_grain(&ball, Some("ball"));
+        assert_eq!(whole, scale_grain(&ball, None));
         let part = (*ball.parts.list[0]).clone();
         let matrix = crate::math::Affine2::from_scale(crate::math::Vec2::splat(0.25));
         let small = Part { matrix: matrix * part.matrix, ..part };
         let small = ball.with_parts(vec![Arc::new(small)]);
-        let side = grained(&small, Some("ball")).longer_side();
+        let side = scale_grain(&small, Some("ball")).longer_side();
         assert!((side / whole.longer_side() - 0.5).abs() < 0.02, "{side}");
     }
 

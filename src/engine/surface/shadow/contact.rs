@@ -6,7 +6,7 @@
 //! the third size. Wide blurs are taken of smaller maps.
 
 use super::ShareMap;
-use super::heights::halved;
+use super::heights::halve;
 use crate::math::{Size, fast};
 use crate::raster::{Plane, blur};
 use crate::surface::Surface;
@@ -49,7 +49,7 @@ impl Blurred {
     /// Of a map that is `step` times as small as the whole one.
     fn of(map: &Plane<f32>, step: usize, sigma_px: f32, half: Size) -> Self {
         let blurred = blur::gaussian(map, sigma_px / step as f32);
-        let map = if step > 2 { enlarged(&blurred, step / 2, half) } else { blurred };
+        let map = if step > 2 { enlarge(&blurred, step / 2, half) } else { blurred };
         Self { sigma_px, is_half: step > 1, map }
     }
 
@@ -75,7 +75,7 @@ fn place(at: usize, step: usize, count: usize) -> (usize, usize, f32) {
 }
 
 /// A map `step` times as large, up to a size.
-fn enlarged(map: &Plane<f32>, step: usize, size: Size) -> Plane<f32> {
+fn enlarge(map: &Plane<f32>, step: usize, size: Size) -> Plane<f32> {
     let columns: Vec<(usize, usize, f32)> =
         (0..size.width as usize).map(|x| place(x, step, map.width())).collect();
     let (mut large, width) = (Plane::filled(size, 0.0), size.width.max(1) as usize);
@@ -106,7 +106,7 @@ impl ContactShade {
         let sigmas = SIZES.map(|share| (share * largest_px).max(0.5));
         let steps = sigmas.map(step_of);
         let page_of = || {
-            let page = halved_page(surface);
+            let page = halve_page(surface);
             let smaller = Halves::of(&page, steps[LARGE].max(2) / 2);
             Blurred::of(smaller.last(&page), steps[LARGE].max(2), sigmas[LARGE], page.size())
         };
@@ -159,7 +159,7 @@ impl Halves {
     fn of(map: &Plane<f32>, step: usize) -> Self {
         let mut halves: Vec<Plane<f32>> = Vec::new();
         for _ in 0..step.max(1).ilog2() {
-            halves.push(halved(halves.last().unwrap_or(map)));
+            halves.push(halve(halves.last().unwrap_or(map)));
         }
         Self(halves)
     }
@@ -175,7 +175,7 @@ impl Halves {
 }
 
 /// The share of the page in each two by two pixels.
-fn halved_page(surface: &Surface) -> Plane<f32> {
+fn halve_page(surface: &Surface) -> Plane<f32> {
     let coverage = surface.coverage_plane();
     let side = |n: usize| n.div_ceil(2).max(1) as u32;
     let mut page = Plane::filled(Size::new(side(coverage.width()), side(coverage.height())), 1.0);

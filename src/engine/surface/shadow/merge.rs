@@ -109,12 +109,12 @@ crate::widest! {
         }
         let mut sums = [[f32::from(bounds.0); HALF]; 2];
         if !is_even {
-            sums = merge.enlarged(merge.total, &shares, width);
+            sums = merge.enlarge(merge.total, &shares, width);
         }
         for (i, (near, rays)) in merge.near.iter().enumerate() {
             let Some(near) = near.chunk(merge.y, merge.chunk) else { continue };
             let far = match merge.far.groups.get(i) {
-                Some(far) if !is_even => merge.enlarged(far, &shares, width),
+                Some(far) if !is_even => merge.enlarge(far, &shares, width),
                 _ => [[0.0; HALF]; 2],
             };
             let (near, each) = (split_by_parity(near, 0, width), *rays as f32 * (WHOLE / NearBand::WHOLE));
@@ -159,7 +159,7 @@ impl Merge<'_> {
 
     /// Far counts of every pixel of the chunk, even and odd ones.
     #[inline(always)]
-    fn enlarged(
+    fn enlarge(
         &self,
         counts: &Plane<u16>,
         shares: &NeighborShares,
