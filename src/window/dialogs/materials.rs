@@ -51,7 +51,7 @@ impl Target {
 }
 
 /// A material on a part, or on all.
-type Given = (&'static str, Option<String>);
+type MaterialOn = (&'static str, Option<String>);
 
 pub struct MaterialsDialog {
     materials: Vec<PartMaterial>,
@@ -66,7 +66,7 @@ pub struct MaterialsDialog {
     /// Of which part, if any, the balls have the color.
     colored: Option<Option<String>>,
     /// What is shown.
-    shown: Option<Given>,
+    shown: Option<MaterialOn>,
     ctx: egui::Context,
 }
 
@@ -247,6 +247,6 @@ fn part_of(target: Target) -> Option<String> {
     }
 }
 
-fn give((key, part): &Given, done: bool) -> Action {
+fn give((key, part): &MaterialOn, done: bool) -> Action {
     Action::Layer(LayerAction::Material { name: (*key).to_owned(), part: part.clone(), done })
 }

@@ -187,7 +187,7 @@ impl Sweep<'_> {
         let mut kept = Kept::of(&lines, all);
         for line in self.strips(&lines, 0..self.heights.height()) {
             let rows = lines.rows_inside(line, 0..self.heights.height());
-            let run = Run { line, first: rows.start, rows };
+            let run = StripRun { line, first: rows.start, rows };
             match is_far {
                 true => add_far_strip(&lines, &run, &mut kept, counts),
                 false => add_whole_strip(&lines, &run, &mut kept, counts),
@@ -218,7 +218,7 @@ impl Sweep<'_> {
                     }
                 }
                 inside.start = end;
-                let run = Run { line, first, rows: first.saturating_sub(reach)..end };
+                let run = StripRun { line, first, rows: first.saturating_sub(reach)..end };
                 add_near_strip(&lines, &run, &mut kept, band);
             }
         }
@@ -289,7 +289,7 @@ impl Kept {
 }
 
 /// Rows of a strip.
-struct Run {
+struct StripRun {
     line: i64,
     rows: std::ops::Range<usize>,
     /// The first one whose pixels are counted; those before only hide.
@@ -356,7 +356,12 @@ impl ParallelLines<'_> {
 
     /// `FAR`: looks at a second window, which fades.
     #[inline(always)]
-    fn add_strip<const FAR: bool, C: Counts>(&self, run: &Run, kept: &mut Kept, counts: &mut C) {
+    fn add_strip<const FAR: bool, C: Counts>(
+        &self,
+        run: &StripRun,
+        kept: &mut Kept,
+        counts: &mut C,
+    ) {
         let width = self.heights.width() as i64;
         kept.near.leave();
         kept.far.iter_mut().for_each(SlidingKeys::leave);
@@ -484,17 +489,17 @@ fn add_counts(added: &[u16; GROUP], x: i64, counts: &mut [u16]) {
 
 crate::widest! {
     /// Adds how much the near part hides from the pixels between the lines of a strip.
-    fn add_near_strip(lines: &ParallelLines, run: &Run, kept: &mut Kept, band: &mut NearBand) {
+    fn add_near_strip(lines: &ParallelLines, run: &StripRun, kept: &mut Kept, band: &mut NearBand) {
         lines.add_strip::<false, NearBand>(run, kept, band);
     }
 
     /// The same of a ray that does not fade.
-    fn add_whole_strip(lines: &ParallelLines, run: &Run, kept: &mut Kept, counts: &mut Plane<u16>) {
+    fn add_whole_strip(lines: &ParallelLines, run: &StripRun, kept: &mut Kept, counts: &mut Plane<u16>) {
         lines.add_strip::<false, Plane<u16>>(run, kept, counts);
     }
 
     /// The same with a second window, which fades.
-    fn add_far_strip(lines: &ParallelLines, run: &Run, kept: &mut Kept, counts: &mut Plane<u16>) {
+    fn add_far_strip(lines: &ParallelLines, run: &StripRun, kept: &mut Kept, counts: &mut Plane<u16>) {
         lines.add_strip::<true, Plane<u16>>(run, kept, counts);
     }
 }
