@@ -142,11 +142,11 @@ impl Dialog {
         };
         match (&*self, &answer) {
             (Dialog::Adjust(adjust), DialogAnswer::Close) => adjust.forget(context.requests),
-            (Dialog::Materials(materials), DialogAnswer::Close) => materials.forget(context.requests),
+            (Dialog::Materials(materials), DialogAnswer::Close) => {
+                materials.forget(context.requests)
+            }
+            (Dialog::Filter(filter), DialogAnswer::Close) => filter.forget(context.requests),
             _ => {}
-        }
-        if let (Dialog::Filter(filter), DialogAnswer::Close) = (&*self, &answer) {
-            filter.forget(context.requests);
         }
         answer
     }

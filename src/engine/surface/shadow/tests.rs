@@ -153,6 +153,39 @@ fn a_flat_occluder_throws_its_umbra_to_the_pixel() {
 }
 
 #[test]
+fn a_lamp_nearby_throws_the_umbra_of_a_flat_occluder_to_the_pixel() {
+    let table = |x: f32, _: f32| if (40.0..100.0).contains(&x) { 60.0 } else { 0.0 };
+    let surface = surface_of(Size::new(420, 60), 60.0, table);
+    for at in [vec3(-60.0, 30.0, 40.0), vec3(20.0, 30.0, 60.0), vec3(-200.0, 50.0, 100.0)] {
+        let sharp = ShadowLamp { radius: 0.0, reach_px: 4000.0, ..lamp(LampPlace::At(at)) };
+        let end = crossing(&surface.shadow(&sharp, 1), 30, 105..415, 0.5);
+        // The line from the lamp over the table's last edge, half a pixel of which grows with it.
+        let grows = (at.z + 60.0) / at.z;
+        let exact = at.x - 0.5 + (99.5 - (at.x - 0.5)) * grows;
+        assert!((end - exact).abs() < 0.6 * grows, "{at}: {end}, not {exact}");
+    }
+}
+
+#[test]
+fn shadows_of_a_lamp_nearby_move_evenly_with_it() {
+    let surface = surface_of(SIZE, 100.0, ball);
+    let shadow = |degree: usize| {
+        let (sin, cos) = (2.0 * degree as f32).to_radians().sin_cos();
+        let at = vec3(110.0 - 150.0 * cos, 90.0 - 150.0 * sin, 110.0);
+        surface.shadow(&lamp(LampPlace::At(at)), 2)
+    };
+    let moved = |degree: usize| {
+        let (before, now) = (shadow(degree), shadow(degree + 1));
+        let pixels = (0..180).flat_map(|y| (0..220).map(move |x| (x, y)));
+        pixels.map(|(x, y)| (now.at(x, y) - before.at(x, y)).abs()).sum::<f32>()
+    };
+    let steps: Vec<f32> = (0..44).step_by(4).map(moved).collect();
+    let mean = steps.iter().sum::<f32>() / steps.len() as f32;
+    let most = steps.iter().copied().fold(0.0, f32::max);
+    assert!(most < 1.2 * mean, "{most} where {mean} is usual: {steps:?}");
+}
+
+#[test]
 fn a_penumbra_widens_in_proportion_to_the_distance() {
     // Tables of two heights: their shadows end at twice the distance.
     let width = |height: f32| {
