@@ -53,7 +53,7 @@ const LAYERS: [&str; 32] = [
 ];
 
 /// Commands that open a dialog, and the files that show what it offers.
-const DIALOGS: [(&str, &str); 14] = [
+const DIALOGS: [(&str, &str); 13] = [
     ("New…", "new"),
     ("Canvas size…", "canvas-size"),
     ("Image size…", "image-size"),
@@ -67,7 +67,6 @@ const DIALOGS: [(&str, &str); 14] = [
     ("Curves…", "curves"),
     ("Feather selection…", "feather"),
     ("Grid and snapping…", "grid"),
-    ("Keyboard shortcuts…", "shortcuts"),
 ];
 
 /// The text of a control: its role, its name, and what it holds. `None`: it only groups others.
