@@ -27,9 +27,9 @@ const NAME_PT: f32 = 30.0;
 
 /// What the screen begins with: a command, the card's name, what it does, its sign.
 const BEGINNINGS: [(&str, &str, &str, Icon); 3] = [
-    ("New…", "New picture", "An empty canvas to paint on", Icon::Add),
-    ("Open…", "Open a drawing", "Give it a shape, or only paint", Icon::Tool(ToolKind::Image)),
-    ("Open maps…", "Open normal maps", "A shape that was made elsewhere", Icon::Normals),
+    ("New…", "New picture", "An empty canvas", Icon::Add),
+    ("Open…", "Open a drawing", "To shape it, or to paint", Icon::Tool(ToolKind::Image)),
+    ("Open maps…", "Open normal maps", "A shape from elsewhere", Icon::Normals),
 ];
 
 /// What a card with a picture opens.
