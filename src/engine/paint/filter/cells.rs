@@ -212,7 +212,7 @@ impl FilterKernel for EdgeFilter {
                 let [a, b, c] = rows.map(|row| row.map(|p| p[k]));
                 let across = a[2] - a[0] + 2.0 * (b[2] - b[0]) + c[2] - c[0];
                 let down = c[0] - a[0] + 2.0 * (c[1] - a[1]) + c[2] - a[2];
-                let found = (across.hypot(down) * share).min(1.0);
+                let found = ((across * across + down * down).sqrt() * share).min(1.0);
                 if self.inverted { 1.0 - found } else { found }
             };
             under([edge(0), edge(1), edge(2)], rows[1][1][3])

@@ -6,7 +6,7 @@
 use super::blur::mixed;
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
-use crate::math::{Rect, Vec2, vec2};
+use crate::math::{Rect, Vec2, fast, vec2};
 use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
 use std::f32::consts::{PI, TAU};
 
@@ -129,7 +129,8 @@ impl FilterKernel for ZoomBlur {
             return source.window(place.out).cropped(place.out);
         };
         let window = rays.window(self, place, source);
-        let lines: Vec<RunningSums> = (0..rays.count).map(|j| rays.ray(&window, j)).collect();
+        let lines: Vec<RunningSums> =
+            rays.directions.iter().map(|along| rays.ray(&window, *along)).collect();
         place.map(|x, y| {
             let (r, u) = rays.place(x, y);
             let width = (share * r).max(1.0);
@@ -155,7 +156,8 @@ struct PolarPart {
     /// The angle between two rays, and that of the first one.
     step: f32,
     first: f32,
-    count: usize,
+    /// Unit, one for each ray.
+    directions: Vec<Vec2>,
     /// Angles are told from this one, within half a turn.
     middle: f32,
 }
@@ -187,6 +189,9 @@ impl PolarPart {
             }
         };
         let half = span + 0.5 * turn + 2.0 * step;
+        let first = ((middle - half) / step).floor() * step;
+        let count = (2.0 * half / step).ceil() as usize + 3;
+        let direction = |ray: usize| Vec2::from_angle(first + ray as f32 * step);
         Some(Self {
             center,
             rings: (
@@ -194,8 +199,8 @@ impl PolarPart {
                 (far * (1.0 + 0.5 * share)).ceil() as i32 + 1,
             ),
             step,
-            first: ((middle - half) / step).floor() * step,
-            count: (2.0 * half / step).ceil() as usize + 3,
+            first,
+            directions: (0..count).map(direction).collect(),
             middle,
         })
     }
@@ -212,19 +217,14 @@ impl PolarPart {
         source.window(if reads.is_empty() { place.out } else { reads })
     }
 
-    fn direction(&self, ray: usize) -> Vec2 {
-        Vec2::from_angle(self.first + ray as f32 * self.step)
-    }
-
     fn circle(&self, window: &FilterWindow, radius: f32) -> RunningSums {
-        RunningSums::of((0..self.count).map(|j| {
-            let at = self.center + radius * self.direction(j);
+        RunningSums::of(self.directions.iter().map(|direction| {
+            let at = self.center + radius * *direction;
             window.sample(at.x, at.y)
         }))
     }
 
-    fn ray(&self, window: &FilterWindow, ray: usize) -> RunningSums {
-        let along = self.direction(ray);
+    fn ray(&self, window: &FilterWindow, along: Vec2) -> RunningSums {
         RunningSums::of((self.rings.0..=self.rings.1).map(|radius| {
             let at = self.center + radius as f32 * along;
             window.sample(at.x, at.y)
@@ -234,7 +234,8 @@ impl PolarPart {
     /// The radius of a pixel's center, px, and its place among the rays.
     fn place(&self, x: i32, y: i32) -> (f32, f32) {
         let away = vec2(x as f32 + 0.5, y as f32 + 0.5) - self.center;
-        let angle = self.middle + turned_from(away.to_angle(), self.middle);
+        let angle = fast::atan2(away.y, away.x);
+        let angle = self.middle + turned_from(angle, self.middle);
         (away.length(), (angle - self.first) / self.step)
     }
 }

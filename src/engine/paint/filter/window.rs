@@ -109,9 +109,16 @@ impl FilterWindow {
         let (left, top) = (x.floor(), y.floor());
         let (fx, fy) = (x - left, y - top);
         let (i, j) = (left as i32, top as i32);
-        let (a, b) = (self.at(i, j), self.at(i.saturating_add(1), j));
-        let (c, d) =
-            (self.at(i, j.saturating_add(1)), self.at(i.saturating_add(1), j.saturating_add(1)));
+        let inside = Rect { x1: self.rect.x1 - 1, y1: self.rect.y1 - 1, ..self.rect };
+        let [a, b, c, d] = if inside.contains(i, j) {
+            let width = self.rect.width();
+            let first = (j - self.rect.y0) as usize * width + (i - self.rect.x0) as usize;
+            let (upper, lower) = (&self.pixels[first..], &self.pixels[first + width..]);
+            [upper[0], upper[1], lower[0], lower[1]]
+        } else {
+            let (right, below) = (i.saturating_add(1), j.saturating_add(1));
+            [self.at(i, j), self.at(right, j), self.at(i, below), self.at(right, below)]
+        };
         std::array::from_fn(|k| {
             let (up, down) = (a[k] + fx * (b[k] - a[k]), c[k] + fx * (d[k] - c[k]));
             up + fy * (down - up)
