@@ -147,7 +147,7 @@ impl Canvas {
 
     /// The canvas point at a point of the screen, also beneath a dialog; `None` beside the canvas's
     /// area, and where the surface is shown unwrapped.
-    pub fn canvas_at(&self, pos: Pos2) -> Option<Vec2> {
+    pub fn canvas_at(&self, pos: egui::Pos2) -> Option<Vec2> {
         let (_, placed) = self.shown_at.filter(|(area, _)| area.contains(pos))?;
         Some(placed.inverse().transform_point2(vec2(pos.x, pos.y)))
     }

@@ -103,8 +103,7 @@ impl MaterialsDialog {
         if let Some(error) = self.pictures.trouble.take() {
             requests.request(WindowRequest::Say(error.to_string()));
         }
-        let mut chosen = None;
-        self.hovered = None;
+        let (mut chosen, mut hovered) = (None, None);
         let height = ui.ctx().content_rect().height() * 0.6;
         ScrollArea::vertical().max_height(height).show(ui, |ui| {
             for row in self.materials.chunks(IN_A_ROW) {
@@ -114,12 +113,13 @@ impl MaterialsDialog {
                         if response.clicked() {
                             chosen = Some(material.key);
                         } else if response.hovered() {
-                            self.hovered = Some(material.key);
+                            hovered = Some(material.key);
                         }
                     }
                 });
             }
         });
+        self.hovered = hovered;
         match (chosen, self.target.clone()) {
             (Some(key), Target::Clicked) => self.held = Some(key),
             (Some(key), target) => {
