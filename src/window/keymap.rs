@@ -256,7 +256,7 @@ mod tests {
                 let name = keyed.name();
                 for one in &keys {
                     let other = keymap.conflict(*one, keyed).map(KeyTarget::name);
-                    assert_eq!(other, None, "{preset:?}: {} of {name}", written(*one));
+                    assert_eq!(other, None, "{preset:?}: {} of {name}", write_keys(*one));
                 }
                 let had = !keyed.default_keys().is_empty();
                 assert!(!had || !keys.is_empty(), "{preset:?}: {name} has no key");
