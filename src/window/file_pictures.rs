@@ -17,10 +17,13 @@ const MOST: usize = 400;
 /// Larger files show no picture: opening one would take too long.
 const LARGEST_BYTES: u64 = 256 << 20;
 
+/// A file, and its picture if it has one.
+type FilePicture = (PathBuf, Option<ColorImage>);
+
 /// The pictures that are made, and the thread that makes them.
 #[derive(Default)]
 pub struct FilePictures {
-    thread: Option<(Sender<PathBuf>, Receiver<(PathBuf, Option<ColorImage>)>)>,
+    thread: Option<(Sender<PathBuf>, Receiver<FilePicture>)>,
     /// `None` for a file whose picture is awaited, or that has none.
     made: HashMap<PathBuf, Option<TextureHandle>>,
 }
@@ -74,7 +77,7 @@ impl FilePictures {
 /// The thread: until nobody asks any more.
 fn make_all(
     coming: &Receiver<PathBuf>,
-    finished: &Sender<(PathBuf, Option<ColorImage>)>,
+    finished: &Sender<FilePicture>,
     waker: &Context,
 ) {
     let mut waiting = Vec::new();

@@ -47,8 +47,9 @@ impl FollowedTile {
                 let rays = RayRow::new(&row, refractive_index(shading));
                 let met = rays.see(shading, &row, &environment_light, &mut light);
                 let place = tile.place(from, y as i32);
-                for x in 0..width {
-                    tile.light[place + x] = vec3(light[0][x], light[1][x], light[2][x]);
+                let [red, green, blue] = &light;
+                for (x, texel) in tile.light[place..place + width].iter_mut().enumerate() {
+                    *texel = vec3(red[x], green[x], blue[x]);
                     tile.is_met[place + x] = met >> x & 1 == 1;
                 }
             }
@@ -62,9 +63,11 @@ impl FollowedTile {
 
     /// The light of a row of the tile.
     pub fn read(&self, surface_row: &SurfaceRow, light: &mut Light3) {
-        for x in 0..surface_row.width {
+        let [red, green, blue] = light;
+        let texels = red.iter_mut().zip(green).zip(blue).take(surface_row.width);
+        for (x, ((red, green), blue)) in texels.enumerate() {
             let at = (surface_row.x0 + x, surface_row.y);
-            (light[0][x], light[1][x], light[2][x]) = self.at(surface_row.surface, at).into();
+            (*red, *green, *blue) = self.at(surface_row.surface, at).into();
         }
     }
 
