@@ -75,11 +75,7 @@ impl FilePictures {
 }
 
 /// The thread: until nobody asks any more.
-fn make_all(
-    coming: &Receiver<PathBuf>,
-    finished: &Sender<FilePicture>,
-    waker: &Context,
-) {
+fn make_all(coming: &Receiver<PathBuf>, finished: &Sender<FilePicture>, waker: &Context) {
     let mut waiting = Vec::new();
     loop {
         if waiting.is_empty() {
