@@ -86,7 +86,8 @@ impl SurfaceSteps {
             if linked.clamped(x, y) & bit == 0 {
                 return f32::INFINITY;
             }
-            1f32.hypot((depth.clamped(x, y) - depth.clamped(i, j)) * range)
+            let deeper = (depth.clamped(x, y) - depth.clamped(i, j)) * range;
+            (1.0 + deeper * deeper).sqrt()
         };
         let places = || (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
         let across = places().map(|(x, y)| step(x, y, (1, 0), links::LEFT)).collect();
