@@ -185,11 +185,9 @@ impl Composer<'_> {
         {
             let far = FarTile::new(at, contours);
             let other = composed(Some(far));
-            match mask::clip(node) {
-                // The surface cuts what is shown, so that all of a rim's pixel is the surface's
-                // here.
-                Some(_) => far.take_surface_into(&other, &mut pixels),
-                None => far.mix_into(&other, &mut pixels, 1.0),
+            match node.warp.as_ref().is_some_and(|warp| warp.is_cut) {
+                true => far.take_surface_into(&other, &mut pixels),
+                false => far.mix_into(&other, &mut pixels, 1.0),
             }
         }
         match node.has_16_bit_paint(at) {

@@ -86,10 +86,23 @@ fn flatten_in_floats(
 /// with 16 bits where it is soft ([`PlanarTile::to_tile_over`]), and where placed pictures of more than 8
 /// are seen. `None` if canceled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
-    let prepared = PreparedDocument::new(document, progress)?;
+    prepared_to_paint(&PreparedDocument::new(document, progress)?, document, progress)
+}
+
+/// The same for what will be clipped to the surface: layers that are displaced show there what they
+/// show when they are clipped themselves.
+pub fn flatten_to_be_clipped(document: &Document, progress: &Progress) -> Option<TileGrid> {
+    prepared_to_paint(&PreparedDocument::to_be_clipped(document, progress)?, document, progress)
+}
+
+fn prepared_to_paint(
+    prepared: &PreparedDocument,
+    document: &Document,
+    progress: &Progress,
+) -> Option<TileGrid> {
     // Tiles that are not soft are composed of bytes.
     prepared.filter_tiles(&prepared.all_tiles(), progress)?;
-    flatten_in_floats(&prepared, document, progress, |at, floats| prepared.paint_tile(at, floats))
+    flatten_in_floats(prepared, document, progress, |at, floats| prepared.paint_tile(at, floats))
 }
 
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of

@@ -103,9 +103,14 @@ pub(super) fn is_whole_on_far_side(node: &PreparedLayer, far: &FarTile) -> bool 
 /// themselves clipped; clipping twice would thin their rims. An adjustment changes only what is
 /// painted already.
 pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
-    let paints = matches!(node.layer.content.role(), Role::Paints | Role::Shapes(_));
-    let clips = node.layer.clip_to_surface && !node.layer.content.is_shown_off_surface();
-    node.scene.surface.as_deref().filter(|_| paints && clips)
+    let clips = node.layer.clip_to_surface && is_cuttable(&node.layer);
+    node.scene.surface.as_deref().filter(|_| clips)
+}
+
+/// Whether the surface cuts what a layer shows, if that is to be clipped.
+pub(super) fn is_cuttable(layer: &Layer) -> bool {
+    let paints = matches!(layer.content.role(), Role::Paints | Role::Shapes(_));
+    paints && !layer.content.is_shown_off_surface()
 }
 
 /// How much of a tile a surface covers.

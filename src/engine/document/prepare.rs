@@ -8,7 +8,7 @@ use super::layer::on_canvas::on_canvas;
 use super::layer::warp::WarpTiles;
 use super::{
     Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerWarp, Progress, Role,
-    normals,
+    mask, normals,
 };
 use crate::math::Size;
 use crate::paint::{EffectLight, Scene};
@@ -82,8 +82,17 @@ impl AdjustmentLayer {
 impl PreparedDocument {
     /// Resolves the layers and measures what adjustments refer to; `None` if canceled meanwhile.
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
+        Self::with_cut(document, false, progress)
+    }
+
+    /// The same for what will be clipped to the surface later.
+    pub(super) fn to_be_clipped(document: &Document, progress: &Progress) -> Option<Self> {
+        Self::with_cut(document, true, progress)
+    }
+
+    fn with_cut(document: &Document, will_be_cut: bool, progress: &Progress) -> Option<Self> {
         let light = document.effect_light;
-        let mut builder = StackBuilder { adjustments: Vec::new(), light, progress };
+        let mut builder = StackBuilder { adjustments: Vec::new(), light, will_be_cut, progress };
         let scope = Scope { beneath: Beneath::NOTHING, map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
@@ -152,6 +161,8 @@ struct StackBuilder<'a> {
     adjustments: Vec<AdjustmentLayer>,
     /// Of effects without a light of their own.
     light: EffectLight,
+    /// The surface will cut what is composed.
+    will_be_cut: bool,
     progress: &'a Progress,
 }
 
@@ -241,7 +252,10 @@ impl StackBuilder<'_> {
             far_curvature: far.as_ref().and_then(curvature_on),
             far,
             warp: warp.map(|warp| {
-                layer.cache.warped.tiles(&visible_scene, &layer.content, &within.map, warp)
+                let shown = (&layer.content, &within.map);
+                let is_cut =
+                    (self.will_be_cut || layer.clip_to_surface) && mask::is_cuttable(layer);
+                layer.cache.warped.tiles(&visible_scene, shown, warp, is_cut)
             }),
             effects,
             layer: layer.clone(),

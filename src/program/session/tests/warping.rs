@@ -54,6 +54,32 @@ fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
     assert!(picture(&session) != once);
 }
 
+/// A ramp on a ball, pushed over its rim, which nothing has shown yet.
+fn ramp_on_a_ball() -> Session {
+    let ball = r#"
+{"in":"part","do":"set","part":{"id":"part-1","kind":"primitive","shape":"sphere","center":[70,70],"size":[90,80]},"done":true}
+{"in":"pointer","do":"press","tool":"gradient","pen":[20,30],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[60,60],[120,110]]}
+{"in":"pointer","do":"release"}
+{"in":"layer","do":"select","layer":"1"}"#;
+    let push =
+        PUSH.replace("[60,70]", "[90,70]").replace("[[70,72],[85,75]]", "[[110,80],[125,75]]");
+    replay(&format!("{PAPER}{ball}{push}"))
+}
+
+#[test]
+fn an_applied_displacement_cuts_a_rim_as_it_was_cut_whether_it_was_shown_or_not() {
+    const APPLY: &str = r#"{"in":"layer","do":"apply transform","layer":"1"}"#;
+    let shown = picture(&ramp_on_a_ball());
+    let mut session = ramp_on_a_ball();
+    assert!(layer(&session).is_warped() && layer(&session).clip_to_surface);
+    story(&mut session, APPLY);
+    assert!(!layer(&session).is_warped());
+    assert!(picture(&session) == shown, "applied, it looks as it did");
+    story(&mut session, UNDO);
+    assert!(picture(&session) == shown, "what was composed to be applied is no other picture");
+}
+
 #[test]
 fn removed_liquify_leaves_the_layer_as_it_was() {
     let mut session =

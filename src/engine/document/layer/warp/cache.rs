@@ -35,6 +35,8 @@ impl Cells {
 /// The tiles of a warped layer, computed when needed.
 pub struct WarpTiles {
     pub warp: LayerWarp,
+    /// The surface cuts what is shown, or will: all of a rim's pixel is the surface's.
+    pub is_cut: bool,
     canvas: Rect,
     /// As it is composed, undisplaced.
     source: Arc<Cells>,
@@ -94,19 +96,22 @@ struct Entry {
 impl WarpCache {
     /// The tiles of a layer that shows `content` on a scene. What was composed of the same content
     /// is kept; what it shows is kept too, where its displacement did not change.
+    ///
+    /// * `is_cut`: as [`WarpTiles::is_cut`].
     pub fn tiles(
         &self,
         scene: &Scene,
-        content: &Content,
-        map: &LayerMap,
+        (content, map): (&Content, &LayerMap),
         warp: LayerWarp,
+        is_cut: bool,
     ) -> Arc<WarpTiles> {
         let canvas = scene.size.rect();
         // The lock is not held while tiles are compared.
         let known = {
             let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
             let same = last.as_ref().filter(|entry| {
-                entry.scene.is_same(scene) && entry.map == *map && is_same(&entry.content, content)
+                let is_alike = entry.map == *map && entry.tiles.is_cut == is_cut;
+                is_alike && entry.scene.is_same(scene) && is_same(&entry.content, content)
             });
             same.map(|entry| entry.tiles.clone())
         };
@@ -125,10 +130,11 @@ impl WarpCache {
                         }
                     }
                 }
-                WarpTiles { warp, canvas, source: known.source.clone(), shown }
+                WarpTiles { warp, is_cut, canvas, source: known.source.clone(), shown }
             }
             None => WarpTiles {
                 warp,
+                is_cut,
                 canvas,
                 source: Arc::new(Cells::new(canvas)),
                 shown: Cells::new(canvas),

@@ -3,7 +3,8 @@
 
 use super::{LayerAction, sibling};
 use crate::document::{
-    Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten_to_paint,
+    Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten_to_be_clipped,
+    flatten_to_paint,
 };
 use crate::io::Budget;
 use crate::raster::TileGrid;
@@ -90,7 +91,9 @@ pub(super) fn bake(document: &Document, layer: &Layer, progress: &Progress) -> O
         (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) =
             (1.0, None, Default::default(), false);
     })?;
-    let tiles = flatten_to_paint(&bare.with_only(&[layer.id])?, progress)?;
+    // The surface cuts it as it cut the layer.
+    let flatten = if layer.clip_to_surface { flatten_to_be_clipped } else { flatten_to_paint };
+    let tiles = flatten(&bare.with_only(&[layer.id])?, progress)?;
     // What was drawn lies on the canvas; the layer's attachment carries it from there.
     let transform = document.transform_to_canvas(layer.id)?;
     document.with_layer(layer.id, |layer| {
