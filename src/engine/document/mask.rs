@@ -108,7 +108,7 @@ pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
 }
 
 /// Whether the surface cuts what a layer shows, if that is to be clipped.
-pub(super) fn is_cuttable(layer: &Layer) -> bool {
+pub(super) fn is_cuttable(layer: &super::Layer) -> bool {
     let paints = matches!(layer.content.role(), Role::Paints | Role::Shapes(_));
     paints && !layer.content.is_shown_off_surface()
 }
