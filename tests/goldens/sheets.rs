@@ -1,5 +1,5 @@
 //! Sheets of many small pictures: every brush as each operator bends it, what drives a brush, ramps,
-//! blend modes of 16 bits, adjustments, balls, regions of the surface and stabilizers. Cells of a
+//! blend modes of 16 bits, adjustments, filters, balls, regions of the surface and stabilizers. Cells of a
 //! sheet are 64 px wide, in the order of the tables that they are made from.
 
 use super::cases::{Case, ROUNDED, as_image, read};
@@ -35,6 +35,7 @@ pub fn all() -> Vec<Case> {
     all.extend(cells("ramps", ramps()));
     all.extend(cells("blend-16-bit", BlendMode::ALL.iter().map(|(_, mode)| blend(mode))));
     all.extend(cells("adjustments", adjustments()));
+    all.extend(cells("filters", filters()));
     all.extend(cells("balls", recipe::PaintedBall::all().flat_map(balls)));
     all.extend(cells("regions", regions()));
     all.extend(cells("stabilizers", stabilizers()));
@@ -287,6 +288,69 @@ fn adjustments() -> Vec<(String, Make)> {
             { "kind": "adjustment", "adjust": adjust },
         ]);
         (adjust.to_string(), layers(None, picture))
+    };
+    table.into_iter().map(cell).collect()
+}
+
+/// Each filter, and those that the surface leads, over a square of two colors before a gradient.
+fn filters() -> Vec<(String, Make)> {
+    let table = [
+        json!({ "kind": "gaussian-blur", "radius": 2 }),
+        json!({ "kind": "gaussian-blur", "radius": 7 }),
+        json!({ "kind": "box-blur", "radius": 4.5 }),
+        json!({ "kind": "motion-blur", "angle": 30, "length": 24 }),
+        json!({ "kind": "motion-blur", "angle": -75, "length": 16 }),
+        json!({ "kind": "spin-blur", "angle": 40 }),
+        json!({ "kind": "zoom-blur", "amount": 40, "x": 20 }),
+        json!({ "kind": "lens-blur", "radius": 5, "by_depth": false, "highlights": 200 }),
+        json!({ "kind": "lens-blur", "radius": 9, "focus": 10 }),
+        json!({ "kind": "surface-blur", "radius": 6 }),
+        json!({ "kind": "flow-blur", "length": 24 }),
+        json!({ "kind": "flow-blur", "length": 24, "across": true }),
+        json!({ "kind": "sharpen", "amount": 150 }),
+        json!({ "kind": "unsharp-mask", "amount": 150, "radius": 3 }),
+        json!({ "kind": "unsharp-mask", "amount": 150, "radius": 3, "stop_at_contours": true }),
+        json!({ "kind": "high-pass", "radius": 4 }),
+        json!({ "kind": "noise", "amount": 30 }),
+        json!({ "kind": "noise", "amount": 30, "size": 3, "gaussian": true, "monochrome": true }),
+        json!({ "kind": "grain", "amount": 80, "size": 6 }),
+        json!({ "kind": "grain", "amount": 80, "size": 6, "on_surface": true, "monochrome": false }),
+        json!({ "kind": "median", "radius": 3 }),
+        json!({ "kind": "glow", "amount": 120, "radius": 6 }),
+        json!({ "kind": "pixelate", "size": 7 }),
+        json!({ "kind": "edges" }),
+        json!({ "kind": "edges", "colored": false, "inverted": true }),
+        json!({ "kind": "offset", "right": 30 }),
+    ];
+    let cell = |filter: Value| {
+        let stripes = json!([
+            [0, "#203050"],
+            [0.3, "#203050"],
+            [0.31, "#f0d080"],
+            [0.45, "#f0d080"],
+            [0.46, "#803020"],
+            [0.7, "#d0f0ff"],
+            [1, "#ffffff"]
+        ]);
+        let across = json!([
+            [0.3, "#50c04000"],
+            [0.31, "#50c040"],
+            [0.42, "#50c040"],
+            [0.43, "#50c04000"],
+            [0.7, "#10101000"],
+            [0.71, "#101010"],
+            [0.76, "#101010"],
+            [0.77, "#10101000"]
+        ]);
+        let picture = json!([
+            { "kind": "gradient", "from": [10, 10], "to": [70, 60], "stops": stripes,
+                "clip_to_surface": false },
+            { "kind": "gradient", "from": [66, 6], "to": [12, 66], "stops": across,
+                "clip_to_surface": false },
+            { "kind": "shading", "model": "toon", "opacity": 0.4 },
+            { "kind": "filter", "filter": filter },
+        ]);
+        (filter.to_string(), layers(Some(Shape::BallAndWall), picture))
     };
     table.into_iter().map(cell).collect()
 }
