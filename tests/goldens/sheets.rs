@@ -1,6 +1,6 @@
 //! Sheets of many small pictures: every brush as each operator bends it, what drives a brush, ramps,
-//! blend modes of 16 bits, adjustments, filters, balls, regions of the surface and stabilizers. Cells of a
-//! sheet are 64 px wide, in the order of the tables that they are made from.
+//! blend modes of 16 bits, adjustments, filters, effects, balls, regions of the surface and
+//! stabilizers. Cells of a sheet are 64 px wide, in the order of the tables that they are made from.
 
 use super::cases::{Case, ROUNDED, as_image, read};
 use super::compare::Place;
@@ -36,6 +36,7 @@ pub fn all() -> Vec<Case> {
     all.extend(cells("blend-16-bit", BlendMode::ALL.iter().map(|(_, mode)| blend(mode))));
     all.extend(cells("adjustments", adjustments()));
     all.extend(cells("filters", filters()));
+    all.extend(cells("effects", effects()));
     all.extend(cells("balls", recipe::PaintedBall::all().flat_map(balls)));
     all.extend(cells("regions", regions()));
     all.extend(cells("stabilizers", stabilizers()));
@@ -230,6 +231,48 @@ fn blend(mode: &str) -> (String, Make) {
         })
     };
     (mode.to_owned(), Box::new(make))
+}
+
+/// Each effect of a layer, and some of one together, on a stroke and a bar.
+fn effects() -> Vec<(String, Make)> {
+    let line = |samples: Vec<[f32; 6]>| json!({ "brush": { "size": 16, "hardness": 1 },
+        "color": "#b04030", "samples": samples });
+    let bar = (0..=6).map(|i| [20.0, 14.0 + 6.0 * i as f32, 1.0, 0.0, 0.0, 0.1]).collect();
+    let strokes = json!([line(pen()), line(bar)]);
+    let with = |effects: Value| {
+        let drawn = json!({ "kind": "strokes", "strokes": strokes, "effects": effects });
+        layers(None, json!([paper(), drawn]))
+    };
+    let stops = json!([[0, "#202040"], [0.5, "#f0c040"], [1, "#f8f8f0"]]);
+    let rows = [
+        ("drop-shadow", json!({ "size": 8, "distance": 7 })),
+        ("outer-glow", json!({ "size": 10, "color": "#40c0ff", "blend": "normal" })),
+        ("pattern-overlay", json!({ "pattern": { "width": 2, "height": 1,
+            "pixels": "/wAA/wAA//8=" }, "scale": 3 })),
+        ("gradient-overlay", json!({ "stops": stops, "angle": 30 })),
+        ("color-overlay", json!({ "color": "#3060d0", "blend": "screen" })),
+        ("satin", json!({ "distance": 4, "size": 7 })),
+        ("inner-glow", json!({ "size": 8 })),
+        ("inner-shadow", json!({ "size": 6, "distance": 4 })),
+        ("stroke", json!({ "size": 3, "fill": "gradient", "stops": stops })),
+        ("bevel", json!({ "size": 8, "depth": 2 })),
+    ];
+    let named = |(kind, fields): (&str, Value)| {
+        let mut effect = fields;
+        effect["kind"] = kind.into();
+        effect
+    };
+    let all: Vec<Value> = rows.iter().cloned().map(named).collect();
+    let chisel = json!({ "kind": "bevel", "technique": "chisel", "bevel": "emboss", "size": 10 });
+    let together = json!([all[9], all[8], all[7], all[0]]);
+    let mut made: Vec<(String, Make)> = rows
+        .iter()
+        .zip(&all)
+        .map(|((kind, _), effect)| ((*kind).to_owned(), with(json!([effect]))))
+        .collect();
+    made.push(("bevel-chisel".to_owned(), with(json!([chisel]))));
+    made.push(("together".to_owned(), with(together)));
+    made
 }
 
 /// Each adjustment, a little and much, over hues and grays.
