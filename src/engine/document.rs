@@ -49,8 +49,8 @@ pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::singles::SingleLayers;
 pub use flatten::{
-    flatten, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_floats,
-    flatten_to_be_clipped, flatten_to_paint, flatten_whole,
+    flatten, flatten_layer, flatten_layers, flatten_rounding_once, flatten_to_be_clipped,
+    flatten_to_floats, flatten_to_paint, flatten_whole,
 };
 pub use floats::Highlights;
 pub use frame_box::FrameBox;

@@ -96,6 +96,12 @@ pub struct Layer {
 }
 
 impl Layer {
+    /// Whether the surface cuts what the layer shows, if it is to be clipped.
+    pub(in crate::document) fn can_be_cut(&self) -> bool {
+        let paints = matches!(self.content.role(), Role::Paints | Role::Shapes(_));
+        paints && !self.content.is_shown_off_surface()
+    }
+
     /// Whether another layer lies in it, at any depth.
     pub(in crate::document) fn has_layer_within(&self, id: LayerId) -> bool {
         let is_it = |layer: &Arc<Layer>| layer.id == id || layer.has_layer_within(id);

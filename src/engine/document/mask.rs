@@ -4,7 +4,7 @@
 use super::far_side::FarTile;
 use super::layer::mask::tile_pixels;
 use super::prepare::PreparedLayer;
-use super::{DerivedMask, MaskKind, Role};
+use super::{DerivedMask, MaskKind};
 use crate::raster::{TileAt, TileCoverage};
 use crate::surface::{ContourPixel, Surface};
 
@@ -103,14 +103,8 @@ pub(super) fn is_whole_on_far_side(node: &PreparedLayer, far: &FarTile) -> bool 
 /// themselves clipped; clipping twice would thin their rims. An adjustment changes only what is
 /// painted already.
 pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
-    let clips = node.layer.clip_to_surface && is_cuttable(&node.layer);
+    let clips = node.layer.clip_to_surface && node.layer.can_be_cut();
     node.scene.surface.as_deref().filter(|_| clips)
-}
-
-/// Whether the surface cuts what a layer shows, if that is to be clipped.
-pub(super) fn is_cuttable(layer: &super::Layer) -> bool {
-    let paints = matches!(layer.content.role(), Role::Paints | Role::Shapes(_));
-    paints && !layer.content.is_shown_off_surface()
 }
 
 /// How much of a tile a surface covers.

@@ -8,7 +8,7 @@ use super::layer::on_canvas::on_canvas;
 use super::layer::warp::WarpTiles;
 use super::{
     Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerWarp, Progress, Role,
-    mask, normals,
+    normals,
 };
 use crate::math::Size;
 use crate::paint::{EffectLight, Scene};
@@ -253,8 +253,7 @@ impl StackBuilder<'_> {
             far,
             warp: warp.map(|warp| {
                 let shown = (&layer.content, &within.map);
-                let is_cut =
-                    (self.will_be_cut || layer.clip_to_surface) && mask::is_cuttable(layer);
+                let is_cut = (self.will_be_cut || layer.clip_to_surface) && layer.can_be_cut();
                 layer.cache.warped.tiles(&visible_scene, shown, warp, is_cut)
             }),
             effects,

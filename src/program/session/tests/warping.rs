@@ -56,15 +56,17 @@ fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
 
 /// A ramp on a ball, pushed over its rim, which nothing has shown yet.
 fn ramp_on_a_ball() -> Session {
-    let ball = r#"
-{"in":"part","do":"set","part":{"id":"part-1","kind":"primitive","shape":"sphere","center":[70,70],"size":[90,80]},"done":true}
+    let part =
+        r#"{"id":"part-1","kind":"primitive","shape":"sphere","center":[70,70],"size":[90,80]}"#;
+    let part = format!(r#"{{"in":"part","do":"set","part":{part},"done":true}}"#);
+    let ramp = r#"
 {"in":"pointer","do":"press","tool":"gradient","pen":[20,30],"px_per_pt":1}
 {"in":"pointer","do":"drag","pens":[[60,60],[120,110]]}
 {"in":"pointer","do":"release"}
 {"in":"layer","do":"select","layer":"1"}"#;
     let push =
         PUSH.replace("[60,70]", "[90,70]").replace("[[70,72],[85,75]]", "[[110,80],[125,75]]");
-    replay(&format!("{PAPER}{ball}{push}"))
+    replay(&format!("{PAPER}\n{part}{ramp}{push}"))
 }
 
 #[test]
