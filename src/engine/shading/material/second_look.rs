@@ -119,4 +119,4 @@ fn onto_plane(step: Vec3, n: Vec3, r: Vec3, grazing: f32) -> Vec3 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -8,7 +8,8 @@ use crate::surface::{Maps, Scene};
 
 const SIZE: Size = Size::new(128, 100);
 /// Two balls side by side: middle, camera space from the picture's middle (y up), and radius, px.
-const PAIR: [(Vec3, f32); 2] = [(vec3(-31.0, 2.0, 0.0), 29.0), (vec3(31.0, -2.0, 3.0), 28.0)];
+pub(in crate::shading::material) const PAIR: [(Vec3, f32); 2] =
+    [(vec3(-31.0, 2.0, 0.0), 29.0), (vec3(31.0, -2.0, 3.0), 28.0)];
 
 /// What a ray meets first: the place and the normal.
 fn cast(balls: &[(Vec3, f32)], from: Vec3, toward: Vec3) -> Option<(Vec3, Vec3)> {
@@ -28,7 +29,7 @@ fn shown(balls: &[(Vec3, f32)], x: usize, y: usize) -> Option<(Vec3, Vec3)> {
     cast(balls, vec3(at.x, -at.y, 400.0), Vec3::NEG_Z)
 }
 
-fn scene(balls: &[(Vec3, f32)]) -> Scene {
+pub(in crate::shading::material) fn scene(balls: &[(Vec3, f32)]) -> Scene {
     let maps = Maps {
         normals: Plane::from_fn(SIZE, |x, y| shown(balls, x, y).map_or(Vec3::ZERO, |s| s.1)),
         depth: Plane::from_fn(SIZE, |x, y| {
