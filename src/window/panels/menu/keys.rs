@@ -72,8 +72,9 @@ impl MenuKeys {
             !matches!(event, Event::ModifiersChanged(_))
                 && !matches!(event, Event::Key { pressed: false, .. })
         };
+        // As they came: a key that was used is no longer among the events.
         let (held, now_secs, is_disturbed) = ctx.input(|input| {
-            let is_disturbed = input.events.iter().any(is_other) || input.pointer.any_down();
+            let is_disturbed = input.raw.events.iter().any(is_other) || input.pointer.any_down();
             (input.modifiers, input.time, is_disturbed)
         });
         if is_disturbed {
