@@ -40,6 +40,8 @@ fn layers_are_merged_baked_and_flattened_beside_the_window() {
 fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
     let mut harness = window();
     press(&mut harness, "Properties");
+    harness.get_by_label("Hide all").scroll_to_me();
+    steps(&mut harness);
     press(&mut harness, "Hide all");
     let masked = |harness: &Story| session(harness).layer().unwrap().mask.clone();
     let coverage = |harness: &Story| match masked(harness).unwrap().kind {

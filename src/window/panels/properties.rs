@@ -94,10 +94,10 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
     if let Some(document) = session.shown_document() {
         attachment(ui, document, layer, &mut setter);
     }
+    common(ui, layer, has_surface, on_mask, &mut setter);
     if let Some(document) = session.shown_document() {
         effects::show(ui, document, layer, &mut setter);
     }
-    common(ui, layer, has_surface, on_mask, &mut setter);
 }
 
 /// The tones beneath an adjustment, counted again when other layers change.

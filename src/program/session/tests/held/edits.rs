@@ -9,6 +9,9 @@ pub const NUMBERS: [f32; 22] = [
 pub const PROPERTIES: &[&str] = &[
     r#"{"do":"mask","mask":{"kind":"shine","at":[5,#],"tolerance":#,"softness":#,"contiguous":false}}"#,
     r#"{"do":"opacity","to":#}"#,
+    r#"{"do":"fill opacity","to":#}"#,
+    r##"{"do":"effects","effects":[{"kind":"drop-shadow","size":#,"distance":#,"angle":#,"color":"#102030"},
+        {"kind":"stroke","size":#,"opacity":#},{"kind":"bevel","size":#,"depth":#}]}"##,
     r#"{"do":"linear","on":true}"#,
     r#"{"do":"clip","on":true}"#,
     r#"{"do":"clip to surface","on":false}"#,
