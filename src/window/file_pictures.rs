@@ -113,7 +113,7 @@ mod tests {
         let (letter, recipe) = (folder.path().join("a.txt"), folder.path().join("b.json"));
         std::fs::write(&letter, "Dear reader").unwrap();
         let fill = r##"{"format":"rilievo","version":1,"canvas":{"width":40,"height":20},
-            "layers":[{"type":"fill","name":"f","color":"#336699"}]}"##;
+            "layers":[{"kind":"fill","name":"f","color":"#336699"}]}"##;
         std::fs::write(&recipe, fill).unwrap();
         let (ctx, mut pictures) = (Context::default(), FilePictures::default());
         let began = Instant::now();

@@ -76,7 +76,7 @@ fn a_typed_folder_is_listed_and_marked_and_the_arrows_choose_a_file() {
     let deep = folder.path().join("deep");
     std::fs::create_dir(&deep).unwrap();
     let fill = r##"{"format":"rilievo","version":1,"canvas":{"width":40,"height":20},
-        "layers":[{"type":"fill","name":"only","color":"#336699"}]}"##;
+        "layers":[{"kind":"fill","name":"only","color":"#336699"}]}"##;
     for name in ["one.json", "two.json"] {
         std::fs::write(deep.join(name), fill).unwrap();
     }

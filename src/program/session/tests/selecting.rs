@@ -53,7 +53,8 @@ fn fills_gradients_erasers_and_retouching_keep_to_the_selection() {
 {\"in\":\"pointer\",\"do\":\"release\"}";
     story(&mut session, erase);
     assert_eq!([65, 75, 105, 115].map(|x| red(&session, x, 75)), [true, false, false, true]);
-    let gradient = "{\"in\":\"hand\",\"do\":\"second color\",\"color\":\"#c02010\"}
+    let gradient = "{\"in\":\"hand\",\"do\":\"live gradients\",\"on\":true}
+{\"in\":\"hand\",\"do\":\"second color\",\"color\":\"#c02010\"}
 {\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"gradient\",\"pen\":[0,75],\"px_per_pt\":1}
 {\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[40,75]]}
 {\"in\":\"pointer\",\"do\":\"release\"}";

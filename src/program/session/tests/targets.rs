@@ -44,6 +44,7 @@ fn selected(session: &Session) -> Vec<String> {
 #[test]
 fn after_an_undone_gradient_the_next_stroke_goes_where_the_last_one_would_have() {
     let mut session = two_layers();
+    act(&mut session, r#"{"in":"hand","do":"live gradients","on":true}"#);
     for step in [&drawn_with("gradient"), r#"{"in":"layer","do":"add","kind":"group"}"#] {
         act(&mut session, step);
         let made = selected(&session);
