@@ -394,7 +394,7 @@ mod tests {
         for (look, name) in Look::ALL {
             let ctx = egui::Context::default();
             look.show(&ctx);
-            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
                 outline(ui);
                 let shown = ui.visuals().widgets.inactive.bg_stroke.color;
                 assert_eq!(shown, Color32::from_gray(look.grays().outline), "{name}");
@@ -403,6 +403,7 @@ mod tests {
                     contrast(ui.visuals().weak_text_color(), ui.visuals().selection.bg_fill);
                 assert!(on_row >= 4.5, "{name}: the kind of the selected row {on_row:.2}");
             });
+            output.textures_delta.clear();
         }
     }
 
