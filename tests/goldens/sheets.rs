@@ -235,8 +235,10 @@ fn blend(mode: &str) -> (String, Make) {
 
 /// Each effect of a layer, and some of one together, on a stroke and a bar.
 fn effects() -> Vec<(String, Make)> {
-    let line = |samples: Vec<[f32; 6]>| json!({ "brush": { "size": 16, "hardness": 1 },
-        "color": "#b04030", "samples": samples });
+    let line = |samples: Vec<[f32; 6]>| {
+        json!({ "brush": { "size": 16, "hardness": 1 },
+        "color": "#b04030", "samples": samples })
+    };
     let bar = (0..=6).map(|i| [20.0, 14.0 + 6.0 * i as f32, 1.0, 0.0, 0.0, 0.1]).collect();
     let strokes = json!([line(pen()), line(bar)]);
     let with = |effects: Value| {
@@ -247,8 +249,11 @@ fn effects() -> Vec<(String, Make)> {
     let rows = [
         ("drop-shadow", json!({ "size": 8, "distance": 7 })),
         ("outer-glow", json!({ "size": 10, "color": "#40c0ff", "blend": "normal" })),
-        ("pattern-overlay", json!({ "pattern": { "width": 2, "height": 1,
-            "pixels": "/wAA/wAA//8=" }, "scale": 3 })),
+        (
+            "pattern-overlay",
+            json!({ "pattern": { "width": 2, "height": 1,
+            "pixels": "/wAA/wAA//8" }, "scale": 3 }),
+        ),
         ("gradient-overlay", json!({ "stops": stops, "angle": 30 })),
         ("color-overlay", json!({ "color": "#3060d0", "blend": "screen" })),
         ("satin", json!({ "distance": 4, "size": 7 })),
