@@ -2,7 +2,7 @@
 //! it back. Floor 7.
 
 use super::{act, forms, set};
-use crate::document::{Document, Part};
+use crate::document::{Document, Part, PartKind};
 use crate::icons::{Icon, sized_button};
 use crate::part_pictures::PartPictures;
 use crate::requests::UiRequests;
@@ -135,7 +135,11 @@ fn name(ui: &mut Ui, part: &Part, row: &Response, requests: &mut UiRequests) {
         "over" => String::new(),
         other => format!(" · {other}"),
     };
-    let about = format!("{}{combine}", sentence(part.kind.name()));
+    let kind = match part.kind {
+        PartKind::Inflate { .. } => "Puffed up".to_owned(),
+        _ => sentence(part.kind.name()),
+    };
+    let about = format!("{kind}{combine}");
     let font = TextStyle::Small.resolve(ui.style());
     let corner = pos2(at.left() + 3.0, at.bottom() - 3.0);
     ui.painter().text(corner, Align2::LEFT_BOTTOM, about, font, ui.visuals().weak_text_color());
