@@ -97,14 +97,20 @@ impl NewGradientGesture {
     }
 }
 
+/// Where a gradient that begins at a point ends under the pen, and what it snaps to: with Shift at a
+/// multiple of 45° and to nothing.
+fn end_at(snap: &SnapTargets, from: Vec2, pen: &PenSample) -> (Vec2, SnapLines) {
+    if pen.keys.shift {
+        return (upright(from, pen.place()), SnapLines::default());
+    }
+    let found = snap.point(pen.place());
+    (found.at, found.lines)
+}
+
 impl Gesture for NewGradientGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        let found = self.snap.point(pen.place());
-        (self.gradient.to, self.lines) = match pen.keys.shift {
-            true => (upright(self.gradient.from, pen.place()), SnapLines::default()),
-            false => (found.at, found.lines),
-        };
+        (self.gradient.to, self.lines) = end_at(&self.snap, self.gradient.from, pen);
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
 

@@ -1,7 +1,7 @@
 //! Gradients that are painted: their pixels go into a paint layer, within the selection. Floor 5.
 //! Not here: live ones (the module above), the colors (`paint::Gradient`).
 
-use super::upright;
+use super::end_at;
 use crate::document::{Content, Document, LayerId, LayerLock, PixelLayer};
 use crate::paint::Gradient;
 use crate::raster::{
@@ -31,11 +31,7 @@ impl PaintedGradient {
 impl Gesture for PaintedGradient {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        let found = self.snap.point(pen.place());
-        (self.gradient.to, self.lines) = match pen.keys.shift {
-            true => (upright(self.gradient.from, pen.place()), SnapLines::default()),
-            false => (found.at, found.lines),
-        };
+        (self.gradient.to, self.lines) = end_at(&self.snap, self.gradient.from, pen);
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
 
