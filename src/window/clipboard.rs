@@ -47,7 +47,7 @@ pub fn read_clipboard() -> Result<PastedContent> {
     let files = clipboard.get().file_list().ok().filter(|files| !files.is_empty());
     files
         .map(PastedContent::Files)
-        .ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
+        .ok_or_else(|| Error::invalid("clipboard", "contents", "neither a picture nor files"))
 }
 
 /// A picture as the file that another program offers, with a name for it, where the system has

@@ -21,6 +21,7 @@ mod fit;
 mod flats_cache;
 mod form_cache;
 pub mod forms;
+mod freeze;
 pub mod from_flats;
 mod inputs;
 mod modifiers;

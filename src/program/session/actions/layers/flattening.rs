@@ -67,6 +67,8 @@ impl LayerAction {
                 Some(Edit { label, document, select: Vec::new() })
             }
             LayerAction::Flatten {} => {
+                let all: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
+                let document = &document.with_outlines_frozen(&all, progress)?;
                 let flat = paint_layer("Picture", flatten_to_paint(document, progress)?);
                 let select = vec![flat.id];
                 let document = Document { layers: vec![Arc::new(flat)], ..document.clone() };
@@ -115,7 +117,7 @@ pub(super) fn bake_displacement(
 }
 
 /// The layer beneath one in its list.
-fn layer_beneath(document: &Document, id: LayerId) -> Option<LayerId> {
+pub(super) fn layer_beneath(document: &Document, id: LayerId) -> Option<LayerId> {
     let place = document.place_of(id)?;
     sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })
 }
@@ -124,8 +126,8 @@ fn layer_beneath(document: &Document, id: LayerId) -> Option<LayerId> {
 fn merge_down(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
     // Groups around hand down their transforms, so that what is merged lies as it shows.
     let document = &bake_displacement(document, id, progress)?;
-    let layer = document.layer(id)?;
-    let beneath = layer_beneath(document, layer.id)?;
+    let beneath = layer_beneath(document, id)?;
+    let document = &document.with_outlines_frozen(&[beneath, id], progress)?;
     let is_group = document.layer(beneath)?.content.group().is_some();
     let is_warped = document.layer(beneath)?.is_warped() && !is_group;
     let document =
@@ -154,6 +156,7 @@ fn merge_down(document: &Document, id: LayerId, progress: &Progress) -> Option<E
 fn merge_several(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<Edit> {
     let in_place = |next: Document, id: &LayerId| next.with_transform_applied(*id);
     let document = &ids.iter().try_fold(document.clone(), in_place)?;
+    let document = &document.with_outlines_frozen(ids, progress)?;
     let mut layers: Vec<Arc<Layer>> =
         ids.iter().map(|id| document.layer(*id).cloned()).collect::<Option<_>>()?;
     let bottom = layers.first()?.clone();

@@ -2,9 +2,10 @@
 //! Floor 6.
 
 use super::LayerAction;
+use super::flattening::layer_beneath;
 use super::steps::attach;
 use crate::document::parts::forms::visible_place;
-use crate::document::{Content, Document, Layer, LayerId, LayerLock, Mesh};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock, Mesh, Role};
 use crate::io::recipe::{LiveLook, PaintedBall, PartMaterial};
 use crate::session::LayerPaths;
 use crate::shading::Model;
@@ -110,10 +111,27 @@ impl LayerAction {
             }
             LayerAction::MergeDown { layer } => selected(layer).and_then(|ids| match &ids[..] {
                 [one] if lies_lowest(one) => Err("There is no layer beneath to merge with."),
-                _ => Ok(()),
+                [one] => match layer_beneath(document, *one) {
+                    Some(beneath) if has_no_paint(document, beneath) => Err(
+                        "The layer beneath only changes what lies below it. Merge that layer down first.",
+                    ),
+                    _ => Ok(()),
+                },
+                several => match document.outermost(several).first() {
+                    Some(lowest) if has_no_paint(document, *lowest) => Err(
+                        "The lowest of these layers only changes what lies below it. Select a layer below it too.",
+                    ),
+                    _ => Ok(()),
+                },
             }),
             _ => Ok(()),
         };
         refusal.err()
     }
+}
+
+/// Whether a layer shows nothing alone: what is merged onto it would lose what it does.
+fn has_no_paint(document: &Document, id: LayerId) -> bool {
+    let role = document.layer(id).map(|layer| layer.content.role());
+    matches!(role, Some(Role::Adjusts(_) | Role::Shapes(_)))
 }

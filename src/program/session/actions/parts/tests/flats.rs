@@ -152,3 +152,39 @@ fn a_flat_ground_is_taken_off_and_lies_beneath_and_the_picture_stays() {
         assert!(a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 3), "{x} {y}: {a:?} {b:?}");
     }
 }
+
+#[test]
+fn a_shape_stays_when_the_drawing_that_outlines_it_is_merged_or_flattened() {
+    for merge in
+        [r#"{"in":"layer","do":"flatten"}"#, r#"{"in":"layer","do":"merge down","layer":"1"}"#]
+    {
+        let mut session = opened(snowman(false));
+        tell(
+            &mut session,
+            r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":true}"#,
+        );
+        let before = shown(&session).clone();
+        tell(&mut session, merge);
+        assert_eq!(session.notes, Vec::<String>::new(), "{merge}");
+        let after = shown(&session);
+        assert!(after.layers.len() < before.layers.len(), "{merge}");
+        let (old, new) = (before.surface.as_ref().unwrap(), after.surface.as_ref().unwrap());
+        for (x, y) in (0..128).flat_map(|y| (0..96).map(move |x| (x, y))) {
+            assert_eq!(old.coverage(x, y), new.coverage(x, y), "{merge}: {x}, {y}");
+            assert_eq!(old.normal(x, y), new.normal(x, y), "{merge}: {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_merged_onto_a_layer_that_only_changes_what_is_below() {
+    let mut session = opened(snowman(false));
+    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":true}"#);
+    tell(&mut session, r#"{"in":"layer","do":"add","kind":"paint"}"#);
+    let before = shown(&session).layers.len();
+    tell(&mut session, r#"{"in":"layer","do":"merge down","layer":"2"}"#);
+    assert!(session.said.pop().unwrap().contains("only changes what lies below"));
+    tell(&mut session, r#"{"in":"layer","do":"merge down","layer":["1","2"]}"#);
+    assert!(session.said.pop().unwrap().contains("only changes what lies below"));
+    assert_eq!(shown(&session).layers.len(), before);
+}
