@@ -294,7 +294,7 @@ fn the_same_file_is_read_once() {
     else {
         panic!("image layers");
     };
-    assert!(std::ptr::eq(a.params().source.texture(), b.params().source.texture()));
+    assert!(std::sync::Arc::ptr_eq(&a.params().source.texture(), &b.params().source.texture()));
 }
 
 #[test]

@@ -141,3 +141,32 @@ fn a_part_for_which_there_is_no_memory_is_refused_where_it_is_made() {
     let (said, info) = told(128, "300M");
     assert!(said.is_empty() && info.contains("on a surface"), "{said}{info}");
 }
+
+#[test]
+fn a_shape_that_has_room_only_once_is_saved() {
+    let sphere = |i: usize| {
+        let (x, y) = (130 + i % 8 * 250, 200 + i / 8 * 400);
+        format!(
+            r#"{{ "id": "part-{}", "kind": "primitive", "shape": "sphere", "center": [{x}, {y}],
+            "radius": 120 }}"#,
+            i + 1
+        )
+    };
+    let parts: Vec<String> = (0..40).map(sphere).collect();
+    let desk = Desk::with(&format!(
+        r##"{{ "format": "rilievo", "version": 2, "canvas": {{ "width": 2048, "height": 2048 }},
+        "surface": {{ "parts": [{}] }}, "layers": [{{ "kind": "fill", "color": "#336699" }}] }}"##,
+        parts.join(",")
+    ));
+    for name in ["new.ora", "new.psd"] {
+        let open = serde_json::json!({ "in": "file", "do": "open", "file": desk.path("r.json") });
+        let save = serde_json::json!({ "in": "file", "do": "save", "file": desk.path(name) });
+        std::fs::write(desk.path("story.jsonl"), format!("{open}\n{save}\n")).unwrap();
+        let mut command = rilievo(&["replay", "--force", "--max-memory", "500M"]);
+        let output = command.arg(desk.path("story.jsonl")).output().unwrap();
+        assert!(output.status.success(), "{name}: {}", said(&output));
+        let info = rilievo(&["info"]).arg(desk.path(name)).output().unwrap();
+        let info = String::from_utf8(info.stdout).unwrap();
+        assert!(info.contains("on a surface"), "{name}: {info}");
+    }
+}

@@ -3,7 +3,7 @@
 //! pass in.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// The allocator has no room for a buffer of so many bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -147,6 +147,40 @@ pub fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     cell.get_or_init(|| made)
 }
 
+/// A value that can be made again: made when it is first read, and kept until it is dropped.
+#[derive(Debug)]
+pub struct RemadeCell<T>(Mutex<Option<T>>);
+
+impl<T> Default for RemadeCell<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T: Clone> RemadeCell<T> {
+    /// The value. Others who want it wait while it is made, so `make` may divide nothing among
+    /// threads: a worker that waited for others there could be given work that needs this cell.
+    pub fn get_or_make(&self, make: impl FnOnce() -> T) -> T {
+        self.lock().get_or_insert_with(make).clone()
+    }
+
+    /// The value, if there is one now.
+    pub fn get(&self) -> Option<T> {
+        self.lock().clone()
+    }
+
+    /// Drops the value. What others hold stays in memory until they drop it, too.
+    pub fn clear(&self) {
+        let before = self.lock().take();
+        // After the lock.
+        drop(before);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<T>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
 /// The value of a key that was made before, or a new one.
 ///
 /// * `made`: the last values and their keys; `most`: how many are kept.
@@ -189,6 +223,15 @@ mod tests {
             Err(refused)
         );
         assert_eq!(filled(3, 7u8), Ok(vec![7; 3]));
+    }
+
+    #[test]
+    fn a_value_is_made_once_and_again_after_it_was_dropped() {
+        let (cell, made) = (RemadeCell::default(), AtomicU64::new(0));
+        let make = || made.fetch_add(1, Ordering::Relaxed) + 1;
+        assert_eq!((cell.get(), cell.get_or_make(make), cell.get_or_make(make)), (None, 1, 1));
+        cell.clear();
+        assert_eq!((cell.get(), cell.get_or_make(make), cell.get()), (None, 2, Some(2)));
     }
 
     #[test]

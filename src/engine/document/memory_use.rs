@@ -87,13 +87,24 @@ impl MemoryCount {
         self.used.painted += bytes;
     }
 
+    /// Counts a copy that can be made again: whatever it holds is kept for speed.
+    pub(in crate::document) fn add_copy(&mut self, add: impl FnOnce(&mut Self)) {
+        let before = self.used;
+        add(self);
+        let more = self.used.minus(before).total();
+        self.used = MemoryUse { kept: before.kept + more, ..before };
+    }
+
     /// Tiles that a layer was rendered to.
     pub(in crate::document) fn add_kept(&mut self, bytes: u64) {
         self.used.kept += bytes;
     }
 
-    pub(in crate::document) fn add_adjustment(&mut self, adjustment: &LiveAdjustment) {
+    pub(in crate::document) fn add_adjustment(&mut self, adjustment: &LiveAdjustment, keeps: bool) {
         if self.seen.insert(adjustment.place()) {
+            if !keeps {
+                adjustment.clear_kept();
+            }
             self.used.kept += adjustment.kept_bytes();
         }
     }
@@ -108,9 +119,14 @@ impl MemoryCount {
         }
     }
 
-    pub(in crate::document) fn add_picture(&mut self, source: &PictureSource) {
+    pub(in crate::document) fn add_picture(&mut self, source: &PictureSource, keeps: bool) {
         if self.seen.insert(source.picture.place()) {
             self.used.pictures += source.picture.bytes() as u64;
+        }
+        if self.seen.insert(source.place()) {
+            if !keeps {
+                source.clear_textures();
+            }
             self.used.kept += source.texture_bytes();
         }
     }

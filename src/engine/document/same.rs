@@ -6,6 +6,7 @@ use super::source::{MaskSource, SurfaceSource};
 use super::{
     Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, Part, StrokeList,
 };
+use crate::memory::free_bytes;
 use crate::paint::Stroke;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{Plane, TileGrid};
@@ -88,6 +89,8 @@ fn shape(a: &Document, b: &Document) -> Option<String> {
     let follows = !a.parts.is_empty() && is_same(a.maps_surface(), b.maps_surface());
     let is_made = match (&a.surface, &b.surface) {
         (Some(a), Some(b)) => is_alike(a, b),
+        // Beside the first there is no room to make it once more; what it is made of was compared.
+        (Some(_), None) => b.shape_fits_in(free_bytes()).is_err(),
         (a, b) => a.is_none() && b.is_none(),
     };
     (follows && !is_made).then(|| "the shape that its parts make".into())

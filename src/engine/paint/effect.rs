@@ -223,14 +223,14 @@ impl LayerEffect {
         EffectLight { angle: self.settings.angle, altitude: self.settings.altitude }
     }
 
-    /// With lengths `factor` times as large.
+    /// With lengths `factor` times as large; what its kind does not use stays as it begins.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = self.clone();
         EffectSettings::lengths().for_each(|setting| setting.scale(&mut next.settings, factor));
         if self.fill() == EffectFill::Pattern {
             next.settings.scale *= factor;
         }
-        next
+        next.with_own_settings()
     }
 
     /// With what its kind does not use as it begins.

@@ -127,7 +127,7 @@ impl BrushGrain {
                 compute_once(&MADE, KEPT, (*pattern, *seed, levels, side), make)
             }
             GrainSource::Picture(source) => {
-                let make = || of_grays(&luminance(source.texture()), self.levels);
+                let make = || of_grays(&luminance(&source.texture()), self.levels);
                 compute_once(source.stamps().grains(), KEPT, levels, make)
             }
         }

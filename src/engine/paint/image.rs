@@ -11,11 +11,12 @@ use super::{
     text::Text,
 };
 use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
+use crate::memory::RemadeCell;
 use crate::raster::sampler::{Antialias, Bilinear, TapRule};
 use crate::raster::{FloatTexture, Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
 use crate::surface::{Bend, Deformation, deformation::DeformedRect};
 use std::cell::RefCell;
-use std::sync::{Arc, Mutex, OnceLock, Weak};
+use std::sync::{Arc, Mutex, Weak};
 
 /// P: where the picture lies on the canvas before it is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,9 +113,11 @@ pub struct PictureSource {
 /// What is made of a picture when it is read for the first time.
 #[derive(Default)]
 struct DerivedTextures {
-    texture: OnceLock<Texture>,
+    texture: RemadeCell<Arc<Texture>>,
     /// The texture of a drawing that is drawn 2, 4 and 8 times as large; `None` where it cannot be.
-    enlarged: [OnceLock<Option<Texture>>; 3],
+    enlarged: [RemadeCell<Option<Arc<Texture>>>; 3],
+    /// Its finest levels of detail, which are left out of the texture.
+    left_out: u32,
     /// The texture in floats, as long as it is in use.
     floats: Mutex<Weak<FloatTexture>>,
     /// The stamps made from it if it is a brush's tip.
@@ -169,20 +172,32 @@ impl PictureSource {
     /// The same picture without its finest `levels` of detail: showing it that much smaller reads
     /// fewer texels.
     pub fn coarser(&self, levels: u32) -> Self {
-        let texture = OnceLock::from(self.texture().coarser(levels));
-        let derived = Arc::new(DerivedTextures { texture, ..DerivedTextures::default() });
-        Self { derived, ..self.clone() }
+        let left_out = self.derived.left_out + levels;
+        let derived = DerivedTextures { left_out, ..DerivedTextures::default() };
+        derived.texture.get_or_make(|| Arc::new(self.texture().coarser(levels)));
+        Self { derived: Arc::new(derived), ..self.clone() }
     }
 
     /// Bytes of the textures that were made.
     pub fn texture_bytes(&self) -> u64 {
-        let enlarged = self.derived.enlarged.iter().filter_map(|texture| texture.get()?.as_ref());
-        self.derived.texture.get().into_iter().chain(enlarged).map(Texture::bytes).sum()
+        let enlarged = self.derived.enlarged.iter().filter_map(|texture| texture.get().flatten());
+        self.derived.texture.get().into_iter().chain(enlarged).map(|texture| texture.bytes()).sum()
+    }
+
+    /// Drops the textures; they are made again when they are read.
+    pub fn clear_textures(&self) {
+        self.derived.texture.clear();
+        self.derived.enlarged.iter().for_each(RemadeCell::clear);
+    }
+
+    /// The address of what clones share of its textures.
+    pub fn place(&self) -> usize {
+        Arc::as_ptr(&self.derived).cast::<()>() as usize
     }
 
     /// The picture as a tip, with a softness in `[0, 1]`.
     pub(super) fn stamp(&self, softness: f32) -> Arc<TipStamp> {
-        self.derived.stamps.stamp(self.texture(), softness)
+        self.derived.stamps.stamp(&self.texture(), softness)
     }
 
     pub(super) fn stamps(&self) -> &StampCache {
@@ -194,7 +209,7 @@ impl PictureSource {
     /// * `texels_per_px`: how many texels of the picture as it is a pixel is wide.
     ///
     /// An enlarged texture that cannot be had is the next smaller one.
-    pub fn texture_of(&self, texels_per_px: f32) -> &Texture {
+    pub fn texture_of(&self, texels_per_px: f32) -> Arc<Texture> {
         if self.picture.drawing.is_none() || texels_per_px.is_nan() || texels_per_px <= 0.0 {
             return self.texture();
         }
@@ -205,22 +220,28 @@ impl PictureSource {
     }
 
     /// The texture of the drawing with sides 2^step times as long.
-    fn enlarged(&self, step: u32) -> Option<&Texture> {
+    fn enlarged(&self, step: u32) -> Option<Arc<Texture>> {
         let make = || {
             let picture = self.picture.enlarged(1 << step)?;
             let blur = self.adjust.blur * (1 << step) as f32;
             let adjust = Adjust { blur: blur.min(*Adjust::BLUR.end()), ..self.adjust };
-            Some(Texture::new(&adjust.apply(&picture)))
+            Some(Arc::new(Texture::new(&adjust.apply(&picture))))
         };
-        self.derived.enlarged[step as usize - 1].get_or_init(make).as_ref()
+        self.derived.enlarged[step as usize - 1].get_or_make(make)
     }
 
     /// The adjusted texture.
     ///
     /// Made by the calling thread alone: a worker that waited for others here could be given a tile
     /// that waits for this same texture.
-    pub fn texture(&self) -> &Texture {
-        self.derived.texture.get_or_init(|| Texture::new(&self.adjust.apply(&self.picture)))
+    pub fn texture(&self) -> Arc<Texture> {
+        self.derived.texture.get_or_make(|| {
+            let whole = Texture::new(&self.adjust.apply(&self.picture));
+            Arc::new(match self.derived.left_out {
+                0 => whole,
+                levels => whole.coarser(levels),
+            })
+        })
     }
 }
 
@@ -288,11 +309,11 @@ impl PlacedImage {
             return None;
         }
         let texture = self.texture_at(scene, area);
-        SCRATCH.with_borrow_mut(|scratch| self.render_with(scratch, texture, scene, area))
+        SCRATCH.with_borrow_mut(|scratch| self.render_with(scratch, &texture, scene, area))
     }
 
     /// The texture that an area reads.
-    fn texture_at(&self, scene: &Scene, area: Rect) -> &Texture {
+    fn texture_at(&self, scene: &Scene, area: Rect) -> Arc<Texture> {
         if self.source.picture.drawing.is_none() {
             return self.source.texture();
         }

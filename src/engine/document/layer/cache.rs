@@ -42,6 +42,9 @@ impl LayerCache {
         if let Some(tiles) = self.beneath.last() {
             tiles.count(count, keeps);
         }
+        self.warped.count(count, keeps);
+        self.effects.count(count, keeps);
+        self.on_canvas.count(count, keeps);
     }
 }
 

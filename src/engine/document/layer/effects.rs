@@ -6,6 +6,7 @@ use super::map::LayerMap;
 use super::mask::LayerMask;
 use super::warp::LayerWarp;
 use super::{Layer, Role};
+use crate::document::memory_use::MemoryCount;
 use crate::math::Rect;
 use crate::memory::once;
 use crate::paint::{EffectKind, EffectLight, EffectPlace, LayerEffect, Scene, effect::EffectTile};
@@ -32,6 +33,13 @@ impl CoverTile {
                 Self::Even(f32::from(*first) / 65535.0)
             }
             _ => Self::Values(values),
+        }
+    }
+
+    fn held_bytes(&self) -> u64 {
+        match self {
+            Self::Even(_) => 0,
+            Self::Values(values) => size_of_val::<[u16]>(values) as u64,
         }
     }
 
@@ -250,6 +258,22 @@ struct EffectEntry {
 }
 
 impl EffectCache {
+    /// Counts what it holds, or drops it.
+    pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        if !count.is_new(&self.last) {
+            return;
+        }
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if !keeps {
+            *last = None;
+        }
+        let Some(entry) = &*last else { return };
+        let covers = entry.tiles.covers.cells.iter().filter_map(OnceLock::get);
+        count.add_kept(covers.map(CoverTile::held_bytes).sum());
+        let amounts = entry.tiles.amounts.iter().flat_map(|amounts| &amounts.cells);
+        count.add_kept(amounts.filter_map(OnceLock::get).map(|tile| tile.held_bytes()).sum());
+    }
+
     /// The effects of a layer as it lies on the canvas, also where its fill is transparent; `None`
     /// if it shows neither. What its content did not change is kept.
     pub(in crate::document) fn tiles(

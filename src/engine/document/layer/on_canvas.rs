@@ -5,6 +5,7 @@ use super::content::{Content, Group, PixelLayer};
 use super::map::LayerMap;
 use super::mask::{LayerMask, MaskKind};
 use super::warp::{LastWarp, LayerWarp, displaced_mask};
+use crate::document::memory_use::MemoryCount;
 use crate::raster::Plane;
 use crate::raster::warp::warped_plane;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -87,6 +88,21 @@ struct CanvasEntry {
 }
 
 impl CanvasCache {
+    /// Counts what it holds, or drops it. What a layer has on the canvas as it has it by itself is
+    /// the layer's own.
+    pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        if !count.is_new(&self.entries) {
+            return;
+        }
+        let mut entries = self.lock();
+        if !keeps {
+            entries.clear();
+        }
+        for entry in entries.iter().filter(|entry| !entry.content.is_identical(&entry.own)) {
+            count.add_copy(|count| entry.content.count(count, true));
+        }
+    }
+
     /// For the picture before an edit and the one after it.
     const KEPT: usize = 2;
 

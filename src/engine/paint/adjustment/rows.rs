@@ -2,15 +2,16 @@
 //! themselves, else the formula for each pixel. Made once and kept with the parameters. Floor 3.
 
 use super::{ColorAdjustment, Invert};
+use crate::memory::RemadeCell;
 use crate::raster::planar::PixelRow;
 use crate::raster::{PlanarTile, TILE};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// An adjustment together with what is computed from its parameters, which clones share.
 #[derive(Clone)]
 pub struct LiveAdjustment {
     params: Arc<ColorAdjustment>,
-    prepared: Arc<OnceLock<RowAdjuster>>,
+    prepared: Arc<RemadeCell<Arc<RowAdjuster>>>,
 }
 
 impl std::fmt::Debug for LiveAdjustment {
@@ -49,7 +50,7 @@ impl LiveAdjustment {
 
     /// What is kept for speed, bytes.
     pub fn kept_bytes(&self) -> u64 {
-        let tables = match self.prepared.get() {
+        let tables = match self.prepared.get().as_deref() {
             Some(RowAdjuster::Tones([r, g, b])) if Arc::ptr_eq(r, g) && Arc::ptr_eq(g, b) => 1,
             Some(RowAdjuster::Tones(_)) => 3,
             _ => 0,
@@ -57,14 +58,19 @@ impl LiveAdjustment {
         tables * (TONES * size_of::<f32>()) as u64
     }
 
+    /// Drops it; it is computed again when pixels are adjusted.
+    pub fn clear_kept(&self) {
+        self.prepared.clear();
+    }
+
     /// The address of what clones share.
     pub fn place(&self) -> usize {
         Arc::as_ptr(&self.prepared).cast::<()>() as usize
     }
 
-    fn prepared(&self) -> &RowAdjuster {
+    fn prepared(&self) -> Arc<RowAdjuster> {
         // Nothing in it is divided among threads.
-        self.prepared.get_or_init(|| RowAdjuster::of(&self.params))
+        self.prepared.get_or_make(|| Arc::new(RowAdjuster::of(&self.params)))
     }
 }
 

@@ -30,6 +30,14 @@ impl EffectTile {
     /// Nothing of it.
     pub const NOTHING: Self = Self::Even(0.0);
 
+    /// Bytes that it holds besides itself.
+    pub fn held_bytes(&self) -> u64 {
+        match self {
+            Self::Even(_) => 0,
+            Self::Values(values) => size_of_val::<[i16]>(values) as u64,
+        }
+    }
+
     /// Whether no pixel gets any of it.
     pub fn is_nothing(&self) -> bool {
         *self == Self::NOTHING

@@ -122,3 +122,18 @@ fn a_picture_is_repeated() {
     assert_eq!([red(0), red(1), red(2), red(3)], [0.0, 1.0, 0.0, 1.0]);
     assert!(EffectPattern::new("none", Size::new(2, 2), vec![0; 4]).is_none());
 }
+
+#[test]
+fn a_larger_effect_has_larger_lengths_and_what_its_kind_does_not_use_as_it_begins() {
+    for (kind, name) in EffectKind::ALL {
+        for factor in [0.4, 1.7] {
+            let scaled = LayerEffect::new(kind).scaled(factor);
+            assert_eq!(scaled.clone().with_own_settings(), scaled, "{name}");
+        }
+    }
+    let (glow, larger) = (LayerEffect::new(EffectKind::OuterGlow), |by| {
+        LayerEffect::new(EffectKind::OuterGlow).scaled(by)
+    });
+    assert_eq!(larger(2.0).settings.size, 2.0 * glow.settings.size);
+    assert_eq!(larger(2.0).settings.distance, glow.settings.distance);
+}

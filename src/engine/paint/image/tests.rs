@@ -159,7 +159,7 @@ fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel()
     let map = image.placement.texels_from_canvas(size, Size::new(192, 192));
     let sample = |q: Vec2| {
         let offset = 96.0 * second_order::offset(nbar(q) - nbar(center), alpha, beta);
-        sampler::bilinear(image.source.texture(), map.transform_point2(q + offset), image.outside)
+        sampler::bilinear(&image.source.texture(), map.transform_point2(q + offset), image.outside)
             [0]
             * 255.0
     };

@@ -127,11 +127,12 @@ pub fn gray(plane: &Plane<f32>) -> Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
 
     #[test]
     fn tips_of_equal_parameters_share_one_picture_as_fine_as_their_dabs() {
         let tip = TipTexture::Noise(Noise { seed: 77, ..Noise::default() });
-        let at = |diameter: f32| std::ptr::from_ref(tip.source(diameter).texture());
+        let at = |diameter: f32| Arc::as_ptr(&tip.source(diameter).texture());
         assert_eq!(at(40.0), at(80.0));
         assert_ne!(at(40.0), at(2000.0));
         assert_eq!(tip.source(f32::NAN).picture.size, Size::new(256, 256));

@@ -38,8 +38,8 @@ impl LayerKind for LiveAdjustment {
         Changed::wholly_if(!matches!(old, Content::Adjustment(old) if old == self))
     }
 
-    fn count(&self, count: &mut MemoryCount, _keeps: bool) {
-        count.add_adjustment(self);
+    fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        count.add_adjustment(self, keeps);
     }
 }
 

@@ -45,7 +45,7 @@ impl LayerKind for Live<PlacedImage> {
 
     fn count(&self, count: &mut MemoryCount, keeps: bool) {
         self.count_rendered(count, keeps);
-        count.add_picture(&self.params().source);
+        count.add_picture(&self.params().source, keeps);
     }
 
     fn marks(&self) -> Option<&dyn Marks> {

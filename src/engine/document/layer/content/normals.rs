@@ -38,9 +38,9 @@ impl LayerKind for NormalLayer {
         Some(Content::Normals(NormalLayer { frame: map.plane, ..self.clone() }))
     }
 
-    fn count(&self, count: &mut MemoryCount, _keeps: bool) {
+    fn count(&self, count: &mut MemoryCount, keeps: bool) {
         if let DetailSource::Map { picture, .. } = &self.source {
-            count.add_picture(picture);
+            count.add_picture(picture, keeps);
         }
     }
 

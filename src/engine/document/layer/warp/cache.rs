@@ -4,6 +4,7 @@
 use super::LayerWarp;
 use crate::document::layer::content::Content;
 use crate::document::layer::map::LayerMap;
+use crate::document::memory_use::MemoryCount;
 use crate::math::Rect;
 use crate::memory::once;
 use crate::paint::Scene;
@@ -29,6 +30,16 @@ impl Cells {
     fn cell(&self, at: TileAt) -> Option<&Cell> {
         let inside = at.col >= 0 && at.row >= 0 && at.col < self.cols;
         inside.then(|| self.cells.get((at.row * self.cols + at.col) as usize)).flatten()
+    }
+}
+
+impl Cells {
+    fn count(&self, count: &mut MemoryCount) {
+        for tile in self.cells.iter().filter_map(|cell| cell.get()?.as_ref()) {
+            if count.is_new(tile) {
+                count.add_kept(tile.held_bytes());
+            }
+        }
     }
 }
 
@@ -94,6 +105,21 @@ struct Entry {
 }
 
 impl WarpCache {
+    /// Counts what it holds, or drops it.
+    pub fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        if !count.is_new(&self.last) {
+            return;
+        }
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if !keeps {
+            *last = None;
+        }
+        if let Some(entry) = &*last {
+            entry.tiles.source.count(count);
+            entry.tiles.shown.count(count);
+        }
+    }
+
     /// The tiles of a layer that shows `content` on a scene. What was composed of the same content
     /// is kept; what it shows is kept too, where its displacement did not change.
     ///
