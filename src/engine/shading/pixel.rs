@@ -71,29 +71,55 @@ impl PixelShading {
     }
 
     /// The tone of a color at a step: of the picture's colors, or made.
+    ///
+    /// Colors that the picture lacks, as soft marks leave them, get tones as far from those of the
+    /// nearest color of the picture as they are from it, so that marks have no rings.
     pub fn tone(&self, of: [u8; 3], step: Step) -> [u8; 3] {
         let own = lab(of);
         if step == 0 || own[0] < LINE {
             return of;
         }
         let made = shifted(own, step);
+        let Some((base, off)) = self.nearest(own, |_| true).filter(|(_, off)| *off < NEAR) else {
+            return bytes(made);
+        };
+        let of_base = self.tone_of_picture(base, step);
+        if base == of {
+            return of_base;
+        }
+        let (found, made_of_base) = (lab(of_base), shifted(lab(base), step));
+        let share = 1.0 - off / NEAR;
+        bytes(std::array::from_fn(|i| made[i] + share * (found[i] - made_of_base[i])))
+    }
+
+    /// The tone of one of the picture's colors.
+    fn tone_of_picture(&self, color: [u8; 3], step: Step) -> [u8; 3] {
+        let own = lab(color);
+        let made = shifted(own, step);
         let is_further = |lightness: f32| {
             let by = LEAST_STEP * step as f32;
             if step < 0 { lightness < own[0] + by } else { lightness > own[0] + by }
         };
-        let near = self
-            .colors
+        match self.nearest(made, is_further) {
+            Some((tone, off)) if off < NEAR => tone,
+            _ => bytes(made),
+        }
+    }
+
+    /// The nearest of the picture's colors of some lightness, lines left out, and how far it is.
+    fn nearest(&self, to: [f32; 3], is_meant: impl Fn(f32) -> bool) -> Option<([u8; 3], f32)> {
+        self.colors
             .iter()
             .map(|color| [color.r, color.g, color.b])
             .map(|color| (color, lab(color)))
-            .filter(|(_, found)| is_further(found[0]) && found[0] >= LINE)
-            .map(|(color, found)| (color, distance(found, made)))
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        match near {
-            Some((color, off)) if off < NEAR => color,
-            _ => oklab::to_linear(made).map(|v| srgb::quantize(srgb::encode(v.clamp(0.0, 1.0)))),
-        }
+            .filter(|(_, found)| is_meant(found[0]) && found[0] >= LINE)
+            .map(|(color, found)| (color, distance(found, to)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
     }
+}
+
+fn bytes(color: [f32; 3]) -> [u8; 3] {
+    oklab::to_linear(color).map(|v| srgb::quantize(srgb::encode(v.clamp(0.0, 1.0))))
 }
 
 fn lab(color: [u8; 3]) -> [f32; 3] {
@@ -166,10 +192,27 @@ mod tests {
     #[test]
     fn a_near_color_of_the_picture_is_taken_and_a_far_one_is_not() {
         let near = Color::rgb(0xb8, 0x80, 0x78);
-        let with = |colors: Vec<Color>| PixelShading { colors, ..pixel(3) };
-        assert_eq!(with(vec![near]).tone(SKIN, -1), [near.r, near.g, near.b]);
-        let far = with(vec![Color::rgb(0x20, 0xa0, 0x30)]);
+        let skin = Color::rgb(SKIN[0], SKIN[1], SKIN[2]);
+        let with = |other: Color| PixelShading { colors: vec![skin, other], ..pixel(3) };
+        assert_eq!(with(near).tone(SKIN, -1), [near.r, near.g, near.b]);
+        let far = with(Color::rgb(0x20, 0xa0, 0x30));
         assert_eq!(far.tone(SKIN, -1), pixel(3).tone(SKIN, -1));
+    }
+
+    #[test]
+    fn a_soft_mark_has_no_ring_where_it_leaves_a_color_of_the_picture() {
+        let colors = vec![Color::rgb(0xc8, 0x50, 0x3c), Color::rgb(0xe6, 0xd2, 0x5a)];
+        let lit = PixelShading { colors, ..pixel(3) };
+        let mark = [0x20u8, 0x30, 0x50].map(f32::from);
+        let mixed = |share: f32| -> [u8; 3] {
+            let red = [0xc8u8, 0x50, 0x3c].map(f32::from);
+            std::array::from_fn(|i| (red[i] + share * (mark[i] - red[i])).round() as u8)
+        };
+        let tones: Vec<[u8; 3]> = (0..60).map(|i| lit.tone(mixed(i as f32 * 0.01), 1)).collect();
+        for pair in tones.windows(2) {
+            let off = (0..3).map(|i| pair[0][i].abs_diff(pair[1][i])).max().unwrap();
+            assert!(off <= 8, "{pair:?}");
+        }
     }
 
     #[test]
