@@ -245,7 +245,7 @@ fn ball_strokes() -> Case {
 fn pixel_shading() -> Case {
     let layers = json!([{ "kind": "fill", "color": "#d08858" },
         { "kind": "shading", "model": "painter", "painter": { "beneath": true },
-          "pixel": { "bands": 4, "dither": 0.6, "colors": ["#a05a50"] } }]);
+          "pixel": { "bands": 4, "dither": 0.6, "colors": ["#d08858", "#a05a50"] } }]);
     Case::layers("shading", "pixel", ROUNDED, Shape::Torus, layers)
 }
 
