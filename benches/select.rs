@@ -62,7 +62,7 @@ fn wand_4096(bencher: Bencher, everywhere: bool) {
     let start = start.unwrap_or(Vec2::ZERO);
     let read = |at: TileAt| PICTURE.tile(at).cloned();
     bencher.bench(|| {
-        POOL.install(|| fill.selected(start, LARGE, &CanvasPart::Whole, everywhere, read))
+        POOL.install(|| fill.find_coverage(start, LARGE, &CanvasPart::Whole, everywhere, read))
     });
 }
 
@@ -89,7 +89,7 @@ fn surface_wand_dragged_1080(bencher: Bencher, joined: bool) {
 static BLOTS: LazyLock<CoverageGrid> = LazyLock::new(|| {
     let fill = Fill { grow_px: 0.0, ..Fill::default() };
     let read = |at: TileAt| PICTURE.tile(at).cloned();
-    fill.selected(vec2(1.0, 1.0), LARGE, &CanvasPart::Whole, true, read).unwrap_or_default()
+    fill.find_coverage(vec2(1.0, 1.0), LARGE, &CanvasPart::Whole, true, read).unwrap_or_default()
 });
 
 /// All tiles, seen whole in a window of a thousand points, none of them cached yet.

@@ -69,7 +69,7 @@ fn every_action_that_the_page_shows_can_be_read() {
     let lines = scripts(&page).into_iter().flat_map(str::lines).chain(in_text);
     let mut count = 0;
     for value in lines.filter_map(action) {
-        let read = Action::read(&value).map(|action| action.written());
+        let read = Action::read(&value).map(|action| action.to_value());
         let written = read.unwrap_or_else(|reason| panic!("{value}: {reason}"));
         // A field that is written but does not exist would be passed over.
         for (field, _) in value.as_object().unwrap() {

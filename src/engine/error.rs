@@ -65,7 +65,7 @@ impl Error {
     }
 
     /// A file uses what this program does not have.
-    pub fn unsupported(file: impl AsRef<Path>, reason: impl ToString) -> Self {
+    pub fn unsupported_file(file: impl AsRef<Path>, reason: impl ToString) -> Self {
         Self::Unsupported { file: file.as_ref().into(), reason: reason.to_string(), remedy: None }
     }
 

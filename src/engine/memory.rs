@@ -18,7 +18,7 @@ pub struct OutOfMemory {
 ///
 /// The room is asked for and given back before the buffer is made, since a buffer of zeros comes
 /// from the system untouched, which one that is filled by hand does not.
-pub fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
+pub fn fill<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
     let mut probe: Vec<T> = Vec::new();
     let bytes = (len as u64).saturating_mul(size_of::<T>() as u64);
     probe.try_reserve_exact(len).map_err(|_| OutOfMemory { bytes })?;
@@ -26,14 +26,14 @@ pub fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
     Ok(vec![value; len])
 }
 
-/// As [`filled`] for those who cannot fail: unwinds with an [`OutOfMemory`], which [`catch_out_of_memory`] makes
+/// As [`fill`] for those who cannot fail: unwinds with an [`OutOfMemory`], which [`catch_out_of_memory`] makes
 /// a refusal of.
-pub fn filled_or_unwind<T: Clone>(len: usize, value: T) -> Vec<T> {
-    filled(len, value).unwrap_or_else(|refused| std::panic::panic_any(refused))
+pub fn fill_or_unwind<T: Clone>(len: usize, value: T) -> Vec<T> {
+    fill(len, value).unwrap_or_else(|refused| std::panic::panic_any(refused))
 }
 
-/// A copy of values, for those who cannot fail: unwinds as [`filled_or_unwind`] does.
-pub fn copied_or_unwind<T: Clone>(values: &[T]) -> Vec<T> {
+/// A copy of values, for those who cannot fail: unwinds as [`fill_or_unwind`] does.
+pub fn copy_or_unwind<T: Clone>(values: &[T]) -> Vec<T> {
     let mut copy = Vec::new();
     if copy.try_reserve_exact(values.len()).is_err() {
         std::panic::panic_any(OutOfMemory { bytes: size_of_val(values) as u64 });
@@ -216,13 +216,13 @@ mod tests {
 
     #[test]
     fn a_buffer_without_room_is_a_refusal_and_no_abort() {
-        let refused = filled(usize::MAX / 16, [0u64; 2]).unwrap_err();
+        let refused = fill(usize::MAX / 16, [0u64; 2]).unwrap_err();
         assert!(refused.to_string().starts_with("there is no memory for "), "{refused}");
         assert_eq!(
-            catch_out_of_memory(|| filled_or_unwind(usize::MAX / 16, [0u64; 2]).len()),
+            catch_out_of_memory(|| fill_or_unwind(usize::MAX / 16, [0u64; 2]).len()),
             Err(refused)
         );
-        assert_eq!(filled(3, 7u8), Ok(vec![7; 3]));
+        assert_eq!(fill(3, 7u8), Ok(vec![7; 3]));
     }
 
     #[test]

@@ -138,7 +138,7 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
     let is_tga = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("tga"));
     // A TGA may begin like an icon.
     if let Some(reason) = unread::reason(file, bytes).filter(|_| !is_tga) {
-        return Err(Error::unsupported(file, reason));
+        return Err(Error::unsupported_file(file, reason));
     }
     let is_float_map = bytes.starts_with(b"PF\n") || bytes.starts_with(b"Pf\n");
     let is_big_tiff = bytes.starts_with(b"II+\0") || bytes.starts_with(b"MM\0+");
@@ -157,7 +157,7 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
     let row = FORMATS.iter().find(|(format, ..)| *format == found);
     row.copied().ok_or_else(|| {
         let kind = found.extensions_str().first().copied().unwrap_or("such").to_uppercase();
-        Error::unsupported(file, format!("{kind} pictures; save it as {READABLE}"))
+        Error::unsupported_file(file, format!("{kind} pictures; save it as {READABLE}"))
     })
 }
 
@@ -222,7 +222,7 @@ fn failure(file: &Path, format: &str, error: &image::ImageError) -> Error {
     use image::ImageError::{Limits, Unsupported};
     match error {
         Limits(e) => Error::too_large(file, e).with_remedy(Remedy::MorePixels),
-        Unsupported(e) => Error::unsupported(file, e),
+        Unsupported(e) => Error::unsupported_file(file, e),
         e => Error::decode(file, format!("the {format} data is damaged or cut short ({e})")),
     }
 }

@@ -106,7 +106,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
         Some(BrushFormat::Krita) => kpp::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::MyPaint) => myb::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::Photoshop) => abr::read(file, bytes, budget),
-        None => Err(Error::unsupported(
+        None => Err(Error::unsupported_file(
             file,
             "it ends in none of .gbr, .gih, .vbr, .kpp, .myb and .abr",
         )),

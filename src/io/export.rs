@@ -59,7 +59,7 @@ impl ExportFormat {
         let bits = asked.unwrap_or(depths[0]);
         depths.contains(&bits).then_some(bits).ok_or_else(|| {
             let known: Vec<String> = depths.iter().map(u8::to_string).collect();
-            Error::unsupported(
+            Error::unsupported_file(
                 file,
                 format!("this format has {} bits a channel, not {bits}", known.join(" or ")),
             )
@@ -72,7 +72,7 @@ impl ExportFormat {
         let found = Self::ALL.iter().find(|(_, known)| *known == extension);
         found.map(|(format, _)| *format).ok_or_else(|| {
             let known: Vec<_> = Self::ALL.iter().map(|(_, known)| format!(".{known}")).collect();
-            Error::unsupported(
+            Error::unsupported_file(
                 file,
                 format!("the name of a picture must end in {}", known.join(", ")),
             )
@@ -190,7 +190,7 @@ pub fn encode(
 ) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() {
-        return Err(Error::unsupported(file, "the part to write has no pixels"));
+        return Err(Error::unsupported_file(file, "the part to write has no pixels"));
     }
     let canvas = Size::new(rect.width() as u32, rect.height() as u32);
     let straight = |rect: Rect| {
@@ -203,12 +203,14 @@ pub fn encode(
     match format {
         ExportFormat::Png => {
             let written = png(strips(rect).map(straight), canvas, png::BitDepth::Eight, options);
-            written.map_err(|e| Error::unsupported(file, e))
+            written.map_err(|e| Error::unsupported_file(file, e))
         }
         ExportFormat::Jpeg => jpeg(file, &straight(rect), canvas, options.quality),
         ExportFormat::WebP => webp(file, &straight(rect), canvas),
         ExportFormat::Tiff => tiff(file, straight(rect), canvas),
-        ExportFormat::Exr => exr(&straight(rect), canvas).map_err(|e| Error::unsupported(file, e)),
+        ExportFormat::Exr => {
+            exr(&straight(rect), canvas).map_err(|e| Error::unsupported_file(file, e))
+        }
     }
 }
 
@@ -268,10 +270,10 @@ fn png(
 fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
     if rgba.chunks_exact(4).any(|pixel| pixel[3] != 255) {
         let reason = "the picture has transparent parts, and a JPEG cannot store them";
-        return Err(Error::unsupported(file, reason).with_remedy(Remedy::Background));
+        return Err(Error::unsupported_file(file, reason).with_remedy(Remedy::Background));
     }
     if size.width.max(size.height) > u16::MAX.into() {
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             format!("a JPEG has at most 65535 pixels a side, not {size}"),
         ));
@@ -282,13 +284,13 @@ fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
     let mut encoder =
         image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
     let encoded = encoder.encode(&rgb, size.width, size.height, image::ExtendedColorType::Rgb8);
-    encoded.map_err(|e| Error::unsupported(file, e))?;
+    encoded.map_err(|e| Error::unsupported_file(file, e))?;
     Ok(bytes.into_inner())
 }
 
 fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
     if size.width.max(size.height) > 16_384 {
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             format!("a WebP has at most 16384 pixels a side, not {size}"),
         ));
@@ -296,7 +298,7 @@ fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut bytes);
     let encoded = encoder.encode(rgba, size.width, size.height, image::ExtendedColorType::Rgba8);
-    encoded.map_err(|e| Error::unsupported(file, e))?;
+    encoded.map_err(|e| Error::unsupported_file(file, e))?;
     Ok(bytes.into_inner())
 }
 

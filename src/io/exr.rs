@@ -149,17 +149,17 @@ fn window(file: &Path, meta: &MetaData, budget: &Budget) -> Result<Size> {
     let first = meta.headers.first().ok_or_else(|| Error::decode(file, "the EXR has no parts"))?;
     let display = first.shared_attributes.display_window;
     if meta.headers.iter().any(|h| h.shared_attributes.display_window.size != display.size) {
-        return Err(Error::unsupported(file, "EXR parts whose display windows differ"));
+        return Err(Error::unsupported_file(file, "EXR parts whose display windows differ"));
     }
     budget.size(file, display.size.x() as u64, display.size.y() as u64)
 }
 
 fn check_part(file: &Path, header: &Header, budget: &Budget) -> Result<()> {
     if header.deep {
-        return Err(Error::unsupported(file, "deep EXR data; flatten it first"));
+        return Err(Error::unsupported_file(file, "deep EXR data; flatten it first"));
     }
     if header.channels.list.iter().any(|c| c.sampling.x() != 1 || c.sampling.y() != 1) {
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             "EXR channels stored at a lower resolution (subsampling)",
         ));
@@ -239,10 +239,10 @@ fn guard<T>(file: &Path, what: &str, step: impl FnOnce() -> exr::error::Result<T
     match catch_unwind(AssertUnwindSafe(step)) {
         Ok(Ok(value)) => Ok(value),
         Ok(Err(exr::error::Error::NotSupported(reason))) => {
-            Err(Error::unsupported(file, format!("EXR: {reason}")))
+            Err(Error::unsupported_file(file, format!("EXR: {reason}")))
         }
         Ok(Err(exr::error::Error::Invalid(reason))) if reason.contains("compression attribute") => {
-            Err(Error::unsupported(file, "the compression of the EXR is not supported"))
+            Err(Error::unsupported_file(file, "the compression of the EXR is not supported"))
         }
         Ok(Err(error)) => {
             Err(Error::decode(file, format!("the EXR {what} is damaged or cut short ({error})")))

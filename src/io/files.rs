@@ -71,14 +71,14 @@ impl RecipeFolder {
 impl Files for RecipeFolder {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         if let Some(reason) = refusal(name) {
-            return Err(Error::unsupported(name, reason));
+            return Err(Error::unsupported_file(name, reason));
         }
         let mut path = self.root.clone();
         for part in name.split('/').filter(|part| !part.is_empty() && *part != ".") {
             path.push(part);
             let found = fs::symlink_metadata(&path).map_err(|e| Error::io(&path, e))?;
             if found.is_symlink() {
-                return Err(Error::unsupported(
+                return Err(Error::unsupported_file(
                     &path,
                     "it is a link, which could point outside the document's folder",
                 ));
@@ -189,10 +189,10 @@ pub fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
     let io = |e| Error::io(path, e);
     let found = fs::metadata(path).map_err(io)?;
     if found.is_dir() {
-        return Err(Error::unsupported(path, "it is a folder, not a file"));
+        return Err(Error::unsupported_file(path, "it is a folder, not a file"));
     }
     if !found.is_file() {
-        return Err(Error::unsupported(path, "it is not a regular file"));
+        return Err(Error::unsupported_file(path, "it is not a regular file"));
     }
     let file = fs::File::open(path).map_err(io)?;
     let mut bytes = Vec::new();

@@ -29,7 +29,7 @@ pub trait Fs: Send + Sync {
     /// The path with every link resolved; fails where there is nothing.
     fn resolve(&self, path: &Path) -> io::Result<PathBuf>;
     /// What is at a path, without following a link; `None` if there is nothing.
-    fn found(&self, path: &Path) -> io::Result<Option<EntryKind>>;
+    fn find(&self, path: &Path) -> io::Result<Option<EntryKind>>;
     /// The files of a folder, in the order of their names.
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>>;
     /// Makes a folder, and those around it.

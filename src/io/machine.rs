@@ -21,12 +21,12 @@ pub fn set_ceiling(bytes: u64) {
 /// programs.
 pub fn free_bytes() -> u64 {
     let free = least_available(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
-    (free - free / 8).min(left_below(CEILING.load(Ordering::Relaxed)))
+    (free - free / 8).min(remaining_below(CEILING.load(Ordering::Relaxed)))
 }
 
 /// What is left of a ceiling for the whole program; all of it where the system does not say what
 /// the program takes.
-fn left_below(ceiling: u64) -> u64 {
+fn remaining_below(ceiling: u64) -> u64 {
     if ceiling == u64::MAX {
         return ceiling;
     }
@@ -63,7 +63,7 @@ fn least_available(root: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(root.join(name)).ok();
     let free = field(&read("proc/meminfo")?, "MemAvailable:")? * 1024;
     let groups = read("proc/self/cgroup").unwrap_or_default();
-    let left = [left_in_groups(root, &groups), left_in_addresses(&read)];
+    let left = [remaining_in_groups(root, &groups), remaining_addresses(&read)];
     Some(left.into_iter().flatten().fold(free, u64::min))
 }
 
@@ -83,8 +83,8 @@ struct ControlGroup {
 }
 
 /// What is left under the ceilings of the process's groups, and of all groups around them.
-fn left_in_groups(root: &Path, groups: &str) -> Option<u64> {
-    groups_around(root, groups).iter().filter_map(left_in_group).min()
+fn remaining_in_groups(root: &Path, groups: &str) -> Option<u64> {
+    groups_around(root, groups).iter().filter_map(remaining_in_group).min()
 }
 
 /// The process's groups, of version 2 and 1, and all groups around them.
@@ -121,7 +121,7 @@ fn groups_around(root: &Path, groups: &str) -> Vec<ControlGroup> {
 
 /// What is left in one group; files that it holds in memory count as free, since the system drops
 /// them when needed.
-fn left_in_group(group: &ControlGroup) -> Option<u64> {
+fn remaining_in_group(group: &ControlGroup) -> Option<u64> {
     let ControlGroup { folder, names: [ceiling, used], cache } = group;
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
@@ -131,7 +131,7 @@ fn left_in_group(group: &ControlGroup) -> Option<u64> {
 }
 
 /// What is left of the process's address space (`ulimit -v`).
-fn left_in_addresses(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
+fn remaining_addresses(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
     let ceiling = field(&read("proc/self/limits")?, "Max address space")?;
     Some(ceiling.saturating_sub(field(&read("proc/self/status")?, "VmSize:")? * 1024))
 }
@@ -200,10 +200,10 @@ mod tests {
 
     #[test]
     fn what_the_program_takes_counts_below_its_own_ceiling() {
-        assert_eq!(left_below(u64::MAX), u64::MAX);
-        assert_eq!(left_below(1000), 0, "the test alone takes more");
+        assert_eq!(remaining_below(u64::MAX), u64::MAX);
+        assert_eq!(remaining_below(1000), 0, "the test alone takes more");
         let most = 1 << 50;
-        assert!((most / 2..=most).contains(&left_below(most)));
+        assert!((most / 2..=most).contains(&remaining_below(most)));
     }
 
     #[test]

@@ -109,7 +109,7 @@ fn read(
             .map(|map| MapFile::read(map, MapRole::Depth, files, budget))
             .transpose()?,
     ];
-    let decoded = |file: Option<MapFile>| file.map(|file| file.decoded(budget)).transpose();
+    let decoded = |file: Option<MapFile>| file.map(|file| file.decode(budget)).transpose();
     let (normal, depth) = rayon::join(|| decoded(normal), || decoded(depth));
     let (normal, depth) = (normal?, depth?);
     if is_over() {
@@ -179,7 +179,7 @@ impl<'s> MapFile<'s> {
         Ok(Self { file: files.path(&map.file), bytes, channel: map.channel.as_deref(), role })
     }
 
-    fn decoded(self, budget: &Budget) -> Result<StoredMap> {
+    fn decode(self, budget: &Budget) -> Result<StoredMap> {
         stored::load(&self.file, &self.bytes, self.channel, self.role, budget)
     }
 }

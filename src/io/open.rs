@@ -118,7 +118,7 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
     }
     if clip::is_clip(bytes) {
         let none = "a Clip Studio drawing without a preview; save it as PSD in Clip Studio";
-        let preview = clip::preview(bytes).ok_or_else(|| Error::unsupported(file, none))?;
+        let preview = clip::preview(bytes).ok_or_else(|| Error::unsupported_file(file, none))?;
         let mut shown = single(file, &preview, budget)?;
         let note = "it is a Clip Studio drawing, shown by its preview; for its layers, save it as \
                     PSD in Clip Studio";

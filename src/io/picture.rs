@@ -7,7 +7,7 @@ mod painted;
 mod passes;
 
 pub use crate::pixels::Painted;
-pub use light::finished;
+pub use light::read_finished_picture;
 pub use painted::decode_paint;
 pub use passes::{LightLayer, layers};
 

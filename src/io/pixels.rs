@@ -121,15 +121,16 @@ fn check<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
     size: Size,
     kind: PngKind,
 ) -> Result<Asset> {
-    let encode =
-        |how| encode_strips(strips(), size, kind, how).map_err(|e| Error::unsupported(file, e));
+    let encode = |how| {
+        encode_strips(strips(), size, kind, how).map_err(|e| Error::unsupported_file(file, e))
+    };
     let mut bytes = encode(png::Compression::Fast)?;
     // The quick compressor makes noise larger than it is.
     if bytes.len() > STORED_BYTES + size.area() * kind.bytes() * 1001 / 1000 {
         bytes = encode(png::Compression::NoCompression)?;
     }
     if !is_stored_as(&bytes, strips()) {
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             "a picture could not be read back correctly; nothing was saved",
         ));
@@ -187,7 +188,7 @@ pub fn is_16_bit(png: &[u8]) -> bool {
 }
 
 /// The values of a PNG that was encoded here, rounded to bytes.
-pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
+pub fn decode_png(bytes: &[u8]) -> Option<Vec<u8>> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
     let mut values = vec![0; reader.output_buffer_size()?];
     let info = reader.next_frame(&mut values).ok()?;
@@ -387,7 +388,7 @@ mod tests {
         ));
         let short = Budget { memory_bytes: 100_000, ..Budget::default() };
         assert!(decode_tiles(encoded.file.bytes(), 0, 0, &short).is_none());
-        let bytes = decoded(encoded.file.bytes()).unwrap();
+        let bytes = decode_png(encoded.file.bytes()).unwrap();
         assert_eq!(bytes[4 * 33..4 * 34], soft(33).map(|v| ((u32::from(v) + 128) / 257) as u8));
     }
 

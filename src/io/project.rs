@@ -93,7 +93,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
     if let Some(small) = SmallPicture::of(whole, document.size, thumbnail::STORED_PX) {
         picture(thumbnail::ENTRY, &small.rgba, small.size)?;
     }
-    packed(file, &entries).map(Some)
+    pack_zip(file, &entries).map(Some)
 }
 
 /// An entry of the zip.
@@ -143,7 +143,7 @@ pub fn documents(
 }
 
 /// Entries as a zip.
-pub fn packed(file: &Path, entries: &[ZipEntry]) -> Result<Vec<u8>> {
+pub fn pack_zip(file: &Path, entries: &[ZipEntry]) -> Result<Vec<u8>> {
     let pack = || {
         let mut packer = ZipPacker::default();
         for ZipEntry { name, bytes, is_text } in entries {
@@ -155,7 +155,7 @@ pub fn packed(file: &Path, entries: &[ZipEntry]) -> Result<Vec<u8>> {
         }
         packer.finish()
     };
-    pack().map_err(|e| Error::unsupported(file, format!("the project cannot be packed ({e})")))
+    pack().map_err(|e| Error::unsupported_file(file, format!("the project cannot be packed ({e})")))
 }
 
 /// The pictures that show one layer alone, with their names.

@@ -57,8 +57,8 @@ mod version;
 pub use looks::{LiveLook, PaintedBall};
 pub use materials::PartMaterial;
 pub use presets::{
-    BrushPreset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush,
-    write_preset, written_brush,
+    BrushPreset, PresetGroup, brush_to_json, load_preset, preset, preset_brush, preset_names,
+    presets, read_brush, write_preset,
 };
 pub use samples::parse;
 pub use selections::{file as selection_file, with_selection, write_of_stroke};
@@ -122,7 +122,7 @@ pub fn read(text: &[u8], source: RecipeSource) -> Result<Document> {
 pub fn read_noting(text: &[u8], source: RecipeSource) -> Result<(Document, Vec<String>)> {
     let (document, notes) =
         read_unshaped(&parse(source.file, text, source.budget)?, source, TileGrids::new())?;
-    let document = shaped(document);
+    let document = with_shape(document);
     let notes = [notes, document.notes_of_parts()].concat();
     Ok((document, notes))
 }
@@ -135,11 +135,11 @@ pub fn read_value(value: &Value, source: RecipeSource) -> Result<Document> {
 /// As [`read_value`], with the pixels of some paint layers known already; they were within the
 /// budget.
 pub fn read_with_tiles(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<Document> {
-    read_unshaped(value, source, tiles).map(|(document, _)| shaped(document))
+    read_unshaped(value, source, tiles).map(|(document, _)| with_shape(document))
 }
 
 /// With the surface that its parts make, and what is selected of it.
-fn shaped(document: Document) -> Document {
+fn with_shape(document: Document) -> Document {
     let document = document.reshaped();
     let active_selection = document.active_selection.clone().filter(|found| !found.is_empty());
     Document { active_selection, ..document }
@@ -172,7 +172,7 @@ pub fn read_unshaped(
 
     let CanvasAndSurface { size, surface, files, notes: of_maps } =
         shape(canvas, own.as_ref(), source)?;
-    let surface_source = source.onto.map(fitted_source).or(own.map(|(own, _)| own)).map(Arc::new);
+    let surface_source = source.onto.map(fit_source).or(own.map(|(own, _)| own)).map(Arc::new);
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *source.budget;
     let pictures = PictureCache::knowing(tiles);
     let (known, attachments, notes) = (HashMap::new(), Vec::new(), of_maps);
@@ -201,7 +201,7 @@ pub fn read_unshaped(
             .unwrap_or_default(),
         None => Vec::new(),
     };
-    selections.extend(reader.outlined(&parts, &selections));
+    selections.extend(reader.outline_selections(&parts, &selections));
     reader.attachments = parts.iter().map(|part| part.id.clone()).collect();
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
     let bare = Document {
@@ -248,7 +248,7 @@ fn check_version(root: &mut Fields) -> Result<()> {
 
 fn canvas(node: &JsonNode, source: RecipeSource) -> Result<Size> {
     let mut fields = node.fields()?;
-    let mut side = |name| fields.required(name)?.integer(1..=i64::from(u32::MAX));
+    let mut side = |name| fields.require(name)?.integer(1..=i64::from(u32::MAX));
     let (width, height) = (side("width")?, side("height")?);
     fields.finish()?;
     source.budget.size(source.file, width as u64, height as u64)
@@ -263,9 +263,10 @@ pub fn put_onto(
 ) -> Result<Document> {
     let maps::ImportedSurface { surface, files, .. } =
         maps::import(onto.surface, onto.files, budget)?;
-    let surface =
-        Arc::new(surface).onto(document.size, None).map_err(|e| Error::unsupported(file, e))?;
-    let surface_source = Some(Arc::new(fitted_source(onto)));
+    let surface = Arc::new(surface)
+        .onto(document.size, None)
+        .map_err(|e| Error::unsupported_file(file, e))?;
+    let surface_source = Some(Arc::new(fit_source(onto)));
     let surface_files = Arc::new(files);
     let bare = document.with_parts(Vec::new());
     let next = Document { surface: Some(surface), surface_source, surface_files, ..bare };
@@ -319,7 +320,7 @@ fn shape(
     let maps::ImportedSurface { surface, findings, files } = import;
     let refused = |e: SurfaceError| match node {
         Some(node) => node.refusal(e),
-        None => Error::unsupported(source.file, e),
+        None => Error::unsupported_file(source.file, e),
     };
     let map = node.and(own_map);
     let surface = Some(Arc::new(surface).onto(size, map.as_ref()).map_err(refused)?);
@@ -327,7 +328,7 @@ fn shape(
 }
 
 /// Another object is fitted to the canvas, wherever its maps were on its own canvas.
-fn fitted_source(onto: OtherSurface) -> SurfaceSource {
+fn fit_source(onto: OtherSurface) -> SurfaceSource {
     SurfaceSource { matrix: None, ..onto.surface.clone() }
 }
 

@@ -16,7 +16,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use sessions::{LostSession, RecoveredDocument, held_by_others, read, sessions};
+pub use sessions::{LostSession, RecoveredDocument, count_held_by_others, read, sessions};
 
 use super::fs::{FileLock, Fs};
 use super::replace::FileStamp;
@@ -198,7 +198,7 @@ fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn FileLoc
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
     for attempt in 0..1000 {
         let path = folder.join(format!("{now:016x}-{}-{attempt}.log", std::process::id()));
-        let is_free = fs.found(&path).map_err(|e| Error::io(&path, e))?.is_none();
+        let is_free = fs.find(&path).map_err(|e| Error::io(&path, e))?.is_none();
         if let Some(lock) =
             fs.lock(&path.with_extension("lock")).map_err(|e| Error::io(&path, e))?
             && is_free

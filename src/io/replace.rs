@@ -120,7 +120,8 @@ impl ReplaceJob<'_> {
         let target = self.target()?;
         self.check_allowed(&target)?;
         sweep(self.fs, folder_of(&target));
-        let failed = |e| self.failed("it could not be written there; choose another folder", e);
+        let failed =
+            |e| self.describe_failure("it could not be written there; choose another folder", e);
         let mut part = PartFile::create(self.fs, folder_of(&target)).map_err(failed)?;
         let placed = self.write_part(&mut part, &target).and_then(|is_written| {
             if is_written {
@@ -141,8 +142,9 @@ impl ReplaceJob<'_> {
     fn write_part(&self, part: &mut PartFile, target: &Path) -> Result<bool> {
         let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
         self.progress.add_total(2 * chunks);
-        let failed = |e| self.failed("it could not be written there; choose another folder", e);
-        if self.fs.found(target).map_err(failed)?.is_some() {
+        let failed =
+            |e| self.describe_failure("it could not be written there; choose another folder", e);
+        if self.fs.find(target).map_err(failed)?.is_some() {
             // Before there is anything to read in it. A disk without owners and permissions must
             // not keep anybody from saving.
             let _ = self.fs.copy_ownership(target, &part.path);
@@ -160,8 +162,12 @@ impl ReplaceJob<'_> {
 
     /// The written file is read back.
     fn compare(&self, part: &Path) -> Result<bool> {
-        let failed =
-            |e| self.failed("what was written could not be read back; choose another folder", e);
+        let failed = |e| {
+            self.describe_failure(
+                "what was written could not be read back; choose another folder",
+                e,
+            )
+        };
         let differs =
             || failed(io::Error::new(ErrorKind::InvalidData, "the disk returned different bytes"));
         let mut handle = self.fs.open(part).map_err(failed)?;
@@ -191,10 +197,11 @@ impl ReplaceJob<'_> {
             return Ok(());
         }
         let is_kept = self.terms.keeps_previous
-            && self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
+            && self.fs.find(target).map_err(|e| self.describe_failure("", e))?.is_some();
         let previous = is_kept.then(|| Previous::keep(self.fs, part, target)).transpose();
-        let previous = previous
-            .map_err(|e| self.failed("the previous version could not be kept next to it", e))?;
+        let previous = previous.map_err(|e| {
+            self.describe_failure("the previous version could not be kept next to it", e)
+        })?;
         let renamed = self.rename(part, target);
         if let Some(previous) = previous {
             if renamed.is_ok() { previous.forget(self.fs) } else { previous.undo(self.fs) }
@@ -218,7 +225,9 @@ impl ReplaceJob<'_> {
                     self.fs.pause(pause);
                     pause *= 2;
                 }
-                Err(e) => return Err(self.failed("the old file could not be replaced", e)),
+                Err(e) => {
+                    return Err(self.describe_failure("the old file could not be replaced", e));
+                }
             }
         }
         Ok(())
@@ -233,7 +242,7 @@ impl ReplaceJob<'_> {
                 let _ = self.fs.remove(&part.path);
                 Ok(true)
             }
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => Err(self.taken_error()),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => Err(self.name_taken_error()),
             Err(_) => Ok(false),
         }
     }
@@ -243,13 +252,14 @@ impl ReplaceJob<'_> {
         match self.fs.sync_dir(folder_of(target)) {
             // Some disks cannot; they have no later moment either.
             Err(e) if !matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
-                Err(self.failed("the file was written, but may be lost in a power cut", e))
+                Err(self
+                    .describe_failure("the file was written, but may be lost in a power cut", e))
             }
             _ => Ok(()),
         }
     }
 
-    fn failed(&self, what: &str, error: io::Error) -> Error {
+    fn describe_failure(&self, what: &str, error: io::Error) -> Error {
         if what.is_empty() {
             return Error::io(self.named, error);
         }

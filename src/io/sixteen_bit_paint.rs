@@ -58,7 +58,7 @@ fn is_held(document: &Document, budget: &Budget) -> bool {
     held.add(document, true);
     !is_16_bit
         || budget
-            .room_for("", held.used().total().saturating_add(document.flattening_bytes()))
+            .room_for("", held.sum_up().total().saturating_add(document.flattening_bytes()))
             .is_ok()
 }
 

@@ -55,7 +55,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let texels = texels.as_chunks().0.to_vec();
     let picture = Picture::srgb8(size, texels);
     let picture = picture.ok_or_else(|| Error::decode(file, "the drawing has no pixels"))?;
-    let encoded = Some(drawing.outlined(bytes));
+    let encoded = Some(drawing.outline_text(bytes));
     let drawing = Some(Arc::new(drawing) as Arc<dyn raster::VectorDrawing>);
     Ok(Picture { encoded, drawing, ..picture })
 }
@@ -93,7 +93,7 @@ pub(super) fn tree(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Tree> {
     let options = Options {
         fontdb: if has_text(bytes) { fonts() } else { Arc::default() },
         font_family: "sans-serif".into(),
-        image_href_resolver: embedded_only(*budget),
+        image_href_resolver: resolve_embedded_only(*budget),
         ..Options::default()
     };
     // The parser and the renderer are third-party code: a panic counts as a damaged file.
@@ -147,7 +147,7 @@ impl Drawing {
     }
 
     /// The file with its text as outlines: the same on every machine.
-    fn outlined(&self, bytes: &[u8]) -> Asset {
+    fn outline_text(&self, bytes: &[u8]) -> Asset {
         if self.has_text {
             Asset::from(self.tree.to_string(&WriteOptions::default()).into_bytes())
         } else {
@@ -201,7 +201,7 @@ pub(super) fn fonts() -> Arc<Database> {
 }
 
 /// Pictures within the file, if the budget allows them; never other files.
-fn embedded_only(budget: Budget) -> ImageHrefResolver<'static> {
+fn resolve_embedded_only(budget: Budget) -> ImageHrefResolver<'static> {
     let decode = ImageHrefResolver::default_data_resolver();
     ImageHrefResolver {
         resolve_data: Box::new(move |mime, data, options| {

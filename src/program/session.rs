@@ -225,7 +225,7 @@ impl Session {
     pub fn adopt(&mut self, opened: OpenedFile) {
         let OpenedFile { mut open, notes, .. } = opened;
         if open.file.is_none() && open.name.is_empty() {
-            open.name = self.untitled();
+            open.name = self.new_title();
         }
         self.add_document(open);
         self.notes.extend(notes);
@@ -281,7 +281,7 @@ impl Session {
     }
 
     /// A name for a document that has none.
-    pub fn untitled(&mut self) -> String {
+    pub fn new_title(&mut self) -> String {
         self.untitled += 1;
         format!("Untitled {}", self.untitled)
     }

@@ -26,7 +26,7 @@ mod tests {
     fn the_window_names_its_own_controls_and_no_options_of_the_command_line() {
         let too_large = Budget::default().size(Path::new("a.png"), 1 << 20, 1).unwrap_err();
         let transparent =
-            Error::unsupported("a.jpg", "it is transparent").with_remedy(Remedy::Background);
+            Error::unsupported_file("a.jpg", "it is transparent").with_remedy(Remedy::Background);
         for (error, help) in [(too_large, "smaller version"), (transparent, "Lay it on white")] {
             let said = with_advice(&error);
             assert!(said.contains(help) && !said.contains("--"), "{said}");

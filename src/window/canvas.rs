@@ -22,7 +22,7 @@ mod text_carets;
 mod unwrapped;
 mod wobble;
 
-pub use overlay::loaded;
+pub use overlay::load_texture;
 pub use parts::ball;
 pub use second_view::SecondView;
 
@@ -286,7 +286,7 @@ impl Canvas {
     }
 
     /// What is selected, as last drawn.
-    pub fn selected(&self) -> Option<Rect> {
+    pub fn selected_rect(&self) -> Option<Rect> {
         self.ants.bounds()
     }
 
@@ -294,7 +294,7 @@ impl Canvas {
     fn draw_elsewhere(&self, painter: &egui::Painter, screen_from_canvas: Affine2, size: Size) {
         let at = corners(size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
         if let Some(checker) = &self.checker {
-            painter.add(checkered(checker.id(), at));
+            painter.add(checker_shape(checker.id(), at));
         }
         self.texture_in_front(false).draw(painter, screen_from_canvas, size);
     }
@@ -307,7 +307,7 @@ impl Canvas {
                 TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
             ui.ctx().load_texture("checker", image, options)
         });
-        painter.add(checkered(texture.id(), canvas));
+        painter.add(checker_shape(texture.id(), canvas));
     }
 
     fn draw_overlay(
@@ -336,7 +336,7 @@ impl Canvas {
 }
 
 /// The squares behind what is transparent, of the same size at any zoom.
-fn checkered(texture: egui::TextureId, canvas: [egui::Pos2; 4]) -> egui::Shape {
+fn checker_shape(texture: egui::TextureId, canvas: [egui::Pos2; 4]) -> egui::Shape {
     const SQUARES_PT: f32 = 16.0;
     let uv = canvas.map(|p| (p, pos2(p.x / SQUARES_PT, p.y / SQUARES_PT)));
     quad(texture, uv, Color32::WHITE)

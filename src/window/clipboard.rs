@@ -26,7 +26,7 @@ pub enum PastedContent {
 pub type ClipboardSource = fn() -> Result<PastedContent>;
 
 fn open() -> Result<Clipboard> {
-    Clipboard::new().map_err(|error| Error::unsupported("clipboard", error))
+    Clipboard::new().map_err(|error| Error::unsupported_file("clipboard", error))
 }
 
 /// The picture or the files in the clipboard; fails if there are none. It takes as long as the
@@ -40,8 +40,8 @@ pub fn read_clipboard() -> Result<PastedContent> {
     if let Ok(image) = clipboard.get_image() {
         let size = Size::new(image.width as u32, image.height as u32);
         let picture = Picture::srgb8(size, image.bytes.as_chunks::<4>().0.to_vec());
-        let picture =
-            picture.ok_or_else(|| Error::unsupported("clipboard", "its picture is damaged"))?;
+        let picture = picture
+            .ok_or_else(|| Error::unsupported_file("clipboard", "its picture is damaged"))?;
         return Ok(PastedContent::Picture(PastedPicture { name: "Pasted.png".into(), picture }));
     }
     let files = clipboard.get().file_list().ok().filter(|files| !files.is_empty());
@@ -68,7 +68,7 @@ pub fn put(size: Size, rgba: &[u8]) -> Result<Clipboard> {
     let mut clipboard = open()?;
     let image =
         ImageData { width: size.width as usize, height: size.height as usize, bytes: rgba.into() };
-    clipboard.set_image(image).map_err(|error| Error::unsupported("clipboard", error))?;
+    clipboard.set_image(image).map_err(|error| Error::unsupported_file("clipboard", error))?;
     Ok(clipboard)
 }
 
@@ -100,7 +100,7 @@ pub fn translate_keys(ctx: &Context, events: &mut [Event]) {
 }
 
 fn text(clipboard: &mut Clipboard) -> Result<String> {
-    clipboard.get_text().map_err(|error| Error::unsupported("clipboard", error))
+    clipboard.get_text().map_err(|error| Error::unsupported_file("clipboard", error))
 }
 
 /// Puts the text that a field copied into the clipboard; the returned value must be kept.

@@ -60,7 +60,7 @@ impl TabletListener<'_> {
                 if let Some(axes) = self.devices.as_mut().and_then(|devices| devices.change()) {
                     tablet.follow(axes);
                 }
-                tablet.moved([position.x, position.y]);
+                tablet.move_to([position.x, position.y]);
             }
             WindowEvent::AxisMotion { axis, value, .. } => tablet.axis(axis, value),
             _ => {}

@@ -4,7 +4,7 @@
 mod button;
 mod tools;
 
-pub use button::{BUTTON_PT, icon_button, quiet_button, sized_button};
+pub use button::{BUTTON_PT, add_sized_button, icon_button, quiet_button};
 
 use crate::tools::ToolKind;
 use eframe::egui::{self, Color32, Painter, Pos2, Rect, Stroke, Vec2, pos2};

@@ -38,7 +38,7 @@ impl<W: JobWindow> JobResult<W> {
         Self { then: Some(Box::new(then)), ..Self::nothing() }
     }
 
-    pub fn failed(error: Error) -> Self {
+    pub fn from_error(error: Error) -> Self {
         Self::then(move |window, _| window.show_error(&error))
     }
 
@@ -49,7 +49,7 @@ impl<W: JobWindow> JobResult<W> {
     ) -> Self {
         match found {
             Ok(found) => Self::then(move |window, _| then(window, found)),
-            Err(error) => Self::failed(error),
+            Err(error) => Self::from_error(error),
         }
     }
 
@@ -177,15 +177,16 @@ impl<W: JobWindow> Jobs<W> {
         let named = name.clone();
         let run = move || {
             let done = memory::catch_out_of_memory(|| work(&watched));
-            let done = done
-                .unwrap_or_else(|refused| JobResult::failed(Error::out_of_memory(&named, refused)));
+            let done = done.unwrap_or_else(|refused| {
+                JobResult::from_error(Error::out_of_memory(&named, refused))
+            });
             // The window may be closed by then.
             let _ = sender.send((key, done));
             ctx.request_repaint();
         };
         if let Err(error) = spawn(&name, run) {
             // This end of the channel is held here.
-            let _ = self.sender.send((key, JobResult::failed(error)));
+            let _ = self.sender.send((key, JobResult::from_error(error)));
         }
         self.under_way.push(RunningJob { key, name, progress, kind, since: Instant::now() });
     }

@@ -108,5 +108,5 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
     let wrong = wrong.rsplit(": ").next().unwrap_or(&wrong).trim_end_matches(['.', ')']);
     let reason =
         format!("no window can be opened here ({wrong}); “rilievo render” paints without one");
-    Err(Error::unsupported("display", reason))
+    Err(Error::unsupported_file("display", reason))
 }

@@ -41,18 +41,18 @@ impl Messages {
 
     /// Whether it is shown now.
     pub fn contains(&self, text: &str) -> bool {
-        self.shown().any(|message| message.text == text)
+        self.shown_messages().any(|message| message.text == text)
     }
 
     /// Those of the document in front, and of none.
-    fn shown(&self) -> impl Iterator<Item = &Message> {
+    fn shown_messages(&self) -> impl Iterator<Item = &Message> {
         let front = self.front;
         self.all.iter().filter(move |message| message.is_shown(front))
     }
 
     /// Shows them below the upper edge of the canvas, which does not move.
     pub fn show(&mut self, ctx: &Context, canvas: Rect) {
-        let count = self.shown().count();
+        let count = self.shown_messages().count();
         if count == 0 {
             return;
         }
@@ -112,7 +112,7 @@ mod tests {
         messages.front_is(Some(3), |_| true);
         messages.push("of the third".into());
         let told = |messages: &Messages| -> Vec<String> {
-            messages.shown().map(|message| message.text.clone()).collect()
+            messages.shown_messages().map(|message| message.text.clone()).collect()
         };
         assert_eq!(told(&messages), ["of the program", "of the third"]);
         messages.front_is(Some(4), |_| true);

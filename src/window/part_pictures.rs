@@ -69,7 +69,7 @@ impl PartPictures {
     }
 
     /// The map of a part's form, as it was made last, to where the part is.
-    pub fn moved(&self, id: &str) -> Affine2 {
+    pub fn map_since(&self, id: &str) -> Affine2 {
         let at = self.areas.iter().position(|(part, _)| part.id == id);
         at.and_then(|at| self.moved.get(at)).copied().unwrap_or(Affine2::IDENTITY)
     }
@@ -91,9 +91,9 @@ fn draw_lit(form: &Form) -> ColorImage {
     let texel = |i: usize| {
         let at = |v: usize, n: usize, all: u32| (((v as f32 + 0.5) / n as f32) * all as f32) as i32;
         let (x, y) = (at(i % width, width, size.width), at(i / width, height, size.height));
-        let normal = form.normals.clamped(x, y);
+        let normal = form.normals.at_clamped(x, y);
         let shade = srgb::quantize(srgb::encode(0.06 + 0.8 * normal.dot(light).max(0.0)));
-        Color32::from_rgba_unmultiplied(shade, shade, shade, form.coverage.clamped(x, y))
+        Color32::from_rgba_unmultiplied(shade, shade, shade, form.coverage.at_clamped(x, y))
     };
     ColorImage::new([width, height], (0..width * height).map(texel).collect())
 }

@@ -17,7 +17,7 @@ impl MainWindow {
     /// Keeps recovery logs in a folder, and offers lost drawings from it.
     pub fn keep_recovery_in(&mut self, folder: PathBuf) {
         let autosave = Autosave::new(folder);
-        let lost = autosave.lost_sessions();
+        let lost = autosave.find_lost_sessions();
         self.session.autosave = Some(autosave);
         // The window opens whatever is in that folder.
         let look = move || catch_unwind(AssertUnwindSafe(|| lost.list())).unwrap_or_default();
@@ -41,13 +41,13 @@ impl MainWindow {
         self.close_empty_offer();
         for one in lost {
             let Some(autosave) = &self.session.autosave else { return };
-            let (bring, title) = (autosave.lost_sessions(), one.title.clone());
+            let (bring, title) = (autosave.find_lost_sessions(), one.title.clone());
             self.jobs.start(
                 format!("Recovering {title}"),
                 JobKind::Working,
                 move |progress: &Progress| {
                     let found = catch_unwind(AssertUnwindSafe(|| bring.bring_back(one, progress)));
-                    match found.unwrap_or_else(|_| Err(broken(&title))).transpose() {
+                    match found.unwrap_or_else(|_| Err(damaged_log_error(&title))).transpose() {
                         Some(found) => JobResult::of(found, Self::take_recovered).in_front(),
                         None => JobResult::nothing(),
                     }
@@ -81,6 +81,6 @@ impl MainWindow {
     }
 }
 
-fn broken(title: &str) -> Error {
+fn damaged_log_error(title: &str) -> Error {
     Error::decode(title, "its recovery log is damaged in an unexpected way; it was not deleted")
 }

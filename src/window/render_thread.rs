@@ -382,12 +382,12 @@ impl RenderWork {
             }
             self.show_draft();
         }
-        let size = wanted_size(self.wanted.as_ref());
+        let size = size_of_request(self.wanted.as_ref());
         Some(done.into_batch(picture, size))
     }
 }
 
-fn wanted_size(wanted: Option<&RenderRequest>) -> Size {
+fn size_of_request(wanted: Option<&RenderRequest>) -> Size {
     wanted.map_or(Size::new(0, 0), |wanted| wanted.document.size)
 }
 

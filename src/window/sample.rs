@@ -28,17 +28,17 @@ pub const SAMPLES: [StartSample; 3] = [
     StartSample {
         name: "Ball and ring",
         about: "A shape with a gradient that follows it: drop a photo, paint highlights",
-        layers: |size| vec![bent("Base", size, &CLAY, 0.6)],
+        layers: |size| vec![bent_gradient("Base", size, &CLAY, 0.6)],
     },
     StartSample {
         name: "Chrome",
         about: "A horizon that is bent as metal reflects it",
-        layers: |size| vec![bent("Chrome", size, &CHROME, 1.0)],
+        layers: |size| vec![bent_gradient("Chrome", size, &CHROME, 1.0)],
     },
     StartSample {
         name: "In a painter's light",
         about: "Flat color under a lamp with shadows: move the light on the canvas (A)",
-        layers: lit,
+        layers: lit_layers,
     },
 ];
 
@@ -69,7 +69,7 @@ impl StartSample {
 
     /// The same, so many pixels wide and high.
     pub fn document(&self, side: usize) -> Result<Document> {
-        let surface = surface(side).map_err(|error| Error::unsupported("sample", error))?;
+        let surface = surface(side).map_err(|error| Error::unsupported_file("sample", error))?;
         let size = Size::new(side as u32, side as u32);
         let down = (vec2(0.0, 0.0), vec2(0.0, side as f32));
         let dark = [(0.0, [0x3a; 3]), (1.0, [0x24; 3])];
@@ -81,7 +81,7 @@ impl StartSample {
 }
 
 /// A gradient that follows the directions of the shape.
-fn bent(name: &str, size: Size, stops: &Stops, alpha: f32) -> Layer {
+fn bent_gradient(name: &str, size: Size, stops: &Stops, alpha: f32) -> Layer {
     let ends = (vec2(0.30, 0.22) * size.width as f32, vec2(0.62, 0.74) * size.width as f32);
     gradient(name, ends, stops, Operator::Normal { alpha, beta: 1.0, detail: 0.0 })
 }
@@ -102,7 +102,7 @@ fn gradient(name: &str, (from, to): (Vec2, Vec2), stops: &Stops, operator: Opera
 }
 
 /// A color, and a painter's light on it.
-fn lit(size: Size) -> Vec<Layer> {
+fn lit_layers(size: Size) -> Vec<Layer> {
     let mut light = Shading::fitting(Model::Painter, size);
     light.painter.beneath = true;
     vec![
@@ -126,7 +126,7 @@ struct Seen {
 }
 
 /// What is seen at a place; `None` off the shape.
-fn seen(p: Vec2) -> Option<Seen> {
+fn hit_at(p: Vec2) -> Option<Seen> {
     ring(p).into_iter().chain(ball(p)).max_by(|a, b| a.height.total_cmp(&b.height))
 }
 
@@ -203,7 +203,7 @@ fn surface(side: usize) -> std::result::Result<Surface, crate::surface::SurfaceE
     let size = Size::new(side as u32, side as u32);
     let place = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5) / side as f32;
     let px = 1.0 / side as f32;
-    let seen_at = |x: usize, y: usize| seen(place(x, y));
+    let seen_at = |x: usize, y: usize| hit_at(place(x, y));
     let heights =
         Plane::from_fn(size, |x, y| seen_at(x, y).map_or(f32::NEG_INFINITY, |seen| seen.height));
     let normals = Plane::from_fn(size, |x, y| seen_at(x, y).map_or(Vec3::ZERO, |seen| seen.normal));
@@ -214,7 +214,7 @@ fn surface(side: usize) -> std::result::Result<Surface, crate::surface::SurfaceE
         heights.map(|h| if h.is_finite() { (high - h) / (high - low).max(1e-6) } else { f32::NAN });
     // Coverage: 8 × 8 places of each pixel at the rim.
     let coverage = Plane::from_fn(size, |x, y| {
-        let is_on = |dx: i32, dy: i32| heights.clamped(x as i32 + dx, y as i32 + dy).is_finite();
+        let is_on = |dx: i32, dy: i32| heights.at_clamped(x as i32 + dx, y as i32 + dy).is_finite();
         let on = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)]
             .into_iter()
             .filter(|&(dx, dy)| is_on(dx, dy))
@@ -224,7 +224,8 @@ fn surface(side: usize) -> std::result::Result<Surface, crate::surface::SurfaceE
         }
         let here = place(x, y);
         let sub = |i: i32| ((i % 8) as f32 - 3.5) * px / 8.0;
-        let covered = (0..64).filter(|&i| seen(here + vec2(sub(i), sub(i / 8))).is_some()).count();
+        let covered =
+            (0..64).filter(|&i| hit_at(here + vec2(sub(i), sub(i / 8))).is_some()).count();
         (covered * 255 / 64) as u8
     });
     Surface::new(Maps { normals, depth, coverage })

@@ -106,7 +106,7 @@ impl Settings {
             },
             "key preset": self.keymap.preset().name(),
             "keys": self.keymap.to_json(),
-            "aids": self.aids.written(),
+            "aids": self.aids.to_value(),
             "kept share": self.kept_share,
             "color": { "wheel": self.color.is_wheel, "numbers": self.color.has_numbers },
             "details": self.has_details,

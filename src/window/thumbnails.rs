@@ -132,7 +132,7 @@ impl Thumbnails {
                 (size.width.div_ceil(step) as usize, size.height.div_ceil(step) as usize);
             let gray = |i: usize| {
                 let at = |v: usize| (v as u32 * step + step / 2) as i32;
-                let v = coverage.clamped(at(i % width), at(i / width));
+                let v = coverage.at_clamped(at(i % width), at(i / width));
                 Color32::from_gray(if *invert { 255 - v } else { v })
             };
             let image = ColorImage::new([width, height], (0..width * height).map(gray).collect());
@@ -161,12 +161,12 @@ impl ThumbnailMaker {
         let id = order.layer.id;
         let mut factor = (SIDE as f32 / order.document.size.longer_side()).min(1.0);
         let mut image = self.paint(order, factor)?;
-        let mut covered = covered(&image);
+        let mut covered = covered_area(&image);
         let zoom = SIDE as f32 / covered.longer_side().max(1.0);
         if zoom >= 2.0 && factor < 1.0 {
             factor = (factor * zoom.min(LARGEST_ZOOM).log2().floor().exp2()).min(1.0);
             image = self.paint(order, factor)?;
-            covered = self::covered(&image);
+            covered = self::covered_area(&image);
         }
         Some(Thumbnail { id, image: image.region_by_pixels(covered.low, covered.size) })
     }
@@ -224,7 +224,7 @@ impl CoveredArea {
 }
 
 /// What is not transparent, with a margin of a pixel; all of it if nothing is covered.
-fn covered(image: &ColorImage) -> CoveredArea {
+fn covered_area(image: &ColorImage) -> CoveredArea {
     let [width, height] = image.size;
     let whole = CoveredArea { low: [0, 0], size: image.size };
     let at = |i: usize| [i % width.max(1), i / width.max(1)];
@@ -245,9 +245,9 @@ mod tests {
     #[test]
     fn a_thumbnail_is_cropped_to_what_is_covered() {
         let mut image = ColorImage::filled([20, 10], Color32::TRANSPARENT);
-        assert_eq!(covered(&image).size, [20, 10], "an empty one shows the canvas");
+        assert_eq!(covered_area(&image).size, [20, 10], "an empty one shows the canvas");
         image[(4, 3)] = Color32::RED;
         image[(7, 9)] = Color32::RED;
-        assert_eq!(covered(&image), CoveredArea { low: [3, 2], size: [6, 8] });
+        assert_eq!(covered_area(&image), CoveredArea { low: [3, 2], size: [6, 8] });
     }
 }

@@ -103,7 +103,7 @@ impl<'a> NumberField<'a> {
     }
 
     /// A value as it is shown.
-    pub fn written(&self, value: f32) -> String {
+    pub fn format(&self, value: f32) -> String {
         // A zero has no sign.
         let shown = value * self.factor + 0.0;
         format!("{shown:.*}{}", self.decimals, self.suffix)

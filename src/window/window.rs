@@ -171,7 +171,7 @@ impl MainWindow {
     /// The recorded actions as a replay file, one line each. Documents with corrected maps and
     /// recovered drawings do not come from files, and are not in it.
     pub fn replay_text(&self) -> String {
-        self.recorded.iter().flatten().map(|action| format!("{}\n", action.written())).collect()
+        self.recorded.iter().flatten().map(|action| format!("{}\n", action.to_value())).collect()
     }
 
     /// Records an action.

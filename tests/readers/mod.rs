@@ -32,7 +32,7 @@ struct One(Vec<u8>);
 impl Files for One {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         match self.0.len() as u64 {
-            0 => Err(Error::unsupported(name, "there is no such file")),
+            0 => Err(Error::unsupported_file(name, "there is no such file")),
             n if n > budget.file_bytes => Err(Error::too_large(name, "it is")),
             _ => Ok(self.0.clone()),
         }

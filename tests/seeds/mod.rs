@@ -24,7 +24,10 @@ struct InMemory(HashMap<&'static str, Vec<u8>>);
 
 impl Files for InMemory {
     fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
-        self.0.get(name).cloned().ok_or_else(|| Error::unsupported(name, "there is no such file"))
+        self.0
+            .get(name)
+            .cloned()
+            .ok_or_else(|| Error::unsupported_file(name, "there is no such file"))
     }
 
     fn path(&self, name: &str) -> PathBuf {

@@ -99,7 +99,7 @@ fn the_keys_of_krita_do_what_they_do_there_and_say_so_where_they_cannot() {
     let mut harness = window();
     let (ctrl, shift) = (Modifiers::COMMAND, Modifiers::SHIFT);
     let is_selected =
-        |harness: &Story| session(harness).active().unwrap().document().selected().is_some();
+        |harness: &Story| session(harness).active().unwrap().document().active_coverage().is_some();
     for (modifiers, letter, selects) in [
         (ctrl, Key::A, true),
         (ctrl, Key::D, false),

@@ -47,7 +47,7 @@ fn keys_over_the_canvas_during_an_edit_are_done_after_it_in_their_order() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.step();
     until(&mut harness, |harness| {
-        session(harness).active().unwrap().history.undone() == Some("Flatten picture")
+        session(harness).active().unwrap().history.redo_name() == Some("Flatten picture")
     });
     assert_eq!((layers(&harness).len(), session(&harness).tool), (5, ToolKind::Eraser));
 }

@@ -7,7 +7,12 @@ use rilievo::raster::CoverageGrid;
 use rilievo_program::tools::ToolKind;
 
 fn area(harness: &Story) -> f64 {
-    session(harness).active().unwrap().document().selected().map_or(0.0, CoverageGrid::area_px)
+    session(harness)
+        .active()
+        .unwrap()
+        .document()
+        .active_coverage()
+        .map_or(0.0, CoverageGrid::area_px)
 }
 
 #[test]

@@ -16,7 +16,7 @@ impl Document {
                 layer.lock != LayerLock::All && matches!(layer.content, Content::Pixels(_))
             })
         };
-        let selected = self.selected().filter(|_| can(self));
+        let selected = self.active_coverage().filter(|_| can(self));
         // A selection lies on the canvas, and so must the pixels.
         let shown = match selected {
             Some(_) => self.with_transform_applied(layer)?,

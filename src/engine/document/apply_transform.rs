@@ -2,7 +2,7 @@
 //! it as it shows. Floor 4.
 
 use super::attachments::{preserve_look, transform_of};
-use super::layer::on_canvas::seen;
+use super::layer::on_canvas::apply_map;
 use super::{
     Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, NormalLayer,
     StrokeList,
@@ -60,7 +60,7 @@ fn apply_in_list(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Optio
     next[index] = if layers[index].id == id {
         in_place(&layers[index], around)
     } else {
-        let mut outer = handed_down(&layers[index], around)?;
+        let mut outer = hand_down_transform(&layers[index], around)?;
         let within = around.within(&outer);
         if let Content::Group(group) = &mut outer.content {
             group.layers = apply_in_list(&group.layers, id, &within)?;
@@ -72,7 +72,7 @@ fn apply_in_list(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Optio
 
 /// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that
 /// cannot be expressed.
-fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
+fn hand_down_transform(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     let was = around.within(group);
     // Its mesh and liquify cannot be handed down.
     if group.is_warped() {
@@ -89,7 +89,7 @@ fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
         .map(|layer| preserve_look(layer, (&was, &now), &|attachment| Some(attachment.clone())))
         .collect();
     // Its mask is transformed once.
-    let mask = seen(group, &was).mask.clone();
+    let mask = apply_map(group, &was).mask.clone();
     let content = Content::Group(Group { layers: inner?, ..group.content.group()?.clone() });
     Some(Layer { content, mask, ..bare })
 }
@@ -97,14 +97,14 @@ fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
 /// A layer on the canvas without its transform, where its kind can express it.
 pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Arc<Layer> {
     if layer.content.group().is_some() {
-        return handed_down(layer, around).map_or_else(|| layer.clone(), Arc::new);
+        return hand_down_transform(layer, around).map_or_else(|| layer.clone(), Arc::new);
     }
     let map = around.within(layer);
     // Live content cannot express a displacement.
     if layer.is_warped() && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_)) {
         return layer.clone();
     }
-    let seen = seen(layer, &map);
+    let seen = apply_map(layer, &map);
     let content = match &seen.content {
         Content::Image(live) => {
             live.params().unframed().map(|image| Content::Image(Live::new(image)))
@@ -112,13 +112,15 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
         Content::Gradient(live) => {
             live.params().unframed().map(|ramp| Content::Gradient(Live::new(ramp)))
         }
-        Content::Normals(normals) => placed(&normals.placement, &normals.frame).map(|placement| {
-            Content::Normals(NormalLayer {
-                placement,
-                frame: PlaneMap::IDENTITY,
-                ..normals.clone()
+        Content::Normals(normals) => {
+            apply_to_placement(&normals.placement, &normals.frame).map(|placement| {
+                Content::Normals(NormalLayer {
+                    placement,
+                    frame: PlaneMap::IDENTITY,
+                    ..normals.clone()
+                })
             })
-        }),
+        }
         content => Some(content.clone()),
     };
     let transform = transform_of(&around.outside(layer.on.as_ref()).inverse(), &map);
@@ -129,10 +131,10 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
     match &layer.content {
         // What lies beyond the canvas comes back with its part.
         Content::Pixels(pixels) if layer.on.is_some() && !layer.is_warped() => {
-            next.content = Content::Pixels(pixels.taken_along(&map))
+            next.content = Content::Pixels(pixels.transformed(&map))
         }
         Content::Strokes(own) if layer.content.has_attachments() => {
-            match carried_on(own.params(), &seen.content, &now) {
+            match strokes_on_canvas(own.params(), &seen.content, &now) {
                 Some(list) => next.content = Content::Strokes(Live::new(list)),
                 None => return layer.clone(),
             }
@@ -146,7 +148,7 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
 /// `None` where that cannot be expressed.
 ///
 /// * `now`: the map of their layer.
-fn carried_on(own: &StrokeList, seen: &Content, now: &LayerMap) -> Option<StrokeList> {
+fn strokes_on_canvas(own: &StrokeList, seen: &Content, now: &LayerMap) -> Option<StrokeList> {
     let Content::Strokes(seen) = seen else { return None };
     let both = own.strokes.iter().zip(&seen.params().strokes);
     let strokes = both.map(|(own, seen)| {
@@ -167,7 +169,7 @@ impl PlacedImage {
     /// The same image placed on the canvas itself; `None` where its frame is mirrored, skewed or in
     /// perspective.
     fn unframed(&self) -> Option<PlacedImage> {
-        let placement = placed(&self.placement, &self.frame)?;
+        let placement = apply_to_placement(&self.placement, &self.frame)?;
         Some(PlacedImage { placement, frame: PlaneMap::IDENTITY, ..self.clone() })
     }
 }
@@ -184,7 +186,10 @@ impl crate::paint::Gradient {
 
 /// A placement on the canvas that a frame lies on; `None` for a frame that is mirrored, skewed or
 /// in perspective.
-pub(in crate::document) fn placed(placement: &Placement, frame: &PlaneMap) -> Option<Placement> {
+pub(in crate::document) fn apply_to_placement(
+    placement: &Placement,
+    frame: &PlaneMap,
+) -> Option<Placement> {
     let map = similarity(frame, false)?;
     let along = map.matrix2.x_axis;
     Some(Placement {

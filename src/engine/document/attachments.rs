@@ -1,7 +1,7 @@
 //! Edits of attachments: what lies on which part of the shape. Whatever else changes, it shows
 //! where it showed. Floor 4. Not here: how attachments and transforms are combined (`LayerMap`).
 
-use super::layer::content::strokes::{SeenSelections, taken_along};
+use super::layer::content::strokes::{SeenSelections, move_stroke};
 use super::{
     Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, Parts, StrokeList,
     TransformShape,
@@ -318,7 +318,7 @@ fn stroke_on(
     let plane = stroke.attachment().map_or(was.plane, |attachment| was.of_stroke(attachment).plane);
     let Some(frame) = frame else {
         let map = now.with_plane(plane.then(&now.plane.inverse()));
-        return Some(Arc::new(Stroke::clone(&taken_along(stroke, &map, selections)).on(None)));
+        return Some(Arc::new(Stroke::clone(&move_stroke(stroke, &map, selections)).on(None)));
     };
     let mut attachment = StrokeAttachment::new(frame);
     let own = plane.then(&now.of_stroke(&attachment).plane.inverse());

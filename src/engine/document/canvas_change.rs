@@ -82,7 +82,7 @@ impl CanvasChange {
 
     /// To another size; the anchor says what stays in place. The smaller half of an odd difference
     /// comes first. `None` for a size without pixels.
-    pub fn resized(from: Size, to: Size, anchor: CanvasAnchor) -> Option<Self> {
+    pub fn resize(from: Size, to: Size, anchor: CanvasAnchor) -> Option<Self> {
         let (across, down) = anchor.halves();
         let (wider, taller) =
             (to.width as i32 - from.width as i32, to.height as i32 - from.height as i32);
@@ -104,7 +104,7 @@ impl CanvasChange {
 
     /// Turned by an angle, degrees counter-clockwise as seen, on a canvas that holds all of the old
     /// one. Its sides are odd if the old ones are, so that pixels turned back lie on pixels.
-    pub fn turned(from: Size, degrees: f64) -> Self {
+    pub fn turn(from: Size, degrees: f64) -> Self {
         let quarters = (degrees / 90.0).round();
         if !degrees.is_finite() || (degrees - quarters * 90.0).abs() < 1e-6 {
             return Self::quarter_turns(
@@ -127,7 +127,7 @@ impl CanvasChange {
     }
 
     /// A canvas that is mirrored.
-    pub fn mirrored(from: Size, mirror: CanvasMirror) -> Self {
+    pub fn mirror(from: Size, mirror: CanvasMirror) -> Self {
         let matrix = match mirror {
             CanvasMirror::LeftRight => [-1.0, 0.0, 0.0, 1.0, f64::from(from.width), 0.0],
             CanvasMirror::UpDown => [1.0, 0.0, 0.0, -1.0, 0.0, f64::from(from.height)],

@@ -47,7 +47,7 @@ impl Composer<'_> {
     /// nothing is clipped to it.
     pub fn only_tile(&self, nodes: &[PreparedLayer]) -> Option<Arc<Tile>> {
         let node = nodes.last().filter(|node| node.clipped.is_empty() && self.is_covering(node))?;
-        if let TileContent::Tile(tile) = self.painted(node) { Some(tile) } else { None }
+        if let TileContent::Tile(tile) = self.compose_layer(node) { Some(tile) } else { None }
     }
 
     /// Composes one layer, with those clipped to it, onto a tile. `atop`: it is itself clipped to
@@ -103,7 +103,7 @@ impl Composer<'_> {
         } else if !self.is_sought_in(node) {
             return ComposeFlow::Continue(());
         }
-        self.clipped(node, &mut own)?;
+        self.compose_clipped(node, &mut own)?;
         self.blend(onto, mix, TilePaint::Planar(&own), &coverage.opacity_only());
         ComposeFlow::Continue(())
     }
@@ -138,7 +138,7 @@ impl Composer<'_> {
         if let Role::Groups(_) = node.layer.content.role() {
             // What lies beneath an adjustment in it is measured undisplaced.
             if !node.children.iter().any(|child| self.is_sought_in(child))
-                && let Some(shown) = self.displaced(node)
+                && let Some(shown) = self.compose_displaced(node)
             {
                 return ComposeFlow::Continue(shown);
             }
@@ -146,16 +146,16 @@ impl Composer<'_> {
             self.stack(&node.children, &mut pixels)?;
             return ComposeFlow::Continue(TileContent::Group(pixels));
         }
-        ComposeFlow::Continue(self.painted(node))
+        ComposeFlow::Continue(self.compose_layer(node))
     }
 
-    fn painted(&self, node: &PreparedLayer) -> TileContent {
-        self.displaced(node).unwrap_or_else(|| self.painted_in_place(node))
+    fn compose_layer(&self, node: &PreparedLayer) -> TileContent {
+        self.compose_displaced(node).unwrap_or_else(|| self.compose_in_place(node))
     }
 
     /// What a displaced layer shows; `None` where it shows itself, and for one that is not
     /// displaced. Both sides of a contour pixel see the same, as with paint.
-    fn displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
+    fn compose_displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
         let shown = node.warp.as_ref()?.displaced_tile(self.at, &|at| self.in_place(node, at))?;
         let Some(tile) = shown else { return Some(TileContent::Nothing) };
         Some(match self.far {
@@ -173,7 +173,7 @@ impl Composer<'_> {
             match node.layer.content.role() {
                 Role::Groups(_) => drop(composer.stack(&node.children, &mut pixels)),
                 _ => {
-                    if let Some(paint) = composer.painted_in_place(node).as_paint() {
+                    if let Some(paint) = composer.compose_in_place(node).as_paint() {
                         pixels.blend(Mix::default(), paint, &TileCoverage::FULL);
                     }
                 }
@@ -192,12 +192,12 @@ impl Composer<'_> {
         }
         match node.has_16_bit_paint(at) {
             true => pixels.to_tile(true),
-            false => pixels.quantized(),
+            false => pixels.quantize(),
         }
         .map(Arc::new)
     }
 
-    fn painted_in_place(&self, node: &PreparedLayer) -> TileContent {
+    fn compose_in_place(&self, node: &PreparedLayer) -> TileContent {
         if let (Some(floats), Some(marks)) = (self.floats, node.layer.content.marks()) {
             return floats.content(node, marks, self.at, self.far);
         }
@@ -207,7 +207,7 @@ impl Composer<'_> {
         }
     }
 
-    fn clipped(&self, base: &PreparedLayer, own: &mut PlanarTile) -> ComposeFlow {
+    fn compose_clipped(&self, base: &PreparedLayer, own: &mut PlanarTile) -> ComposeFlow {
         base.clipped.iter().try_for_each(|node| self.node(node, own, true))
     }
 
@@ -266,7 +266,7 @@ impl Composer<'_> {
         }
         let mut after = onto.clone();
         apply(&mut after);
-        self.clipped(node, &mut after)?;
+        self.compose_clipped(node, &mut after)?;
         if is_plain {
             onto.mix_toward(&after, coverage);
             return ComposeFlow::Continue(());
@@ -301,7 +301,7 @@ impl Composer<'_> {
         };
         // In floats a layer is rendered once, for what it shows.
         let is_known = self.floats.is_none() || node.layer.content.marks().is_none();
-        may_hide && is_known && is_whole() && self.painted(node).is_opaque()
+        may_hide && is_known && is_whole() && self.compose_layer(node).is_opaque()
     }
 }
 

@@ -95,7 +95,7 @@ mod tests {
     fn freed(document: &Document) -> MemoryUse {
         let mut count = MemoryCount::default();
         count.add(document, false);
-        count.used()
+        count.sum_up()
     }
 
     #[test]

@@ -30,7 +30,7 @@ impl Document {
         let left = covered.inverted(self.size.rect());
         match &old.content {
             Content::Pixels(pixels) => {
-                let tiles = changed(&pixels.tiles, covered, |tile, covered| {
+                let tiles = change_tiles(&pixels.tiles, covered, |tile, covered| {
                     multiply_tile(tile, covered, |c| 255 - c)
                 });
                 let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
@@ -107,7 +107,7 @@ impl Document {
     /// A layer's mask times coverage, as a picture; a selection by the surface stays one if there
     /// was no mask.
     fn narrowed_mask(&self, layer: &Layer, to: &CoverageGrid) -> LayerMask {
-        let is_active = self.selected().is_some_and(|active| active.ptr_eq(to));
+        let is_active = self.active_coverage().is_some_and(|active| active.ptr_eq(to));
         if let Some(mask) = self.selection_as_mask().filter(|_| is_active && layer.mask.is_none()) {
             return mask;
         }
@@ -130,7 +130,7 @@ pub fn multiply(tiles: &TileGrid, covered: &CoverageGrid) -> TileGrid {
 }
 
 /// A grid in which each tile with any coverage is changed.
-fn changed(
+fn change_tiles(
     tiles: &TileGrid,
     covered: &CoverageGrid,
     change: impl Fn(&Arc<Tile>, &CoverageTile) -> Option<Arc<Tile>> + Sync,

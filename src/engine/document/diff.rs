@@ -197,7 +197,7 @@ impl Diff<'_> {
         }
         let (old_seen, new_seen) =
             (self.on_canvas(old, Version::Old), self.on_canvas(new, Version::New));
-        match new_seen.content.changed_from(&old_seen.content, &|| self.seen_by(new.id)) {
+        match new_seen.content.difference_from(&old_seen.content, &|| self.common_scene(new.id)) {
             Changed::Nowhere => false,
             Changed::Wholly => self.report_both(old, new),
             // Paint was displaced when it was taken to the canvas.
@@ -251,7 +251,7 @@ impl Diff<'_> {
     }
 
     /// What both versions of a layer see.
-    fn seen_by(&self, layer: LayerId) -> Scene {
+    fn common_scene(&self, layer: LayerId) -> Scene {
         let seen = if self.has_normals(layer) { self.document.scene_of(layer) } else { None };
         seen.unwrap_or_else(|| self.scene.clone())
     }
@@ -305,7 +305,7 @@ impl Diff<'_> {
         let canvas = self.scene.size.rect();
         // Normal layers replace the canvas's surface.
         let touched =
-            layer.content.touched(Some(&self.scene).filter(|_| !self.has_normals(layer.id)));
+            layer.content.painted_tiles(Some(&self.scene).filter(|_| !self.has_normals(layer.id)));
         let touched = match touched {
             Touched::Nowhere => return false,
             Touched::Canvas => return self.report_rect(canvas),

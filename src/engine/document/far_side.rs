@@ -80,9 +80,9 @@ impl<'c> FarTile<'c> {
 
     /// Packs pixels: those rendered on the sheet and, where no surface is seen, those of the tile
     /// itself.
-    pub fn packed(&self, on_far_side: Option<&Tile>, bare: Option<&Tile>) -> PackedTile {
+    pub fn pack(&self, on_far_side: Option<&Tile>, bare: Option<&Tile>) -> PackedTile {
         let corner = self.at.rect();
-        self.gathered(|place, pixel| {
+        self.gather(|place, pixel| {
             let (tile, x, y) = match place < self.contours.seen {
                 true => {
                     let (x, y) = place_of(place);
@@ -122,7 +122,7 @@ impl<'c> FarTile<'c> {
         let place =
             |pixel: &ContourPixel| ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
         if !tile.is_16_bit() {
-            return self.gathered(|_, pixel| pixel_of(tile, place(pixel)));
+            return self.gather(|_, pixel| pixel_of(tile, place(pixel)));
         }
         let mut rows = vec![sixteen_bit::CLEAR_ROW; self.rows()].into_boxed_slice();
         let mut opaque = true;
@@ -147,7 +147,7 @@ impl<'c> FarTile<'c> {
         packed
     }
 
-    fn gathered(&self, pixel: impl Fn(usize, &ContourPixel) -> [u8; 4]) -> PackedTile {
+    fn gather(&self, pixel: impl Fn(usize, &ContourPixel) -> [u8; 4]) -> PackedTile {
         let mut bytes = vec![0; self.rows() * TILE * 4].into_boxed_slice();
         let mut opaque = true;
         for (place, contour) in self.places() {
@@ -163,7 +163,7 @@ impl<'c> FarTile<'c> {
         for (place, contour) in self.places() {
             let row = &mut pixels.rows_mut()[place / TILE];
             let x = place % TILE;
-            row.set(x, spec::dissolved(row.pixel(x), [contour.x, contour.y]));
+            row.set(x, spec::dissolve(row.pixel(x), [contour.x, contour.y]));
         }
     }
 
@@ -182,7 +182,7 @@ impl<'c> FarTile<'c> {
                 let share = 1.0 - pixel.share;
                 let mixed = match pixel.is_between_parts() {
                     true => in_light(to, from, share, brightest),
-                    false => mixed(to, from, share),
+                    false => mix(to, from, share),
                 };
                 row.set(x, mixed);
             }
@@ -209,7 +209,7 @@ impl FarTile<'_> {
 }
 
 /// A share of one pixel in another, premultiplied: coverage, as opacity.
-fn mixed(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
+fn mix(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
     std::array::from_fn(|i| to[i] + share * (from[i] - to[i]))
 }
 

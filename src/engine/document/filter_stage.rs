@@ -180,7 +180,7 @@ impl FilterSource for ReadTiles {
     }
 
     fn window(&self, rect: Rect) -> FilterWindow {
-        FilterWindow::gathered(rect, self.canvas, |x, y, row| {
+        FilterWindow::gather(rect, self.canvas, |x, y, row| {
             let line = Rect::new(x, y, x + row.len() as i32, y + 1);
             for at in TileAt::covering(line) {
                 let (tile, area) = (at.rect(), at.rect().intersect(line));

@@ -22,7 +22,7 @@ impl FilterSource for PaintSource<'_> {
 
     fn window(&self, rect: Rect) -> FilterWindow {
         let mut window =
-            FilterWindow::gathered(rect, self.bounds, |x, y, row| self.tiles.copy_row(x, y, row));
+            FilterWindow::gather(rect, self.bounds, |x, y, row| self.tiles.copy_row(x, y, row));
         // Grids count in levels.
         window.pixels_mut().as_flattened_mut().iter_mut().for_each(|v| *v /= 255.0);
         window
@@ -45,7 +45,7 @@ impl Document {
         let keeps_alpha = own.lock == LayerLock::Alpha;
         let bounds = painted_rect(&pixels.tiles, self.size.rect());
         let source = PaintSource { tiles: &pixels.tiles, bounds };
-        let selected = self.selected();
+        let selected = self.active_coverage();
         let wanted = selected.map_or(bounds, |selected| selected.covered_rect());
         let blocks = by.blocks(wanted, bounds);
         let of_block = |block: &Rect| {

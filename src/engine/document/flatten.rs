@@ -9,7 +9,7 @@ use super::far_side::FarTile;
 use super::floats::{FloatTiles, Highlights};
 use super::progress::in_parallel;
 use super::{Content, Document, Group, Layer, LayerId, PreparedDocument, Progress, mask};
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub fn flatten_to_floats(
     let tiles = prepared.all_tiles();
     let mut floats = FloatTiles::new(&prepared, highlights);
     let canvas = document.size.rect();
-    let mut pixels = filled_or_unwind(document.size.area(), [0.0; 4]);
+    let mut pixels = fill_or_unwind(document.size.area(), [0.0; 4]);
     for part in tiles.chunks(FLOATS_AT_A_TIME) {
         floats.render(&prepared, part, progress);
         prepared.filter_beneath(part, usize::MAX, Some(&floats), progress)?;
@@ -59,7 +59,7 @@ pub fn flatten_rounding_once(document: &Document, progress: &Progress) -> Option
     }
     let prepared = PreparedDocument::new(document, progress)?;
     flatten_in_floats(&prepared, document, progress, |at, floats| {
-        prepared.compose_tile(at, Some(floats)).quantized().map(Arc::new)
+        prepared.compose_tile(at, Some(floats)).quantize().map(Arc::new)
     })
 }
 
@@ -86,16 +86,16 @@ fn flatten_in_floats(
 /// with 16 bits where it is soft ([`PlanarTile::to_tile_over`]), and where placed pictures of more than 8
 /// are seen. `None` if canceled.
 pub fn flatten_to_paint(document: &Document, progress: &Progress) -> Option<TileGrid> {
-    prepared_to_paint(&PreparedDocument::new(document, progress)?, document, progress)
+    render_to_paint(&PreparedDocument::new(document, progress)?, document, progress)
 }
 
 /// The same for what will be clipped to the surface: layers that are displaced show there what they
 /// show when they are clipped themselves.
 pub fn flatten_to_be_clipped(document: &Document, progress: &Progress) -> Option<TileGrid> {
-    prepared_to_paint(&PreparedDocument::to_be_clipped(document, progress)?, document, progress)
+    render_to_paint(&PreparedDocument::to_be_clipped(document, progress)?, document, progress)
 }
 
-fn prepared_to_paint(
+fn render_to_paint(
     prepared: &PreparedDocument,
     document: &Document,
     progress: &Progress,
@@ -193,7 +193,7 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<V
 impl PreparedDocument {
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
-        self.alone_in_tile(at).or_else(|| self.compose_tile(at, None).quantized().map(Arc::new))
+        self.alone_in_tile(at).or_else(|| self.compose_tile(at, None).quantize().map(Arc::new))
     }
 
     /// The tile of the topmost layer where nothing else is seen: what composing would give, to the

@@ -139,7 +139,7 @@ impl<T> History<T> {
     }
 
     /// The edit that redo would repeat.
-    pub fn undone(&self) -> Option<&str> {
+    pub fn redo_name(&self) -> Option<&str> {
         self.future.last().map(|step| step.label.name.as_str())
     }
 }
@@ -180,7 +180,7 @@ mod tests {
         history.commit("Erase", erased.unwrap(), ());
         assert_eq!(tiles(history.present()).changed_tiles(tiles(&first)), [TileAt::new(0, 0)]);
         assert!(history.undo().is_some());
-        assert_eq!(history.undone(), Some("Erase"));
+        assert_eq!(history.redo_name(), Some("Erase"));
         assert!(tiles(history.present()).ptr_eq(tiles(&first)));
         assert!(Arc::ptr_eq(&history.present().layers[0], &first.layers[0]));
     }
@@ -198,7 +198,7 @@ mod tests {
         assert!(history.has_target_after());
         let two = [history.undo().cloned(), history.undo().cloned()];
         assert_eq!(two, [Some("before Three".into()), Some("before Two".into())]);
-        assert_eq!((history.undo_label(), history.undone()), (Some("One"), Some("Two")));
+        assert_eq!((history.undo_label(), history.redo_name()), (Some("One"), Some("Two")));
         assert_eq!(history.redo(), Some(&"before Two".into()), "nothing was said about after it");
         assert_eq!(history.redo(), Some(&"after Three".into()));
         history.set_target_after("much later".into());

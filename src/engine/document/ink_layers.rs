@@ -3,7 +3,7 @@
 //! (`shape::flats`).
 
 use super::layer::content::{InkLayer, InkSource, ShownInk};
-use super::layer::on_canvas::seen;
+use super::layer::on_canvas::apply_map;
 use super::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer};
 use crate::raster::{Mix, PlanarTile, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
 use crate::shape::flats::lifted_ink::LiftedInk;
@@ -50,7 +50,7 @@ impl Document {
             let lifted = match &layer.content {
                 Content::Pixels(pixels) if drawings.contains(&layer.id) => {
                     let known = layer.lifted.clone().filter(|ink| ink.source.ptr_eq(&pixels.tiles));
-                    Some(known.unwrap_or_else(|| Arc::new(self.lifted_ink(&pixels.tiles))))
+                    Some(known.unwrap_or_else(|| Arc::new(self.lift_ink(&pixels.tiles))))
                 }
                 _ => None,
             };
@@ -73,7 +73,7 @@ impl Document {
     }
 
     /// The ink of paint, from what parts read of it or will read.
-    fn lifted_ink(&self, tiles: &TileGrid) -> LiftedInk {
+    fn lift_ink(&self, tiles: &TileGrid) -> LiftedInk {
         match self.parts.reading_of(tiles) {
             Some(reading) => LiftedInk::of_reading(tiles, &reading),
             None => LiftedInk::of(tiles),
@@ -167,7 +167,7 @@ impl Document {
                     Content::Pixels(PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() });
                 let cache = Default::default();
                 let alone = Layer { content, cache, lifted: None, ..Layer::clone(layer) };
-                match &seen(&Arc::new(alone), &map).content {
+                match &apply_map(&Arc::new(alone), &map).content {
                     Content::Pixels(pixels) => pixels.tiles.clone(),
                     _ => TileGrid::default(),
                 }
@@ -206,7 +206,7 @@ fn hide_beneath(
         for tile in [left.as_ref(), Some(&**own)].into_iter().flatten() {
             both.blend(Mix::default(), TilePaint::of(tile), &TileCoverage::FULL);
         }
-        left = both.quantized();
+        left = both.quantize();
     }
     left.map(Arc::new)
 }

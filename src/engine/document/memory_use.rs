@@ -26,7 +26,7 @@ impl MemoryUse {
     pub fn of(document: &Document) -> Self {
         let mut count = MemoryCount::default();
         count.add(document, true);
-        count.used()
+        count.sum_up()
     }
 
     /// All bytes.
@@ -66,7 +66,7 @@ pub struct MemoryCount {
 
 impl MemoryCount {
     /// All that was counted.
-    pub fn used(&self) -> MemoryUse {
+    pub fn sum_up(&self) -> MemoryUse {
         self.used
     }
 

@@ -84,14 +84,14 @@ impl<'a> PlacedDetail<'a> {
             DetailSource::Grain(grain) => grain.normal(at, per_px),
         };
         let normal = self.turn.rotate(normal.truncate()).extend(normal.z);
-        Some(if jacobian == Mat2::IDENTITY { normal } else { taken_along(normal, jacobian) })
+        Some(if jacobian == Mat2::IDENTITY { normal } else { map_normal(normal, jacobian) })
     }
 }
 
 /// A normal (y up) of a relief whose places are moved by a map: slopes s become k A⁻ᵀ s, A how
 /// places stretch, and k = √|det A|, so that a larger relief is as steep. `jacobian`: A⁻¹, image
 /// axes.
-fn taken_along(normal: Vec3, jacobian: Mat2) -> Vec3 {
+fn map_normal(normal: Vec3, jacobian: Mat2) -> Vec3 {
     let slope = vec2(normal.x, -normal.y) / normal.z.max(1e-3);
     let scale = jacobian.determinant().abs().sqrt().max(1e-6).recip();
     let slope = jacobian.transpose() * slope * scale;
@@ -198,7 +198,7 @@ mod tests {
         assert!((n - vec3(-0.6, 0.0, 0.8)).length() < 1e-4, "{n}");
         // Turned by 90° counter-clockwise, to the right becomes up; twice the size is as steep.
         let turned =
-            taken_along(vec3(0.6, 0.0, 0.8), Mat2::from_cols(vec2(0.0, 0.5), vec2(-0.5, 0.0)));
+            map_normal(vec3(0.6, 0.0, 0.8), Mat2::from_cols(vec2(0.0, 0.5), vec2(-0.5, 0.0)));
         assert!((turned - vec3(0.0, 0.6, 0.8)).length() < 1e-4, "{turned}");
     }
 

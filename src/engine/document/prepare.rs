@@ -150,8 +150,8 @@ impl Beneath<'_> {
     const NOTHING: Self = Self { around: None, layers: &[] };
 
     /// The lowest first.
-    fn gathered(&self) -> Vec<Arc<Layer>> {
-        let mut all = self.around.map_or(Vec::new(), Beneath::gathered);
+    fn layers(&self) -> Vec<Arc<Layer>> {
+        let mut all = self.around.map_or(Vec::new(), Beneath::layers);
         all.extend_from_slice(self.layers);
         all
     }
@@ -230,12 +230,12 @@ impl StackBuilder<'_> {
             layer.content.warm_far_side(far, self.progress);
         }
         if let Role::Adjusts(_) = layer.content.role() {
-            let (layer, beneath) = (layer.clone(), scope.beneath.gathered());
+            let (layer, beneath) = (layer.clone(), scope.beneath.layers());
             let (scene, map) = (visible_scene.clone(), scope.map);
             self.adjustments.push(AdjustmentLayer { layer, scene, beneath, map });
         }
         if let (Some(DerivedMask::Region(region)), Some(surface)) =
-            (layer.mask.as_ref().and_then(LayerMask::derived), &visible_scene.surface)
+            (layer.mask.as_ref().and_then(LayerMask::derived_mask), &visible_scene.surface)
         {
             surface.region(&region);
         }

@@ -35,7 +35,7 @@ impl Document {
             layers,
             guides,
             assistants,
-            ..scale.selected(self)
+            ..scale.scale_selections(self)
         };
         let shaped = if self.parts.is_empty() { scaled } else { scale.parts(self, scaled)? };
         Ok(shaped.with_selections_found())
@@ -64,7 +64,7 @@ impl Document {
             assistants: Arc::new(
                 self.assistants.iter().map(|own| own.scaled(scale.per_axis)).collect(),
             ),
-            ..scale.selected(self)
+            ..scale.scale_selections(self)
         };
         let part = |part: &Arc<Part>| scale.part(part);
         let shaped = match self.parts.is_empty() {

@@ -32,7 +32,7 @@ impl Document {
     pub const MOST_REGION_PX: u64 = 1 << 34;
 
     /// The coverage of the active selection; `None` where everything may be changed.
-    pub fn selected(&self) -> Option<&CoverageGrid> {
+    pub fn active_coverage(&self) -> Option<&CoverageGrid> {
         self.active_selection.as_ref().map(|selection| &selection.coverage)
     }
 
@@ -48,7 +48,7 @@ impl Document {
         let canvas = self.size.rect();
         let new = new.within(canvas);
         let all = || CoverageGrid::filled(canvas);
-        let both = match (how, self.selected()) {
+        let both = match (how, self.active_coverage()) {
             (SelectionMode::Replace, _) | (SelectionMode::Add | SelectionMode::Intersect, None) => {
                 new
             }

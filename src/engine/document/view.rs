@@ -10,7 +10,7 @@ mod weights;
 pub mod wobble;
 
 pub use contact_sheet::sheet;
-pub use unwrapped::{UnwrapOptions, UnwrappedPicture, placed_over, render_unwrapped};
+pub use unwrapped::{UnwrapOptions, UnwrappedPicture, place_over, render_unwrapped};
 pub use weights::color_of as anchor_color;
 
 use super::{Document, Layer, Progress};
@@ -123,7 +123,7 @@ pub fn draw(
         SurfaceView::Objects => maps::objects(surface()?),
         SurfaceView::Curvature => maps::curvature(surface()?, options),
         SurfaceView::CurvatureGray => maps::curvature_gray(surface()?, options),
-        SurfaceView::Lit => maps::lit(surface()?),
+        SurfaceView::Lit => maps::render_lit(surface()?),
         SurfaceView::Clay => maps::clay(surface()?),
         SurfaceView::Contours => maps::contours(surface()?),
         SurfaceView::Scaling => scaling::plots().ok_or(ViewUnavailable::NoMemory)?,
@@ -176,7 +176,7 @@ fn bend(document: &Document, layer: Option<&Layer>) -> Result<Bend, ViewUnavaila
 
 /// A picture from a color per pixel, encoded, each in `[0, 1]`; transparent where the surface does
 /// not cover.
-fn painted(
+fn paint_pixels(
     size: Size,
     coverage: Option<&Surface>,
     color: impl Fn(usize, usize) -> [f32; 3] + Sync,

@@ -68,7 +68,7 @@ fn of_layers(layers: &[Arc<Layer>], canvas: Rect, area: u64) -> u64 {
 }
 
 fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
-    let mask = match layer.mask.as_ref().and_then(LayerMask::derived) {
+    let mask = match layer.mask.as_ref().and_then(LayerMask::derived_mask) {
         Some(DerivedMask::Curvature { .. }) => area * CURVATURE_BYTES,
         Some(DerivedMask::Region(region)) => area * region_bytes(region.kind),
         _ => 0,

@@ -27,7 +27,8 @@ use crate::surface::support::{
 };
 use crate::surface::{DabReach, Operator, Surface};
 use round::{
-    BentPart, BlockPixels, RoundTip, RowPaint, RowZones, bent_row, bent_rows, flat_row, flat_rows,
+    BentPart, BlockPixels, RoundTip, RowPaint, RowZones, fill_bent_row, fill_bent_rows, flat_row,
+    flat_rows,
 };
 use std::ops::Range;
 
@@ -105,10 +106,12 @@ impl<'s> PlacedDab<'s> {
     }
 
     /// The blocks that the dab may touch, among the pixels that represent a tile.
-    fn touched(&self, at: TileAt) -> TouchedBlocks {
+    fn touched_blocks(&self, at: TileAt) -> TouchedBlocks {
         let Some(blocks) = self.far_blocks else {
             let tile = at.rect();
-            let Some(judged) = self.support.judged(at) else { return TouchedBlocks::none(tile) };
+            let Some(judged) = self.support.judge_blocks(at) else {
+                return TouchedBlocks::none(tile);
+            };
             let area = touched_rect(&judged.touched, tile).intersect(self.scene.size.rect());
             // Near its border a dab is pushed away, and pixels are longer.
             let pixel =
@@ -155,7 +158,7 @@ impl<'s> PlacedDab<'s> {
     /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling
     /// c.
     pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
-        let part = self.touched(at);
+        let part = self.touched_blocks(at);
         if part.area.is_empty() {
             return;
         }
@@ -173,7 +176,7 @@ impl<'s> PlacedDab<'s> {
             }
             let (spans, corner) = (&rows[..n], (part.tile.x0, part.tile.y0));
             return match &field {
-                Some(field) => bent_rows(
+                Some(field) => fill_bent_rows(
                     field,
                     BentPart { corner, spans, pixel: &part.pixel },
                     &tip,
@@ -184,7 +187,7 @@ impl<'s> PlacedDab<'s> {
             };
         }
         let mut add = |span: PixelSpan, tip: &RoundTip, out: RowPaint| match &field {
-            Some(field) => bent_row(field.around(span), tip, row, out),
+            Some(field) => fill_bent_row(field.around(span), tip, row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
         // The stroke tile applies the ceiling, because it knows the coverage.
@@ -226,7 +229,7 @@ impl<'s> PlacedDab<'s> {
         stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        let part = self.touched(at);
+        let part = self.touched_blocks(at);
         let area = part.area;
         let DabScratch { deformed, stamping: StampScratch { patches, antialias, row }, .. } =
             scratch;

@@ -135,15 +135,15 @@ impl DabWalker {
             // Of several samples at one point, the one with the greatest pressure counts.
             last.pressure = last.pressure.max(place.pressure);
             last.until_secs = time_secs;
-            self.speeds.moved(0.0, time_secs);
+            self.speeds.advance(0.0, time_secs);
             return;
         }
         let is_first_speed = !self.speeds.are_known();
-        self.speeds.moved(distance, time_secs);
+        self.speeds.advance(distance, time_secs);
         if is_first_speed {
             last.px_per_sec = self.speeds.px_per_sec();
         }
-        self.places.push(self.speeds.given_to(place));
+        self.places.push(self.speeds.apply_to(place));
         self.settle(dabs);
     }
 

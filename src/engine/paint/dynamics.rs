@@ -299,7 +299,7 @@ mod tests {
     #[test]
     fn what_adds_comes_before_what_multiplies_and_sizes_double() {
         let added = |points: &[(f32, f32)]| {
-            Curve::added(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
+            Curve::additive(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
         };
         let dynamics = Dynamics::none()
             .with(Property::Hardness, Input::Pressure, added(&[(0.0, -0.25), (1.0, 0.25)]))

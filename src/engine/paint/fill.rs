@@ -92,15 +92,15 @@ impl Fill {
         let gap_px = self.gap_px.max(0.0).min(WIDEST_GAP_PX);
         let inside = flood::pixels(&flooded);
         let inside =
-            if gap_px > 0.0 { gaps::closed(inside, (x, y), canvas, gap_px) } else { inside };
-        Some(self.edged(inside, canvas, part))
+            if gap_px > 0.0 { gaps::close_gaps(inside, (x, y), canvas, gap_px) } else { inside };
+        Some(self.cover_edges(inside, canvas, part))
     }
 
     /// The same area as coverage on the canvas; `everywhere`: all pixels of a color like the first
     /// one's, joined or not, so that gaps do not matter.
     ///
     /// `None` as for [`Fill::from`], which has the same arguments.
-    pub fn selected(
+    pub fn find_coverage(
         &self,
         start: Vec2,
         canvas: Size,
@@ -127,7 +127,7 @@ impl Fill {
     }
 
     /// The pixels found as coverage, the edge moved and smoothed.
-    fn edged(&self, inside: PixelSet, canvas: Size, part: &CanvasPart) -> FilledArea {
+    fn cover_edges(&self, inside: PixelSet, canvas: Size, part: &CanvasPart) -> FilledArea {
         let grow_px = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
         let limit = grow_px.abs().ceil() as i32 + 1;
         let rect = inside.rect.grown(limit).intersect(canvas.rect());

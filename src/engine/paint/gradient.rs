@@ -73,7 +73,7 @@ impl Gradient {
 
     /// One tile of the layer. `None` if it is transparent, without stops, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
-        self.render_pixels(scene, at)?.quantized()
+        self.render_pixels(scene, at)?.quantize()
     }
 
     /// The same before it is rounded to bytes.

@@ -215,12 +215,12 @@ impl PictureSource {
         }
         let steps =
             (-texels_per_px.log2() - 1e-3).ceil().max(0.0).min(self.derived.enlarged.len() as f32);
-        let made = (1..=steps as u32).rev().find_map(|step| self.enlarged(step));
+        let made = (1..=steps as u32).rev().find_map(|step| self.enlarge(step));
         made.unwrap_or_else(|| self.texture())
     }
 
     /// The texture of the drawing with sides 2^step times as long.
-    fn enlarged(&self, step: u32) -> Option<Arc<Texture>> {
+    fn enlarge(&self, step: u32) -> Option<Arc<Texture>> {
         let make = || {
             let picture = self.picture.enlarged(1 << step)?;
             let blur = self.adjust.blur * (1 << step) as f32;
@@ -333,7 +333,7 @@ impl PlacedImage {
         let mut pixels = vec![[0u8; 4]; TILE_AREA];
         let ImageScratch { positions, patches, bilinear, antialias } = scratch;
         let ImageLookup { margin, texels_from_canvas } =
-            self.placed(scene, area, texture.size(), positions);
+            self.place_texture(scene, area, texture.size(), positions);
         let width = area.width();
         // Tiles begin at the canvas's corner, so an area begins at its tile's.
         let first = |y: i32| (y - area.y0) as usize * TILE;
@@ -366,7 +366,7 @@ impl PlacedImage {
 
     /// Where each pixel of an area reads a texture of this size: `positions` in texels, of the area
     /// grown by the margin.
-    fn placed(
+    fn place_texture(
         &self,
         scene: &Scene,
         area: Rect,

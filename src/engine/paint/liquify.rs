@@ -212,7 +212,7 @@ impl LiquifyStroke {
                 LiquifyTool::TwirlLeft => by(turned(offset, TURN * weight, slope)),
                 LiquifyTool::TwirlRight => by(turned(offset, -TURN * weight, slope)),
                 LiquifyTool::Smooth => u + (mean(old, q) - u) * (0.5 * weight),
-                LiquifyTool::Restore => restored(u, weight),
+                LiquifyTool::Restore => restore(u, weight),
             }
         });
     }
@@ -266,7 +266,7 @@ fn mean(lattice: &Lattice, q: Vec2) -> Vec2 {
 
 /// A displacement reduced by a ratio, at least by the smallest step that can be held, so that it
 /// ends at 0.
-fn restored(u: Vec2, share: f32) -> Vec2 {
+fn restore(u: Vec2, share: f32) -> Vec2 {
     const LEAST_SHARE: f32 = 1.0 / 64.0;
     if share < LEAST_SHARE {
         return u;

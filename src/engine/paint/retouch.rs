@@ -139,7 +139,7 @@ impl ActiveRetouching {
         }
         let shown = self.with_tail();
         changed.extend(&self.tail);
-        let tile = |&at: &TileAt| (at, shown.stored(at));
+        let tile = |&at: &TileAt| (at, shown.stored_tile(at));
         let changed: Vec<TileAt> = changed.into_iter().collect();
         changed.par_iter().map(tile).collect()
     }
@@ -187,7 +187,7 @@ impl RetouchStroke {
         let placed = self.stroke_dabs.place(dab, scene);
         let paint = match self.brush.mode {
             BrushMode::Paint if self.brush.erases => Some([0.0; 4]),
-            BrushMode::Paint => Some(pickup::mixed(
+            BrushMode::Paint => Some(pickup::mix_color(
                 &self.brush,
                 self.brush_color(&dab),
                 &dab,
@@ -205,7 +205,7 @@ impl RetouchStroke {
                     paint.map(|color| vec![color; area])
                 }
                 BrushMode::Smudge { length } => {
-                    drag::smudged(&touch, &dab, before.as_ref()?, length, retouched, scene)
+                    drag::smudge_colors(&touch, &dab, before.as_ref()?, length, retouched, scene)
                 }
                 BrushMode::Blur { width } => Some(soften::blurred(
                     &touch,
@@ -217,7 +217,7 @@ impl RetouchStroke {
                     scene,
                 )),
                 BrushMode::Clone { .. } => {
-                    Some(drag::cloned(&touch, &dab, self.offset, source, scene))
+                    Some(drag::clone_colors(&touch, &dab, self.offset, source, scene))
                 }
             }?;
             let mut tile = retouched.tile(*at);

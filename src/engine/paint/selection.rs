@@ -157,7 +157,7 @@ impl StrokeSelection {
             side(bounds.x1, high.x),
             side(bounds.y1, high.y),
         );
-        CoverageGrid::gathered(to, |at| self.tile(at))
+        CoverageGrid::gather(to, |at| self.tile(at))
     }
 
     /// The same stroke, limited to this selection too.

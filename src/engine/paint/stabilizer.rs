@@ -57,9 +57,9 @@ impl StabilizedPen {
         };
         let at = match self.stabilizer {
             Stabilizer::None => pen.at,
-            Stabilizer::Average { weight } => self.trailed(end, last.at, pen.at, weight),
-            Stabilizer::String { length_px } => self.pulled(end, last.at, pen.at, length_px),
-            Stabilizer::Lag { secs } => delayed(end, &last, &pen, secs),
+            Stabilizer::Average { weight } => self.trail_pen(end, last.at, pen.at, weight),
+            Stabilizer::String { length_px } => self.pull_string(end, last.at, pen.at, length_px),
+            Stabilizer::Lag { secs } => delay(end, &last, &pen, secs),
         };
         // A hostile jump may overflow f32: the line stays.
         let at = if at.is_finite() { at } else { end };
@@ -87,17 +87,17 @@ impl StabilizedPen {
 
     /// The end of a line that trails behind a pen; on a surface the lag has the same length
     /// everywhere, and looks shorter where the surface is tilted.
-    fn trailed(&self, end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
+    fn trail_pen(&self, end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
         let parts = if self.measured.is_some() { Self::parts(from, to, MEASURED_PX) } else { 1 };
         let at = |part: usize| from.lerp(to, part as f32 / parts as f32);
         (0..parts).fold(end, |end, part| {
             let (from, to) = (at(part), at(part + 1));
-            trailed(end, (from, to), self.stretch(from.midpoint(to), to - from), weight)
+            trail(end, (from, to), self.stretch(from.midpoint(to), to - from), weight)
         })
     }
 
     /// The end of a string of this length whose other end is pulled straight from `from` to `to`.
-    fn pulled(&self, end: Vec2, from: Vec2, to: Vec2, length_px: f32) -> Vec2 {
+    fn pull_string(&self, end: Vec2, from: Vec2, to: Vec2, length_px: f32) -> Vec2 {
         let (length_px, steps) = (length_px.max(0.0), Self::parts(from, to, PULL_PX));
         (1..=steps).fold(end, |end, step| {
             let hand = from.lerp(to, step as f32 / steps as f32);
@@ -112,7 +112,7 @@ impl StabilizedPen {
 /// e^(−10/ℓ) = weight. Exact for a pen that moves straight, so that samples between change nothing.
 ///
 /// * `stretch`: the measured length of a px of the path.
-fn trailed(end: Vec2, (from, to): (Vec2, Vec2), stretch: f32, weight: f32) -> Vec2 {
+fn trail(end: Vec2, (from, to): (Vec2, Vec2), stretch: f32, weight: f32) -> Vec2 {
     let weight = weight.max(0.0).min(MOST_WEIGHT);
     let way = to - from;
     let (length, lag) =
@@ -127,7 +127,7 @@ fn trailed(end: Vec2, (from, to): (Vec2, Vec2), stretch: f32, weight: f32) -> Ve
 
 /// The end of a line that follows a pen in time. Exact for a pen that moves evenly, so that samples
 /// between change nothing.
-fn delayed(end: Vec2, from: &Sample, to: &Sample, secs: f32) -> Vec2 {
+fn delay(end: Vec2, from: &Sample, to: &Sample, secs: f32) -> Vec2 {
     let elapsed = to.time_secs - from.time_secs;
     let is_late = secs > 0.0 && elapsed > 0.0;
     if !is_late {
@@ -200,13 +200,11 @@ mod tests {
     fn a_straight_pull_trails_by_the_strings_length_and_by_the_averages_lag() {
         let to = vec2(300.0, 0.0);
         assert_eq!(
-            StabilizedPen::new(CALM[1]).pulled(Vec2::ZERO, Vec2::ZERO, to, 20.0),
+            StabilizedPen::new(CALM[1]).pull_string(Vec2::ZERO, Vec2::ZERO, to, 20.0),
             vec2(280.0, 0.0)
         );
         // e^(−10/ℓ) = 0.6: ℓ is 19.58 px.
-        assert!(
-            (trailed(Vec2::ZERO, (Vec2::ZERO, to), 1.0, 0.6).x - (300.0 - 19.576)).abs() < 0.01
-        );
+        assert!((trail(Vec2::ZERO, (Vec2::ZERO, to), 1.0, 0.6).x - (300.0 - 19.576)).abs() < 0.01);
     }
 
     #[test]

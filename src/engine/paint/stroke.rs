@@ -254,7 +254,7 @@ impl Stroke {
 ///
 /// Each stroke accumulates in f32; the tile is quantized once.
 pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<Tile> {
-    render_pixels(strokes, scene, at)?.quantized()
+    render_pixels(strokes, scene, at)?.quantize()
 }
 
 /// The same before it is quantized; `None` if no stroke touches the tile.

@@ -29,7 +29,7 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     let v = dynamics.value(Property::Value, v, inputs) + unit(jitter.value) * either_way(2);
     let [h, s, v] = [h + turns, unit(s), unit(v)];
     let lit = if dynamics.is_driven(Property::Lightness) {
-        lightened([h, s, v], dynamics, inputs)
+        vary_lightness([h, s, v], dynamics, inputs)
     } else {
         [h, s, v]
     };
@@ -38,7 +38,7 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
 }
 
 /// The same color at the driven lightness (HSL), with the same HSL saturation.
-fn lightened([h, s, v]: [f32; 3], dynamics: &Dynamics, inputs: &DabInputs) -> [f32; 3] {
+fn vary_lightness([h, s, v]: [f32; 3], dynamics: &Dynamics, inputs: &DabInputs) -> [f32; 3] {
     let share = |part: f32, whole: f32| if whole > 0.0 { part / whole } else { 0.0 };
     let lightness = v * (1.0 - 0.5 * s);
     let saturation = share(v - lightness, lightness.min(1.0 - lightness));
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn lightness_goes_to_white_and_black_by_way_of_the_color() {
         let lit = |by: f32| {
-            let added = Curve::added(vec![vec2(0.0, by)]).unwrap();
+            let added = Curve::additive(vec![vec2(0.0, by)]).unwrap();
             let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, added);
             of(
                 &Brush { dynamics, ..Brush::default() },
@@ -134,7 +134,7 @@ mod tests {
             .to_string()
         };
         assert_eq!([0.5, 0.25, -0.25, -0.5].map(lit), ["#ffffff", "#ff8080", "#800000", "#000000"]);
-        let gray = Curve::added(vec![vec2(0.0, 0.2)]).unwrap();
+        let gray = Curve::additive(vec![vec2(0.0, 0.2)]).unwrap();
         let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, gray);
         let lit = of(&Brush { dynamics, ..Brush::default() }, Color::BLACK, &DabInputs::default());
         assert_eq!(lit.to_string(), "#333333");

@@ -65,7 +65,7 @@ pub fn spread_pixels<const N: usize>(
     /// them.
     const SAMPLED: f32 = 0.64;
     if variance > 0.0 && variance < SAMPLED && pixels.len() == size.area() && N > 0 {
-        return passed(
+        return blur_pass(
             size,
             pixels,
             &Gaussian::Taps(vec![1.0 - variance, 0.5 * variance]),
@@ -84,10 +84,10 @@ fn blurred<const N: usize>(
     if sigma_px.is_nan() || sigma_px <= 0.0 || pixels.len() != size.area() || N == 0 {
         return pixels.to_vec();
     }
-    passed(size, pixels, &Gaussian::new(sigma_px.min(4.0 * size.longer_side().max(1.0))), beyond)
+    blur_pass(size, pixels, &Gaussian::new(sigma_px.min(4.0 * size.longer_side().max(1.0))), beyond)
 }
 
-fn passed<const N: usize>(
+fn blur_pass<const N: usize>(
     size: Size,
     pixels: &[[f32; N]],
     filter: &Gaussian,

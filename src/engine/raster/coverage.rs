@@ -113,7 +113,7 @@ impl Grid<CoverageTile> {
     /// Computes the tiles of a rectangle, in parallel. `fill` gets a blank tile; what it writes
     /// beyond the rectangle does not count.
     pub fn from_tiles(rect: Rect, fill: impl Fn(TileAt, &mut [u8; TILE_AREA]) + Sync) -> Self {
-        Self::gathered(rect, |at| {
+        Self::gather(rect, |at| {
             let mut bytes = blank(0);
             fill(at, &mut bytes);
             clip(&mut bytes, at, rect);
@@ -122,7 +122,7 @@ impl Grid<CoverageTile> {
     }
 
     /// Computes the tiles that a rectangle touches, in parallel.
-    pub fn gathered(rect: Rect, tile: impl Fn(TileAt) -> Option<Arc<CoverageTile>> + Sync) -> Self {
+    pub fn gather(rect: Rect, tile: impl Fn(TileAt) -> Option<Arc<CoverageTile>> + Sync) -> Self {
         let tiles: Vec<TileAt> = TileAt::covering(rect).collect();
         let made: Vec<_> = tiles.par_iter().map(|&at| tile(at)).collect();
         let mut grid = Self::for_rect(rect);
@@ -134,7 +134,7 @@ impl Grid<CoverageTile> {
 
     /// Every pixel of a rectangle.
     pub fn filled(rect: Rect) -> Self {
-        Self::gathered(rect, |at| {
+        Self::gather(rect, |at| {
             if at.rect().intersect(rect) == at.rect() {
                 return Some(CoverageTile::whole());
             }
@@ -226,7 +226,7 @@ impl Grid<CoverageTile> {
     /// must be 0.
     pub fn combined(&self, other: &Self, rule: impl Fn(u8, u8) -> u8 + Sync) -> Self {
         let rect = self.bounds().union(other.bounds());
-        Self::gathered(rect, |at| {
+        Self::gather(rect, |at| {
             let (a, b) = (self.tile(at), other.tile(at));
             let uniform = |tile: Option<&Arc<CoverageTile>>| match tile {
                 None => Some(0),
@@ -288,7 +288,7 @@ impl Grid<CoverageTile> {
 
     /// How opaque the pixels of a paint layer are.
     pub fn of_alpha(pixels: &Grid<Tile>) -> Self {
-        Self::gathered(pixels.bounds(), |at| {
+        Self::gather(pixels.bounds(), |at| {
             let tile = pixels.tile(at)?;
             if tile.is_opaque() {
                 return Some(CoverageTile::whole());

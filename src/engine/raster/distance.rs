@@ -11,7 +11,7 @@ pub const FARTHEST: u16 = 200;
 /// than `limit` px.
 ///
 /// `limit`: at most [`FARTHEST`]; more counts as that. Nothing beyond the plane is marked.
-pub fn squared(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
+pub fn squared_distances(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
     let limit = limit.min(FARTHEST);
     let (width, height) = (marked.width().max(1), marked.height());
     // Bands of rows, each with enough rows around it that no nearer mark lies beyond.
@@ -97,7 +97,7 @@ mod tests {
         for share in [0.0005, 0.05, 0.9] {
             let marked =
                 Plane::from_fn(size, |x, y| u8::from(hash::unit(7, x as u32, y as u32) < share));
-            let found = squared(&marked, 12);
+            let found = squared_distances(&marked, 12);
             let all = (0..145i32).flat_map(|y| (0..70i32).map(move |x| (x, y)));
             let marks: Vec<(i32, i32)> =
                 all.clone().filter(|&(x, y)| marked.at(x as usize, y as usize) != 0).collect();
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn without_a_mark_everything_is_farther_than_the_limit() {
-        let found = squared(&Plane::filled(Size::new(3, 2), 0), u16::MAX);
+        let found = squared_distances(&Plane::filled(Size::new(3, 2), 0), u16::MAX);
         assert!(found.values().iter().all(|&d| d == (FARTHEST + 1).pow(2)));
     }
 }

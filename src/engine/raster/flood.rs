@@ -164,7 +164,7 @@ fn next_wave(spread: &[(TileAt, Box<FloodTile>, FloodEntry)]) -> Vec<(TileAt, Fl
 impl FloodTile {
     /// Continues the flood from its entry.
     fn enter(&mut self, entry: FloodEntry) {
-        let joined = self.may.joined();
+        let joined = self.may.joined_sides();
         let [from_left, from_right, from_above, from_below] = joined.sides(&self.may.open);
         let filled = &mut self.filled;
         let before = *filled;
@@ -219,7 +219,7 @@ impl FloodTile {
 
 impl OpenTile {
     /// The pixels that may be entered from each side, if that is not every open pixel.
-    fn joined(&self) -> JoinedSides {
+    fn joined_sides(&self) -> JoinedSides {
         let both = |links: &TileBits| std::array::from_fn(|y| links[y] & self.open[y]);
         JoinedSides(self.links.as_ref().map(|links| {
             [

@@ -45,7 +45,7 @@ impl PixelSet {
 }
 
 /// The room that contains `start`, of what was joined to it.
-pub fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
+pub fn close_gaps(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
     // From the middle of a gap w px wide to the center of the border's nearest pixel: at most (w +
     // 1)/2. Tops are capped at the height that makes a saddle of that distance a gap.
     let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
@@ -109,7 +109,7 @@ fn levels(pixels: &Plane<u8>, limit: u16, top_px: f32) -> Plane<u8> {
     let farthest = (usize::from(limit) + 1).pow(2);
     let level = |squared: usize| (((squared as f32).sqrt() * LEVELS_PER_PX) as u8).min(top);
     let levels: Vec<u8> = (0..=farthest).map(level).collect();
-    distance::squared(&pixels.map(|p| u8::from(p == 0)), limit)
+    distance::squared_distances(&pixels.map(|p| u8::from(p == 0)), limit)
         .map(|d| levels[usize::from(d).min(farthest)])
 }
 

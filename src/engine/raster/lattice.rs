@@ -74,7 +74,7 @@ impl Lattice {
 
     /// Puts a block in place, rounded; one that displaces nothing is not held.
     pub fn set(&mut self, at: TileAt, mut block: LatticeBlock) {
-        block.0.iter_mut().for_each(|u| *u = held(*u));
+        block.0.iter_mut().for_each(|u| *u = quantize_displacement(*u));
         let is_none = block.0.iter().all(|u| *u == Vec2::ZERO);
         match self.blocks.tile(at) {
             Some(old) if **old == block => {}
@@ -245,7 +245,7 @@ crate::widest! {
 }
 
 /// A displacement as it is held: in range, a multiple of the smallest part of a pixel; 0 for NaN.
-fn held(u: Vec2) -> Vec2 {
+fn quantize_displacement(u: Vec2) -> Vec2 {
     let side = |v: f32| {
         let v = if v.is_finite() { v } else { 0.0 };
         let far = Lattice::FARTHEST_PX;

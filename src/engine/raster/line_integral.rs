@@ -29,7 +29,7 @@ const CONTRAST: f32 = 0.22;
 /// * `direction`: unit vectors, image axes; their signs do not matter; zero where there is none.
 /// * `passes`: whether a line may continue from one pixel to another that touches it at a side or a
 ///   corner.
-pub fn smeared_noise(
+pub fn smear_noise(
     direction: &Plane<Vec2>,
     lines: LineStyle,
     passes: impl Fn((usize, usize), (usize, usize)) -> bool + Sync,
@@ -142,18 +142,18 @@ mod tests {
     #[test]
     fn gray_changes_little_along_a_line_and_much_across() {
         let field = Plane::filled(Size::new(80, 60), vec2(0.6, 0.8));
-        let lines = smeared_noise(&field, LINES, |_, _| true);
+        let lines = smear_noise(&field, LINES, |_, _| true);
         assert!(mean_change(&lines, 3, 4) < 0.5 * mean_change(&lines, 4, 3));
     }
 
     #[test]
     fn the_sign_of_a_direction_does_not_matter() {
         let size = Size::new(40, 40);
-        let steady = smeared_noise(&Plane::filled(size, Vec2::X), LINES, |_, _| true);
+        let steady = smear_noise(&Plane::filled(size, Vec2::X), LINES, |_, _| true);
         let flipping =
             Plane::from_fn(size, |x, y| if (x + y) % 2 == 0 { Vec2::X } else { -Vec2::X });
         assert!(
-            smeared_noise(&flipping, LINES, |_, _| true)
+            smear_noise(&flipping, LINES, |_, _| true)
                 .values()
                 .iter()
                 .zip(steady.values())
@@ -168,17 +168,15 @@ mod tests {
         let size = Size::new(40, 20);
         let wall = |(a, _): (usize, usize), (b, _): (usize, usize)| (a < 20) == (b < 20);
         let right = |d: Vec2| Plane::from_fn(size, move |x, _| if x < 20 { Vec2::X } else { d });
-        let (a, b) = (
-            smeared_noise(&right(Vec2::X), LINES, wall),
-            smeared_noise(&right(Vec2::Y), LINES, wall),
-        );
+        let (a, b) =
+            (smear_noise(&right(Vec2::X), LINES, wall), smear_noise(&right(Vec2::Y), LINES, wall));
         let shade = |p: &Plane<f32>, x: usize| (p.at(x, 10) - 0.5) / (p.at(3, 10) - 0.5);
         assert!((0..20).all(|x| (shade(&a, x) - shade(&b, x)).abs() < 1e-3));
     }
 
     #[test]
     fn the_noise_fills_the_grays_without_clipping_much() {
-        let lines = smeared_noise(&Plane::filled(Size::new(128, 128), Vec2::X), LINES, |_, _| true);
+        let lines = smear_noise(&Plane::filled(Size::new(128, 128), Vec2::X), LINES, |_, _| true);
         let clipped = lines.values().iter().filter(|&&v| v <= 0.0 || v >= 1.0).count();
         assert!(clipped < 128 * 128 / 20, "{clipped}");
         assert!(lines.values().iter().any(|&v| v < 0.2) && lines.values().iter().any(|&v| v > 0.8));

@@ -116,7 +116,8 @@ impl Matte {
         let to = |least: f32| {
             let marked = self.values.iter().map(|v| u8::from(*v >= least)).collect();
             let size = Size::new(self.rect.width() as u32, self.rect.height() as u32);
-            Plane::from_values(size, marked).map(|marked| distance::squared(&marked, limit))
+            Plane::from_values(size, marked)
+                .map(|marked| distance::squared_distances(&marked, limit))
         };
         let (Some(whole), Some(any)) = (to(1.0), to(f32::MIN_POSITIVE)) else { return self };
         let ring = ring_offsets(i32::from(limit));

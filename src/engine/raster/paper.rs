@@ -38,7 +38,8 @@ pub fn without_paper(tiles: &TileGrid) -> Option<TileGrid> {
         .map(|at| {
             let own = at.rect();
             let places = (own.y0..own.y1).flat_map(|y| (own.x0..own.x1).map(move |x| (x, y)));
-            let drawn = places.flat_map(|(x, y)| paper.drawn(tiles.pixel(x, y), x, y)).collect();
+            let drawn =
+                places.flat_map(|(x, y)| paper.remove_paper(tiles.pixel(x, y), x, y)).collect();
             (at, Tile::from_pixels(drawn).map(Arc::new))
         })
         .collect();
@@ -104,7 +105,7 @@ impl PaperLight {
     }
 
     /// What is drawn at a pixel, premultiplied.
-    fn drawn(&self, pixel: [u8; 4], x: i32, y: i32) -> [u8; 4] {
+    fn remove_paper(&self, pixel: [u8; 4], x: i32, y: i32) -> [u8; 4] {
         let Some((color, alpha)) = straight(pixel) else { return [0; 4] };
         let paper = self.at(x, y);
         let share = darker(color, paper).max(0.0).min(1.0);

@@ -116,7 +116,7 @@ impl PlanarTile {
     }
 
     /// Rounds to bytes; `None` where the tile is wholly transparent.
-    pub fn quantized(&self) -> Option<Tile> {
+    pub fn quantize(&self) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
         quantize_rows(&self.rows, &mut bytes);
         if bytes.chunks_exact(4).all(|p| p[3] == 0) {
@@ -139,7 +139,7 @@ impl PlanarTile {
             sixteen_bit::quantize_row([r, g, b, a], rows16);
         };
         if self.rows.len() != TILE || !(was_16_bit || sixteen_bit::is_smooth(put)) {
-            return self.quantized();
+            return self.quantize();
         }
         let mut rows = sixteen_bit::clear_rows();
         rows.iter_mut().enumerate().for_each(|(y, row)| put(y, row));
@@ -198,7 +198,7 @@ mod tests {
             .collect();
         let pixels: Box<TileF32> = pixels.into_boxed_slice().try_into().unwrap();
         let planar = PlanarTile::from_pixels(&pixels);
-        let tile = planar.quantized().unwrap();
+        let tile = planar.quantize().unwrap();
         for (i, p) in tile.bytes().chunks_exact(4).enumerate() {
             assert_eq!(p[3], byte(i, 3));
             assert_eq!(p[0], byte(i, 0).min(byte(i, 3)));

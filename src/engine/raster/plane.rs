@@ -2,7 +2,7 @@
 //! Floor 1. Not for layers, which are sparse tiles (`grid`).
 
 use crate::math::Size;
-use crate::memory::{copied_or_unwind, filled_or_unwind};
+use crate::memory::{copy_or_unwind, fill_or_unwind};
 
 /// `size.area()` values; pixel (x, y) is at index `y · width + x`.
 #[derive(Debug, PartialEq)]
@@ -22,14 +22,14 @@ fn least_rows(width: usize) -> usize {
 /// A copy for which there is no memory is refused like a new plane.
 impl<T: Clone> Clone for Plane<T> {
     fn clone(&self) -> Self {
-        Self { size: self.size, values: copied_or_unwind(&self.values) }
+        Self { size: self.size, values: copy_or_unwind(&self.values) }
     }
 }
 
 impl<T: Copy> Plane<T> {
     /// The same value everywhere.
     pub fn filled(size: Size, value: T) -> Self {
-        Self { size, values: filled_or_unwind(size.area(), value) }
+        Self { size, values: fill_or_unwind(size.area(), value) }
     }
 
     /// `None` if `values` does not hold exactly one value per pixel.
@@ -44,7 +44,7 @@ impl<T: Copy> Plane<T> {
     {
         use rayon::prelude::*;
         let width = size.width.max(1) as usize;
-        let mut values = filled_or_unwind(size.area(), T::default());
+        let mut values = fill_or_unwind(size.area(), T::default());
         values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(
             |(y, row)| {
                 for (x, v) in row.iter_mut().enumerate() {
@@ -80,7 +80,7 @@ impl<T: Copy> Plane<T> {
     {
         use rayon::prelude::*;
         let width = self.width().max(1);
-        let mut values = filled_or_unwind(self.size.area(), U::default());
+        let mut values = fill_or_unwind(self.size.area(), U::default());
         let rows = values.par_chunks_mut(width).zip(self.values.par_chunks(width));
         rows.with_min_len(least_rows(width)).for_each(|(row, from)| {
             row.iter_mut().zip(from).for_each(|(v, &from)| *v = f(from));
@@ -116,7 +116,7 @@ impl<T: Copy> Plane<T> {
 
     /// The nearest value inside the map.
     #[inline(always)]
-    pub fn clamped(&self, x: i32, y: i32) -> T {
+    pub fn at_clamped(&self, x: i32, y: i32) -> T {
         let (w, h) = (self.size.width as i32, self.size.height as i32);
         self.at(x.clamp(0, w - 1) as usize, y.clamp(0, h - 1) as usize)
     }

@@ -95,7 +95,7 @@ impl Tile {
     }
 
     /// Quantizes a tile; `None` if it is wholly transparent.
-    pub fn quantized(pixels: &TileF32) -> Option<Tile> {
+    pub fn quantize(pixels: &TileF32) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
         quantize_pixels(pixels, &mut bytes);
         Tile::from_pixels(bytes)

@@ -65,14 +65,14 @@ pub trait PixelMap: Sync {
 }
 
 /// The tiles of a grid seen through a map, only those in `wanted`.
-pub fn warped(
+pub fn warp_tiles(
     grid: &TileGrid,
     map: &dyn PixelMap,
     filter: Resampling,
     wanted: &[TileAt],
 ) -> TileGrid {
     let tiles: Vec<Option<Arc<Tile>>> =
-        wanted.par_iter().map(|&at| warped_tile(grid, map, filter, at)).collect();
+        wanted.par_iter().map(|&at| warp_tile(grid, map, filter, at)).collect();
     let mut out = TileGrid::default();
     if let Some(all) = wanted.iter().map(|at| at.rect()).reduce(Rect::union) {
         out.reserve(all);
@@ -82,17 +82,17 @@ pub fn warped(
 }
 
 /// One tile of a grid seen through a map; `None` if it is transparent.
-pub fn warped_tile(
+pub fn warp_tile(
     grid: &TileGrid,
     map: &dyn PixelMap,
     filter: Resampling,
     at: TileAt,
 ) -> Option<Arc<Tile>> {
-    warped_tile_within(grid, None, map, filter, at)
+    warp_tile_within(grid, None, map, filter, at)
 }
 
 /// The same for pixels whose border is repeated beyond a rectangle, if there is one.
-pub fn warped_tile_within(
+pub fn warp_tile_within(
     grid: &TileGrid,
     border: Option<Rect>,
     map: &dyn PixelMap,
@@ -108,14 +108,14 @@ pub fn warped_tile_within(
         bounds: border.unwrap_or_else(|| grid.bounds()),
         continues: border.is_some(),
     };
-    let wanted = source.held(map.source_rect(at.rect()));
+    let wanted = source.rect_to_read(map.source_rect(at.rect()));
     Warp { source: &source, map, filter }.block_of(at.rect(), wanted, &mut |x, y, row| {
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
         within_range(row, &mut pixels[y * TILE + x..][..row.len()]);
     });
     let is_16_bit = grid.is_16_bit_at(wanted);
     let tile =
-        if is_16_bit { Tile::from_rows16(quantized16(&pixels)) } else { Tile::quantized(&pixels) };
+        if is_16_bit { Tile::from_rows16(quantized16(&pixels)) } else { Tile::quantize(&pixels) };
     tile.map(Arc::new)
 }
 
@@ -173,12 +173,12 @@ fn move_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
 
 /// A map of the canvas, such as a mask's coverage, seen through a map; its border continues beyond
 /// it.
-pub fn warped_plane(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling) -> Plane<u8> {
-    warped_plane_onto(plane, map, filter, plane.size())
+pub fn warp_plane(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling) -> Plane<u8> {
+    warp_plane_onto(plane, map, filter, plane.size())
 }
 
 /// The same on a canvas of another size.
-pub fn warped_plane_onto(
+pub fn warp_plane_onto(
     plane: &Plane<u8>,
     map: &dyn PixelMap,
     filter: Resampling,
@@ -187,7 +187,7 @@ pub fn warped_plane_onto(
     if let Some(by) = map.pixel_move() {
         return Plane::from_fn(size, |x, y| {
             let (x, y) = by.source(x as i32, y as i32);
-            plane.clamped(x, y)
+            plane.at_clamped(x, y)
         });
     }
     let source = PlaneSource { plane };
@@ -202,7 +202,7 @@ pub fn warped_plane_onto(
 }
 
 /// The pixels of a rectangle of such a map, each with its position.
-pub fn warped_block(
+pub fn warp_block(
     plane: &Plane<u8>,
     map: &dyn PixelMap,
     filter: Resampling,
@@ -212,7 +212,7 @@ pub fn warped_block(
         let places = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
         let moved = |(x, y): (i32, i32)| {
             let (sx, sy) = by.source(x, y);
-            (x, y, plane.clamped(sx, sy))
+            (x, y, plane.at_clamped(sx, sy))
         };
         return places.map(moved).collect();
     }
@@ -242,7 +242,7 @@ impl<S: PixelSource> Warp<'_, S> {
     /// the source.
     fn block(&self, block: Rect, put: &mut impl FnMut(i32, i32, &[[f32; 4]])) {
         if !block.is_empty() {
-            self.block_of(block, self.source.held(self.map.source_rect(block)), put);
+            self.block_of(block, self.source.rect_to_read(self.map.source_rect(block)), put);
         }
     }
 

@@ -88,7 +88,7 @@ impl Environment {
     pub fn environment_light(&self) -> EnvironmentLight {
         let (sin, cos) = self.rotation.to_radians().sin_cos();
         EnvironmentLight {
-            prepared: self.prepared(),
+            prepared: self.prepare(),
             turn: YRotation { sin, cos },
             gain: self.exposure.exp2(),
         }
@@ -96,7 +96,7 @@ impl Environment {
 
     /// It never computes while holding the lock: a thread that waits for work in its own pool would
     /// deadlock.
-    fn prepared(&self) -> Arc<PreparedEnvironment> {
+    fn prepare(&self) -> Arc<PreparedEnvironment> {
         let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let holds = |k: &PreparedCache| {
             k.projection == self.projection && is_same(&k.picture, &self.picture)
@@ -147,7 +147,7 @@ impl EnvironmentLight {
         covered: &[u8],
         light: &mut Light3,
     ) {
-        let [d, dx, dy] = [d, dx, dy].map(|directions| self.turned(directions));
+        let [d, dx, dy] = [d, dx, dy].map(|directions| self.turn_directions(directions));
         self.prepared.map.mean_over_pixel_row(&d, &dx, &dy, covered, light);
         self.expose(light);
     }
@@ -161,17 +161,17 @@ impl EnvironmentLight {
         wanted: &RowValues,
         light: &mut Light3,
     ) {
-        self.prepared.map.mean_over_cone_row(&self.turned(d), width_rad, wanted, light);
+        self.prepared.map.mean_over_cone_row(&self.turn_directions(d), width_rad, wanted, light);
         self.expose(light);
     }
 
     /// [`EnvironmentLight::matt`] at every pixel of a row.
     pub fn matt_row(&self, n: &Directions, light: &mut Light3) {
-        rows::read_level(self.irradiance().level(), &self.turned(n), light);
+        rows::read_level(self.irradiance().level(), &self.turn_directions(n), light);
         self.expose(light);
     }
 
-    fn turned(&self, d: &Directions) -> Directions {
+    fn turn_directions(&self, d: &Directions) -> Directions {
         let mut turned = [[0.0; TILE]; 3];
         turn_row(self.turn, d, &mut turned);
         turned

@@ -79,7 +79,7 @@ impl PixelShading {
         if step == 0 || own[0] < LINE {
             return of;
         }
-        let made = shifted(own, step);
+        let made = shift_tone(own, step);
         let Some((base, off)) = self.nearest(own, |_| true).filter(|(_, off)| *off < NEAR) else {
             return bytes(made);
         };
@@ -87,7 +87,7 @@ impl PixelShading {
         if base == of {
             return of_base;
         }
-        let (found, made_of_base) = (lab(of_base), shifted(lab(base), step));
+        let (found, made_of_base) = (lab(of_base), shift_tone(lab(base), step));
         let share = 1.0 - off / NEAR;
         bytes(std::array::from_fn(|i| made[i] + share * (found[i] - made_of_base[i])))
     }
@@ -95,7 +95,7 @@ impl PixelShading {
     /// The tone of one of the picture's colors.
     fn tone_of_picture(&self, color: [u8; 3], step: Step) -> [u8; 3] {
         let own = lab(color);
-        let made = shifted(own, step);
+        let made = shift_tone(own, step);
         let is_further = |lightness: f32| {
             let by = LEAST_STEP * step as f32;
             if step < 0 { lightness < own[0] + by } else { lightness > own[0] + by }
@@ -134,7 +134,7 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
 }
 
 /// A color some steps lighter and warmer, or darker and cooler.
-fn shifted([mut lightness, mut a, mut b]: [f32; 3], step: Step) -> [f32; 3] {
+fn shift_tone([mut lightness, mut a, mut b]: [f32; 3], step: Step) -> [f32; 3] {
     for _ in 0..step.unsigned_abs().min(4) {
         if step < 0 {
             lightness *= DARKER;

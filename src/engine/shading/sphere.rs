@@ -36,20 +36,20 @@ impl LitSphere {
 
     /// The sphere's light, ready to be looked up.
     pub fn light(&self) -> &SphereLight {
-        self.halved(0)
+        self.level(0)
     }
 
     /// The same, as fine as is seen where its disc is so many px wide.
     pub fn light_at(&self, diameter_px: f32) -> &SphereLight {
         let texels = self.picture.size.width.min(self.picture.size.height) as f32;
         let halvings = (texels / diameter_px.max(1.0)).log2().round();
-        self.halved(halvings.max(0.0).min((HALVINGS - 1) as f32) as usize)
+        self.level(halvings.max(0.0).min((HALVINGS - 1) as f32) as usize)
     }
 
-    fn halved(&self, times: usize) -> &SphereLight {
+    fn level(&self, times: usize) -> &SphereLight {
         let make = || match times {
             0 => SphereLight::new(&self.picture),
-            _ => self.halved(times - 1).halved(),
+            _ => self.level(times - 1).halved(),
         };
         crate::memory::once(&self.light[times], make)
     }

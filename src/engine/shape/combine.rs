@@ -129,7 +129,7 @@ impl Relief {
                         id: ids[x],
                     };
                     if above.coverage > 0 {
-                        let met = beneath.met_by(above, combine);
+                        let met = beneath.combine_with(above, combine);
                         (heights[x], normals[x], covers[x], ids[x]) =
                             (met.height, met.normal, met.coverage, met.id);
                     }
@@ -257,7 +257,7 @@ struct FormTexel {
 }
 
 impl FormTexel {
-    fn met_by(self, above: FormTexel, combine: Combine) -> FormTexel {
+    fn combine_with(self, above: FormTexel, combine: Combine) -> FormTexel {
         let both = 255 - (255 - u32::from(self.coverage)) * (255 - u32::from(above.coverage)) / 255;
         let coverage = both as u8;
         if self.coverage == 0 {

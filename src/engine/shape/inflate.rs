@@ -17,7 +17,7 @@ pub const MOST_UNKNOWNS: usize = 1 << 24;
 /// u, px², over the planes of an outline: 0 outside, −∇²u = 4 inside (SHAPE: inflation).
 ///
 /// A disc of radius R gives R² − r² and so half a sphere; a strip of half width w gives 2(w² − x²).
-/// * `joined`: as in [`OutlineRim::joined`].
+/// * `joined`: as in [`OutlineRim::with_joined_pixels`].
 /// * `start`: the u of a nearly identical outline of the same size.
 ///
 /// `≥ 0`, finite.
@@ -61,7 +61,7 @@ fn double(half: &Plane<f32>, outline: &Outline) -> Plane<f32> {
         }
         let (px, py) = (x as f32 * 0.5 - 0.25, y as f32 * 0.5 - 0.25);
         let (x0, y0) = (px.floor(), py.floor());
-        let at = |dx: i32, dy: i32| half.clamped(x0 as i32 + dx, y0 as i32 + dy);
+        let at = |dx: i32, dy: i32| half.at_clamped(x0 as i32 + dx, y0 as i32 + dy);
         let (fx, fy) = (px - x0, py - y0);
         let row = |dy: i32| at(0, dy) * (1.0 - fx) + at(1, dy) * fx;
         4.0 * (row(0) * (1.0 - fy) + row(1) * fy)

@@ -65,7 +65,7 @@ const WIDEST_PX: i32 = 64;
 /// A form with ink as lines of its shape.
 ///
 /// * `ink`: coverage over the planes of the form.
-pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> Form {
+pub fn add_lines(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> Form {
     let inside = outline.inside();
     let size = inside.size();
     if form.normals.size() != size || ink.size() != size {
@@ -101,7 +101,7 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> F
     let cut = outline.without(&inked);
     let reach = if lines.reach > 0.0 { lines.reach } else { f32::INFINITY };
     let delta = filled(
-        spread_within(&OutlineRim::joined(&cut, &inked), &held, &wanted, reach),
+        spread_within(&OutlineRim::with_joined_pixels(&cut, &inked), &held, &wanted, reach),
         &inked,
         inside,
     );
@@ -260,7 +260,7 @@ mod tests {
         let ink = ink(&outline, upright);
         for (kind, sign) in [(LineForm::Ridge, 1.0), (LineForm::Valley, -1.0)] {
             let lines = Lines { form: kind, angle_deg: 40.0, reach: 0.0 };
-            let lined = lined(&form, &outline, &ink, lines);
+            let lined = add_lines(&form, &outline, &ink, lines);
             let ((_, left), (_, right)) = (at(&lined, 57, 45), at(&lined, 62, 45));
             assert!(
                 (right.x * sign - 40.0f32.to_radians().sin()).abs() < 0.12,
@@ -279,11 +279,11 @@ mod tests {
         let bend = |x: f32, y: f32| ((x - 45.0).hypot(y - 45.0) - 20.0).abs() < 1.0 && x > 50.0;
         let ink = ink(&outline, bend);
         let lines = |form| Lines { form, angle_deg: 70.0, reach: 0.0 };
-        let over = lined(&form, &outline, &ink, lines(LineForm::Over));
+        let over = add_lines(&form, &outline, &ink, lines(LineForm::Over));
         let (front, back) = (at(&over, 62, 45).1, at(&over, 69, 45).1);
         assert!(front.x > 0.75, "the front turns to the line: {front}");
         assert!(back.x.abs() < 0.25 * front.x, "the back is not drawn along: {back}");
-        let under = lined(&form, &outline, &ink, lines(LineForm::Under));
+        let under = add_lines(&form, &outline, &ink, lines(LineForm::Under));
         assert!(at(&under, 67, 45).1.x < -0.75 && at(&under, 62, 45).1.x > -0.2);
     }
 
@@ -291,8 +291,8 @@ mod tests {
     fn an_open_line_makes_no_dent_and_one_without_ink_changes_nothing() {
         let (form, outline) = plate();
         let none = Plane::filled(outline.size(), 0);
-        assert!(lined(&form, &outline, &none, Lines::default()) == form);
-        let ridge = lined(
+        assert!(add_lines(&form, &outline, &none, Lines::default()) == form);
+        let ridge = add_lines(
             &form,
             &outline,
             &ink(&outline, upright),
@@ -316,7 +316,7 @@ mod tests {
             for (kind, _) in LineForm::ALL {
                 let lines =
                     Lines { form: kind, angle_deg: 90.0, reach: f32::from(seed as u8 % 3) * 5.0 };
-                let lined = lined(&form, &outline, &ink(&outline, noise), lines);
+                let lined = add_lines(&form, &outline, &ink(&outline, noise), lines);
                 let all = lined.normals.values().iter();
                 assert!(all.into_iter().all(|n| n.is_finite() && (n.length() - 1.0).abs() < 1e-4));
                 assert!(lined.height.values().iter().all(|z| z.is_finite()));

@@ -24,8 +24,8 @@ impl RimDistance {
 }
 
 /// The distance as in [`RimDistance::of`], from the rim that is not toward pixels of `joined` (as
-/// in `OutlineRim::joined`). If there is no such rim, no pixel is farther from it than the plane is
-/// long.
+/// in `OutlineRim::with_joined_pixels`). If there is no such rim, no pixel is farther from it than
+/// the plane is long.
 pub fn silhouette_distance(outline: &Outline, joined: Option<&Plane<bool>>) -> Plane<f32> {
     measure(outline, joined, |distance, _| distance)
 }

@@ -67,7 +67,7 @@ impl Primitive {
     /// Visible height (px, toward the viewer, 0 at the body's middle) and unit normal (camera
     /// space) at a canvas point; `None` off the body.
     pub fn surface_at(&self, p: Vec2) -> Option<(f32, Vec3)> {
-        self.seen(self.turn(), p)
+        self.hit_at(self.turn(), p)
     }
 
     fn turn(&self) -> Mat3 {
@@ -77,7 +77,7 @@ impl Primitive {
             * Mat3::from_rotation_x(turn.x)
     }
 
-    fn seen(&self, turn: Mat3, p: Vec2) -> Option<(f32, Vec3)> {
+    fn hit_at(&self, turn: Mat3, p: Vec2) -> Option<(f32, Vec3)> {
         let from = vec3(p.x - self.center.x, self.center.y - p.y, 0.0);
         let ray = Ray { origin: turn.transpose() * from, way: turn.transpose() * Vec3::Z };
         let (z, normal) = match self.body {
@@ -86,12 +86,10 @@ impl Primitive {
             Body::Cylinder => ray.cylinder(self.radius, 0.5 * self.length),
             Body::Cone => ray.cone(self.radius, 0.5 * self.length),
             Body::Capsule => ray.capsule(self.radius, 0.5 * self.length),
-            Body::Torus => {
-                ray.traced(self.radius + self.tube, |p| torus(p, self.radius, self.tube))
-            }
+            Body::Torus => ray.trace(self.radius + self.tube, |p| torus(p, self.radius, self.tube)),
             Body::Box => {
                 let round = self.round.min(self.half.min_element());
-                ray.traced(self.half.length(), |p| rounded_box(p, self.half, round))
+                ray.trace(self.half.length(), |p| rounded_box(p, self.half, round))
             }
         }?;
         let normal = (turn * normal).normalize_or(Vec3::Z);
@@ -134,16 +132,17 @@ impl Primitive {
     /// What one pixel shows: its center, or the mean of its covered part.
     fn texel(&self, turn: Mat3, corner: Vec2) -> PrimitiveTexel {
         const SIDE: usize = 8;
-        let middle = self.seen(turn, corner + 0.5);
+        let middle = self.hit_at(turn, corner + 0.5);
         let ends = [vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(1.0, 1.0)];
-        let hits = ends.iter().filter(|e| self.seen(turn, corner + **e).is_some()).count();
+        let hits = ends.iter().filter(|e| self.hit_at(turn, corner + **e).is_some()).count();
         let texel = |(height, normal), coverage| PrimitiveTexel { height, normal, coverage };
         match (middle, hits) {
             (Some(middle), 4) => texel(middle, 255),
             (None, 0) => PrimitiveTexel::default(),
             _ => {
                 let part = |i: usize| (i as f32 + 0.5) / SIDE as f32;
-                let at = |i: usize| self.seen(turn, corner + vec2(part(i % SIDE), part(i / SIDE)));
+                let at =
+                    |i: usize| self.hit_at(turn, corner + vec2(part(i % SIDE), part(i / SIDE)));
                 let seen: Vec<_> = (0..SIDE * SIDE).filter_map(at).collect();
                 if seen.is_empty() {
                     return PrimitiveTexel::default();
@@ -257,7 +256,7 @@ impl Ray {
 
     /// The first place where a distance (and its gradient) becomes 0, starting `reach` in front of
     /// the middle.
-    fn traced(&self, reach: f32, distance: impl Fn(Vec3) -> (f32, Vec3)) -> Hit {
+    fn trace(&self, reach: f32, distance: impl Fn(Vec3) -> (f32, Vec3)) -> Hit {
         let mut z = reach;
         for _ in 0..200 {
             let (d, normal) = distance(self.at(z));

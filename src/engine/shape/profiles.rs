@@ -87,7 +87,7 @@ fn solve(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
 /// `None` as for [`normals_from_profiles`].
 ///
 /// The planes of the shadings are those of the outline.
-pub fn formed(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
+pub fn solve_form(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
     let (found, inside) = (normals_from_profiles(profiles)?, outline.inside());
     if found.normals.size() != inside.size() {
         return None;

@@ -44,8 +44,8 @@ pub fn relief(outline: &Outline, luminance: &Plane<f32>, detail: Detail) -> Plan
         return Plane::filled(inside.size(), 0.0);
     }
     let edge = detail.edge * detail.edge;
-    let fine = guided(luminance, inside, (0.25 * detail.radius).max(1.0) as usize, edge);
-    let coarse = guided(&fine, inside, detail.radius.max(1.0) as usize, edge);
+    let fine = filter_guided(luminance, inside, (0.25 * detail.radius).max(1.0) as usize, edge);
+    let coarse = filter_guided(&fine, inside, detail.radius.max(1.0) as usize, edge);
     Plane::from_fn(inside.size(), |x, y| {
         if !inside.at(x, y) {
             return 0.0;
@@ -57,7 +57,12 @@ pub fn relief(outline: &Outline, luminance: &Plane<f32>, detail: Detail) -> Plan
 
 /// The guided filter of a plane by itself: q = a p + b with a = var/(var + ε), both averaged over
 /// the window.
-pub fn guided(plane: &Plane<f32>, inside: &Plane<bool>, radius: usize, epsilon: f32) -> Plane<f32> {
+pub fn filter_guided(
+    plane: &Plane<f32>,
+    inside: &Plane<bool>,
+    radius: usize,
+    epsilon: f32,
+) -> Plane<f32> {
     let mean = mean_within(plane, inside, radius);
     let square = mean_within(&plane.map(|v| v * v), inside, radius);
     let share = Plane::from_fn(plane.size(), |x, y| {

@@ -30,13 +30,16 @@ impl<'a> OutlineRim<'a> {
     /// A silhouette except toward the pixels of `joined`, a plane as large as the outline's: there
     /// the link is left out (Neumann), so that the field joins its neighbor level. A plane of
     /// another size joins nothing.
-    pub fn joined(outline: &'a Outline, joined: &'a Plane<bool>) -> Self {
+    pub fn with_joined_pixels(outline: &'a Outline, joined: &'a Plane<bool>) -> Self {
         Self { outline, joined: (joined.size() == outline.size()).then_some(joined) }
     }
 
     /// A silhouette, or one that is joined in part.
     pub fn of(outline: &'a Outline, joined: Option<&'a Plane<bool>>) -> Self {
-        joined.map_or_else(|| Self::silhouette(outline), |joined| Self::joined(outline, joined))
+        joined.map_or_else(
+            || Self::silhouette(outline),
+            |joined| Self::with_joined_pixels(outline, joined),
+        )
     }
 
     fn is_free(&self, x: i32, y: i32) -> bool {
@@ -60,12 +63,12 @@ impl<'a> OutlineRim<'a> {
     /// symmetric), and `s`, px⁻², `≥ 0`.
     pub fn equation(&self, screen: impl Fn(usize, usize) -> f32 + Sync) -> Equation {
         let (inside, size) = (self.outline.inside(), self.outline.size());
-        let held = Plane::from_fn(size, |x, y| self.held((x, y), &screen));
+        let held = Plane::from_fn(size, |x, y| self.rim_coupling((x, y), &screen));
         Equation { solver: Solver::new(inside, held) }
     }
 
     /// The coupling of a pixel toward 0.
-    fn held(&self, (x, y): (usize, usize), screen: &impl Fn(usize, usize) -> f32) -> f32 {
+    fn rim_coupling(&self, (x, y): (usize, usize), screen: &impl Fn(usize, usize) -> f32) -> f32 {
         let inside = self.outline.inside();
         if !inside.at(x, y) {
             return 0.0;
@@ -126,7 +129,7 @@ impl Equation {
         pixels: &[(usize, usize)],
         screen: impl Fn(usize, usize) -> f32,
     ) {
-        self.solver.hold(pixels, |x, y| rim.held((x, y), &screen));
+        self.solver.hold(pixels, |x, y| rim.rim_coupling((x, y), &screen));
     }
 
     /// A field of the right-hand side's size that is nearly right, nearer to the solution

@@ -9,7 +9,7 @@ use crate::math::conjugate_gradients::{
     ConjugateSystem, JACOBI_STEPS as STEPS, conjugate_gradients,
 };
 use crate::math::{Rect, Size};
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::raster::Plane;
 use level::*;
 use rayon::prelude::*;
@@ -77,16 +77,16 @@ impl Solver {
     pub fn approach(&self, b: &[f32], mut v: Vec<f32>, near: Rect) -> Vec<f32> {
         const GOAL: f64 = 1e-3;
         let grid = &self.levels[0];
-        let mut other = filled_or_unwind(b.len(), 0.0);
+        let mut other = fill_or_unwind(b.len(), 0.0);
         self.settle(b, &mut v, near, 30);
         if let Some(below) = self.levels.get(1) {
             grid.fill(&mut other, |y, out| {
                 compute_residual(grid.couplings(y), grid.rows_around(&v, y), grid.row(b, y), out)
             });
-            let mut rest = filled_or_unwind(below.w * below.h, 0.0);
+            let mut rest = fill_or_unwind(below.w * below.h, 0.0);
             restrict(grid, below, &other, &mut rest);
-            let nothing = filled_or_unwind(rest.len(), 0.0);
-            let coarse = self.conjugated(1, &rest, nothing, GOAL);
+            let nothing = fill_or_unwind(rest.len(), 0.0);
+            let coarse = self.solve_by_conjugate_gradients(1, &rest, nothing, GOAL);
             grid.fill(&mut other, |y, out| between_blocks(grid, below, &coarse, y, out));
             v.par_chunks_mut(grid.w * BAND)
                 .zip(other.par_chunks(grid.w * BAND))
@@ -123,14 +123,20 @@ impl Solver {
     ///
     /// `start`: where the search begins; if absent, at the solution of the coarser grids.
     pub fn solve(&self, b: &[f32], start: Option<Vec<f32>>, goal: f64) -> Vec<f32> {
-        let start = start.unwrap_or_else(|| self.nested(0, b));
-        self.conjugated(0, b, start, goal)
+        let start = start.unwrap_or_else(|| self.solve_nested(0, b));
+        self.solve_by_conjugate_gradients(0, b, start, goal)
     }
 
     /// The same on any level.
-    fn conjugated(&self, at: usize, b: &[f32], mut v: Vec<f32>, goal: f64) -> Vec<f32> {
+    fn solve_by_conjugate_gradients(
+        &self,
+        at: usize,
+        b: &[f32],
+        mut v: Vec<f32>,
+        goal: f64,
+    ) -> Vec<f32> {
         let (grid, w) = (&self.levels[at], self.levels[at].w);
-        let buffer = || filled_or_unwind(b.len(), 0.0);
+        let buffer = || fill_or_unwind(b.len(), 0.0);
         let mut residual = buffer();
         grid.fill(&mut residual, |y, out| {
             compute_residual(grid.couplings(y), grid.rows_around(&v, y), grid.row(b, y), out)
@@ -154,16 +160,16 @@ impl Solver {
 
     /// The coarser grid's solution, itself started from the next coarser one, read between its
     /// blocks and corrected once.
-    fn nested(&self, at: usize, b: &[f32]) -> Vec<f32> {
+    fn solve_nested(&self, at: usize, b: &[f32]) -> Vec<f32> {
         let mut scratch = SolverBuffers::default();
         let grid = &self.levels[at];
         let Some(below) = self.levels.get(at + 1) else { return self.cycle(at, b, &mut scratch) };
-        let mut rest = filled_or_unwind(below.w * below.h, 0.0);
+        let mut rest = fill_or_unwind(below.w * below.h, 0.0);
         restrict(grid, below, b, &mut rest);
-        let coarse = self.nested(at + 1, &rest);
-        let mut v = filled_or_unwind(b.len(), 0.0);
+        let coarse = self.solve_nested(at + 1, &rest);
+        let mut v = fill_or_unwind(b.len(), 0.0);
         grid.fill(&mut v, |y, out| between_blocks(grid, below, &coarse, y, out));
-        let mut left = filled_or_unwind(b.len(), 0.0);
+        let mut left = fill_or_unwind(b.len(), 0.0);
         grid.fill(&mut left, |y, out| {
             compute_residual(grid.couplings(y), grid.rows_around(&v, y), grid.row(b, y), out)
         });
@@ -314,7 +320,7 @@ impl SolverBuffers {
     fn take(&mut self, len: usize) -> Vec<f32> {
         match self.0.iter().position(|buffer| buffer.len() == len) {
             Some(at) => self.0.swap_remove(at),
-            None => filled_or_unwind(len, 0.0),
+            None => fill_or_unwind(len, 0.0),
         }
     }
 

@@ -37,7 +37,7 @@ pub fn highest_between(a: Ball, b: Ball, p: Vec2) -> Ball {
 
 /// The outline and squared height (px²) of balls along a line; `None` if there is nothing to see, a
 /// number is not finite or the rectangle has more than `most_px` pixels.
-pub fn swept(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
+pub fn sweep(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
     let is_finite =
         |b: &Ball| b.at.is_finite() && b.at.abs().max_element() < 1e6 && b.radius.is_finite();
     if balls.is_empty() || !balls.iter().all(is_finite) {
@@ -84,7 +84,7 @@ pub fn swept(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
 ///
 /// `axis`: two points, canvas px; without one it is upright. Across each place of the axis, all
 /// between the first and the last place inside counts.
-pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
+pub fn turn_outline(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
     let size = outline.size();
     let corner = vec2(outline.corner().0 as f32, outline.corner().1 as f32);
     let extent = vec2(size.width as f32, size.height as f32);
@@ -210,12 +210,12 @@ mod tests {
             let found = height(highest_between(a, b, p));
             assert!((found - best).abs() < 1e-2, "{found} and not {best} at {p}");
         }
-        let (outline, square) = swept(&[a, b], 1 << 16).unwrap();
+        let (outline, square) = sweep(&[a, b], 1 << 16).unwrap();
         assert!((square.values().iter().fold(0.0f32, |m, v| m.max(*v)).sqrt() - 12.0).abs() < 0.05);
         assert_eq!(outline.size(), square.size());
-        assert!(swept(&[], 10).is_none());
-        assert!(swept(&[Ball { at: vec2(f32::NAN, 0.0), radius: 3.0 }], 1000).is_none());
-        assert!(swept(&[Ball { at: Vec2::ZERO, radius: 3000.0 }], 1000).is_none());
+        assert!(sweep(&[], 10).is_none());
+        assert!(sweep(&[Ball { at: vec2(f32::NAN, 0.0), radius: 3.0 }], 1000).is_none());
+        assert!(sweep(&[Ball { at: Vec2::ZERO, radius: 3000.0 }], 1000).is_none());
     }
 
     #[test]
@@ -228,7 +228,7 @@ mod tests {
             .chain(side(-1.0).collect::<Vec<_>>().into_iter().rev().map(at))
             .collect();
         let outline = Outline::of_path(&way, 1 << 20).unwrap();
-        let square = turned(&outline, Some([vec2(120.3, 0.0), vec2(120.3, 1.0)]));
+        let square = turn_outline(&outline, Some([vec2(120.3, 0.0), vec2(120.3, 1.0)]));
         let (left, top) = outline.corner();
         let height = |s: usize| square.at((120 - left) as usize, (s as i32 - top) as usize).sqrt();
         let (mut sum, mut most) = (0.0f32, 0.0f32);
@@ -265,7 +265,7 @@ mod tests {
         let center = vec2(80.4, 70.2);
         let outline = Outline::of_path(&ellipse(center, vec2(a, b), turn, 4000), 1 << 20).unwrap();
         let along = Vec2::from_angle(turn);
-        let square = turned(&outline, Some([center, center + along]));
+        let square = turn_outline(&outline, Some([center, center + along]));
         let corner = vec2(outline.corner().0 as f32, outline.corner().1 as f32);
         for (x, y) in (0..square.height()).flat_map(|y| (0..square.width()).map(move |x| (x, y))) {
             let from = corner + vec2(x as f32 + 0.5, y as f32 + 0.5) - center;

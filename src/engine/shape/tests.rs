@@ -101,7 +101,7 @@ fn creature(size: f32, turn_rad: f32, shift: Vec2) -> Outline {
 fn normal_at(form: &Form, p: Vec2) -> Vec3 {
     let q = p - 0.5 - vec2(form.corner.0 as f32, form.corner.1 as f32);
     let (x, y) = (q.x.floor(), q.y.floor());
-    let at = |dx: i32, dy: i32| form.normals.clamped(x as i32 + dx, y as i32 + dy);
+    let at = |dx: i32, dy: i32| form.normals.at_clamped(x as i32 + dx, y as i32 + dy);
     let (fx, fy) = (q.x - x, q.y - y);
     let row = |dy: i32| at(0, dy) * (1.0 - fx) + at(1, dy) * fx;
     (row(0) * (1.0 - fy) + row(1) * fy).normalize_or(Vec3::Z)
@@ -138,7 +138,7 @@ fn a_tube_over_the_outline_of_a_capsule_a_cone_or_a_ball_is_nearly_that_body() {
         ("ball", [ball(80.3, 80.1, 60.0), ball(80.3, 80.1, 60.0)]),
     ];
     for (name, balls) in bodies {
-        let (outline, squares) = sweep::swept(&balls, 1 << 20).unwrap();
+        let (outline, squares) = sweep::sweep(&balls, 1 << 20).unwrap();
         let form = |h: &Plane<f32>| {
             Form::of_squares(&outline, h, &OutlineRim::silhouette(&outline), SILHOUETTE)
         };

@@ -70,7 +70,7 @@ struct TouchingStep {
 /// curvature: its mean normal there becomes the touch's.
 ///
 /// * `last`: in a draft, how far it came, and then how far it comes.
-pub fn touched(
+pub fn apply_touches(
     form: &Form,
     outline: &Outline,
     touches: &[Touch],
@@ -132,13 +132,13 @@ impl Touching {
             .map(|at| self.steps.swap_remove(at));
         let step = match known {
             Some(known) => {
-                let (step, near) = known.gone_on(&rim, (held, wanted));
+                let (step, near) = known.advance(&rim, (held, wanted));
                 self.near = self.near.union(near);
                 step
             }
             None => {
                 let equation = touching(&rim, held, reach);
-                let delta = solved(&equation, (held, wanted), ROUGH_GOAL);
+                let delta = solve_displacement(&equation, (held, wanted), ROUGH_GOAL);
                 TouchingStep { reach, held: held.clone(), wanted: wanted.clone(), equation, delta }
             }
         };
@@ -155,7 +155,7 @@ impl Touching {
             return with_normals(form, outline, normals);
         };
         let (far, width) = (following.go_on(&normals, inside, self.near), inside.width());
-        let form = raised_to(form, inside, normals, |x, y| -far[y * width + x]);
+        let form = with_heights(form, inside, normals, |x, y| -far[y * width + x]);
         self.heights = Some(following);
         form
     }
@@ -163,7 +163,7 @@ impl Touching {
 
 impl TouchingStep {
     /// One more frame, and the pixels around what changed in it.
-    fn gone_on(
+    fn advance(
         mut self,
         rim: &OutlineRim,
         (held, wanted): (&Plane<bool>, &Plane<Vec2>),
@@ -263,7 +263,7 @@ pub fn spread_within(
     wanted: &Plane<Vec2>,
     reach: f32,
 ) -> Plane<Vec2> {
-    side_by_side(&solved(&touching(rim, held, reach), (held, wanted), GOAL))
+    side_by_side(&solve_displacement(&touching(rim, held, reach), (held, wanted), GOAL))
 }
 
 /// How firmly each pixel is held: by touches, and by a reach, px; one that is infinite does not
@@ -287,7 +287,7 @@ fn source(held: &Plane<bool>, wanted: &Plane<Vec2>, component: usize) -> Plane<f
 }
 
 /// The components of δ.
-fn solved(
+fn solve_displacement(
     equation: &Equation,
     (held, wanted): (&Plane<bool>, &Plane<Vec2>),
     goal: f64,
@@ -311,11 +311,11 @@ fn side_by_side([x, y]: &[Plane<f32>; 2]) -> Plane<Vec2> {
 pub fn with_normals(form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
     let inside = outline.inside();
     let Some(found) = depth_from_normals(&normals, inside) else { return form.clone() };
-    raised_to(form, inside, normals, |x, y| -found.depth.at(x, y) * found.range_px)
+    with_heights(form, inside, normals, |x, y| -found.depth.at(x, y) * found.range_px)
 }
 
 /// A form with other normals and heights, the heights moved to the same mean as before.
-fn raised_to(
+fn with_heights(
     form: &Form,
     inside: &Plane<bool>,
     normals: Plane<Vec3>,
@@ -374,8 +374,8 @@ mod tests {
         let mut last = Touching::default();
         for n in 3..=9 {
             let (draft, whole) = (
-                touched(&form, &outline, &touches[..n], Some(&mut last)),
-                touched(&form, &outline, &touches[..n], None),
+                apply_touches(&form, &outline, &touches[..n], Some(&mut last)),
+                apply_touches(&form, &outline, &touches[..n], None),
             );
             let inside =
                 outline.inside().values().iter().enumerate().filter(|(_, is)| **is).map(|(i, _)| i);

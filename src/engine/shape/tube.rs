@@ -80,7 +80,7 @@ pub fn balls(outline: &Outline, reach: &Plane<f32>) -> Plane<f32> {
 /// min_v ((x − v)² + f(v, y)) for every pixel.
 fn envelopes(size: Size, f: impl Fn(usize, usize) -> f64 + Sync) -> Vec<f64> {
     let w = size.width as usize;
-    let mut out = crate::memory::filled_or_unwind(size.area(), f64::INFINITY);
+    let mut out = crate::memory::fill_or_unwind(size.area(), f64::INFINITY);
     out.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
         let line: Vec<f64> = (0..w).map(|x| f(x, y)).collect();
         lower_envelope(&line, |q, v| row[q] = (q as f64 - v as f64).powi(2) + line[v]);

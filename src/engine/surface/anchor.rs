@@ -38,7 +38,7 @@ impl Bend {
     pub const MOST_ANCHORS: usize = 10_000;
 
     /// An operator with the image pinned at some points, canvas px.
-    pub fn pinned(operator: Operator, at: impl IntoIterator<Item = Vec2>) -> Self {
+    pub fn pin_at(operator: Operator, at: impl IntoIterator<Item = Vec2>) -> Self {
         Self { operator, anchors: at.into_iter().map(Anchor::fixed).collect(), ..Self::default() }
     }
 

@@ -133,7 +133,7 @@ impl ChunkSettings {
 
     /// L(n) = ½ + ½ n̄, in px of the ball's square: where a lit sphere looks a normal up.
     #[inline(always)]
-    fn looked_up(&self, nbar: Vec2) -> Vec2 {
+    fn look_up(&self, nbar: Vec2) -> Vec2 {
         (nbar * 0.5 + 0.5) * self.ball_px
     }
 
@@ -153,7 +153,7 @@ impl ChunkSettings {
     }
 
     #[inline(always)]
-    fn stored(&self, place: Vec2, chunk: u8) -> BallPlace {
+    fn store_place(&self, place: Vec2, chunk: u8) -> BallPlace {
         let steps = self.steps();
         BallPlace { at: [place.x, place.y].map(|v| (v * steps + 0.5) as u16), chunk }
     }
@@ -188,8 +188,8 @@ impl<'a> ChunkMaps<'a> {
         vec2(self.seen[0].at(x, y), self.seen[1].at(x, y))
     }
 
-    fn looked_up(&self, x: usize, y: usize) -> Vec2 {
-        self.settings.looked_up(self.nbar(x, y))
+    fn look_up(&self, x: usize, y: usize) -> Vec2 {
+        self.settings.look_up(self.nbar(x, y))
     }
 
     /// The seed of a cell, if it lies on the part.
@@ -203,7 +203,7 @@ impl<'a> ChunkMaps<'a> {
             is_inside && self.surface.coverage(column, row) > 0 && self.part(column, row) == part;
         is_own.then(|| Seed {
             at: vec2(x + 0.5, y + 0.5),
-            offset: self.looked_up(column, row) - vec2(x + 0.5, y + 0.5),
+            offset: self.look_up(column, row) - vec2(x + 0.5, y + 0.5),
             bend: self.bend((column, row), grid.side),
         })
     }
@@ -238,9 +238,9 @@ impl<'a> ChunkMaps<'a> {
         let reached = |on: bool| {
             step(from, on)
                 .filter(|to| to.0 < w && to.1 < h && self.ways.is_reached(from, *to))
-                .map(|(x, y)| self.looked_up(x, y))
+                .map(|(x, y)| self.look_up(x, y))
         };
-        let here = self.looked_up(from.0, from.1);
+        let here = self.look_up(from.0, from.1);
         match (reached(false), reached(true)) {
             (Some(before), Some(after)) => Some((after - before) * 0.5),
             (Some(before), None) => Some(here - before),
@@ -259,8 +259,8 @@ impl<'a> ChunkMaps<'a> {
             return BallPlace::default();
         }
         self.settings.sides().find_map(|level| self.chunk_place(level, x, y)).map_or_else(
-            || self.settings.stored(self.looked_up(x, y), LOOKED_UP),
-            |(place, chunk)| self.settings.stored(place, chunk),
+            || self.settings.store_place(self.look_up(x, y), LOOKED_UP),
+            |(place, chunk)| self.settings.store_place(place, chunk),
         )
     }
 
@@ -340,7 +340,7 @@ impl BallPlaces {
     pub fn beside(&self, x: usize, y: usize, bit: usize) -> [f32; 2] {
         let (dx, dy) = SEAM_STEPS[bit & 7];
         let step = self.seam_px as i32;
-        let at = self.places.clamped(x as i32 + dx * step, y as i32 + dy * step);
+        let at = self.places.at_clamped(x as i32 + dx * step, y as i32 + dy * step);
         let back = self.seam_px as f32 * self.steps;
         [f32::from(at[0]) - dx as f32 * back, f32::from(at[1]) - dy as f32 * back]
     }
@@ -391,7 +391,7 @@ impl BallPlaces {
 
     /// The place of one pixel, moved to another.
     fn moved(&self, from: (i32, i32), to: &super::ContourPixel) -> [u16; 2] {
-        let [x, y] = self.places.clamped(from.0, from.1);
+        let [x, y] = self.places.at_clamped(from.0, from.1);
         let most = self.ball_px * self.steps;
         let step = |at: u16, by: i32| (f32::from(at) + by as f32 * self.steps).max(0.0).min(most);
         [step(x, to.x - from.0) as u16, step(y, to.y - from.1) as u16]

@@ -16,7 +16,7 @@ use std::sync::Arc;
 ///
 /// The result is a unit vector: the base where the detail is flat, the detail where the base is
 /// flat. A result that would face away from the viewer is stopped at the silhouette.
-pub fn reoriented(base: Vec3, detail: Vec3) -> Vec3 {
+pub fn reorient(base: Vec3, detail: Vec3) -> Vec3 {
     let t = base + Vec3::Z;
     let u = Vec3::new(-detail.x, -detail.y, detail.z);
     let r = (t * (t.dot(u) / t.z.max(1e-3)) - u).normalize_or(base);
@@ -123,7 +123,7 @@ fn halve(plane: &Plane<Vec3>) -> Option<Plane<Vec3>> {
         return None;
     }
     Some(Plane::from_fn(Size::new(width.div_ceil(2), height.div_ceil(2)), |x, y| {
-        let at = |dx, dy| plane.clamped((2 * x + dx) as i32, (2 * y + dy) as i32);
+        let at = |dx, dy| plane.at_clamped((2 * x + dx) as i32, (2 * y + dy) as i32);
         (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4.0
     }))
 }
@@ -139,7 +139,7 @@ impl super::Surface {
     ) -> Self {
         let combined = |base: Vec3, x: usize, y: usize| match detail(x, y) {
             Some((detail, strength)) if strength > 0.0 => {
-                reoriented(base, strengthened(detail, strength))
+                reorient(base, strengthened(detail, strength))
             }
             _ => base,
         };
@@ -170,8 +170,8 @@ mod tests {
     #[test]
     fn flat_detail_keeps_the_base_and_a_flat_base_shows_the_detail() {
         let lean = vec3(0.4, -0.3, 0.8).normalize();
-        assert!(near(reoriented(lean, Vec3::Z), lean));
-        assert!(near(reoriented(Vec3::Z, lean), lean));
+        assert!(near(reorient(lean, Vec3::Z), lean));
+        assert!(near(reorient(Vec3::Z, lean), lean));
     }
 
     #[test]
@@ -179,22 +179,22 @@ mod tests {
         let detail = vec3(0.3, 0.2, 0.9).normalize();
         for base in [vec3(0.5, 0.1, 0.8), vec3(-0.3, 0.6, 0.7), vec3(0.0, -0.6, 0.4)] {
             let base = base.normalize();
-            let r = reoriented(base, detail);
+            let r = reorient(base, detail);
             assert!((r.length() - 1.0).abs() < 1e-5);
             assert!((r.dot(base) - detail.z).abs() < 1e-5, "{base}");
         }
         // The shortest rotation from z to a base that leans right leaves vertical tilt unchanged.
         let right = vec3(0.6, 0.0, 0.8);
-        assert!((reoriented(right, vec3(0.0, 0.28, 0.96)).y - 0.28).abs() < 1e-5);
+        assert!((reorient(right, vec3(0.0, 0.28, 0.96)).y - 0.28).abs() < 1e-5);
     }
 
     #[test]
     fn nothing_turns_away_from_the_viewer() {
         let grazing = vec3(0.995, 0.0, 0.0999).normalize();
-        let r = reoriented(grazing, vec3(0.7, 0.0, 0.71).normalize());
+        let r = reorient(grazing, vec3(0.7, 0.0, 0.71).normalize());
         assert!(r.z >= 0.0199 && (r.length() - 1.0).abs() < 1e-5, "{r}");
         for base in [Vec3::NEG_Z, vec3(0.9, 0.0, -0.01)] {
-            assert!(reoriented(base, vec3(0.5, 0.5, 0.7)).is_finite());
+            assert!(reorient(base, vec3(0.5, 0.5, 0.7)).is_finite());
         }
     }
 

@@ -62,10 +62,14 @@ impl<'a> Deformation<'a> {
     /// Anchors that are not finite are dropped, and parameters that are not finite count as 0: D is
     /// finite everywhere.
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
-        let deformation =
-            Self::pinned(surface, size, (bend.operator, bend.weights, &bend.anchors), at_anchor);
+        let deformation = Self::pin_anchors(
+            surface,
+            size,
+            (bend.operator, bend.weights, &bend.anchors),
+            at_anchor,
+        );
         deformation.with_planes(|surface, settings, anchors| {
-            LaidPlanes::pinned(
+            LaidPlanes::pin_anchors(
                 surface,
                 settings,
                 &Bend { anchors: anchors.to_vec(), ..bend.clone() },
@@ -79,10 +83,15 @@ impl<'a> Deformation<'a> {
         // The many dabs that nothing bends allocate no memory.
         let pinned = [Anchor::fixed(at)];
         let anchors = if surface.is_none() || operator.is_identity() { &[][..] } else { &pinned };
-        Self::pinned(surface, size, (operator, Weights::default(), anchors), Surface::near_point)
-            .with_planes(|surface, settings, anchors| {
-                LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at))
-            })
+        Self::pin_anchors(
+            surface,
+            size,
+            (operator, Weights::default(), anchors),
+            Surface::near_point,
+        )
+        .with_planes(|surface, settings, anchors| {
+            LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at))
+        })
     }
 
     /// The same for a pattern that begins at a point and lies everywhere: grain.
@@ -107,7 +116,7 @@ impl<'a> Deformation<'a> {
         Self { planes, ..self }
     }
 
-    fn pinned(
+    fn pin_anchors(
         surface: Option<&'a Surface>,
         size: Size,
         (operator, weights, anchors): (Operator, Weights, &[Anchor]),
@@ -211,7 +220,7 @@ impl<'a> Deformation<'a> {
     pub fn jacobian(&self, x: i32, y: i32) -> Mat2 {
         let q = self.center(x, y);
         if let Some((planes, (surface, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
-            let near = DifferencePairs::linked(surface, x, y);
+            let near = DifferencePairs::between_links(surface, x, y);
             let rows = [near.slope(|x, y| planes.at(x, y).x), near.slope(|x, y| planes.at(x, y).y)];
             return Mat2::from_cols(rows[0], rows[1]).transpose();
         }
@@ -334,7 +343,7 @@ impl<'a> Deformation<'a> {
             pin.map_values,
             self.unit_px,
         );
-        let near = DifferencePairs::linked(surface, x, y);
+        let near = DifferencePairs::between_links(surface, x, y);
         jacobian * self.detail_gain(x, y) + outer(offset, near.slope(|x, y| self.detail_gain(x, y)))
     }
 
@@ -374,7 +383,7 @@ fn map_values(surface: &Surface, x: usize, y: usize) -> MapValues {
 
 /// How the maps change at a pixel, within its piece of surface.
 fn slopes(surface: &Surface, x: usize, y: usize) -> MapSlopes {
-    let near = DifferencePairs::linked(surface, x, y);
+    let near = DifferencePairs::between_links(surface, x, y);
     let nbar = [near.slope(|x, y| surface.nbar(x, y).x), near.slope(|x, y| surface.nbar(x, y).y)];
     MapSlopes {
         depth: near.slope(|x, y| surface.depth(x, y)),

@@ -81,7 +81,7 @@ pub(super) struct DifferencePairs {
 }
 
 impl DifferencePairs {
-    pub fn linked(surface: &Surface, x: usize, y: usize) -> Self {
+    pub fn between_links(surface: &Surface, x: usize, y: usize) -> Self {
         let bits = surface.smooth_links_plane().at(x, y);
         let side = |bit: u8| usize::from(bits & bit != 0);
         let (left, right) = (x - side(links::LEFT), x + side(links::RIGHT));

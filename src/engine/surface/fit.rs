@@ -85,13 +85,13 @@ impl Surface {
         }
         self.with_contour_maps(None, |maps: &ContourMaps| {
             let contours = EnlargedContours::new(maps, self.contours());
-            Plane::from_fn(canvas, |x, y| self.enlarged(&contours, at(x, y), half))
+            Plane::from_fn(canvas, |x, y| self.read_enlarged(&contours, at(x, y), half))
         })
     }
 
     /// What a pixel reads that covers at most one old one: interpolated, but at contours by the
     /// side of their line that its middle lies on; and how much of it is covered.
-    fn enlarged(&self, contours: &EnlargedContours, center: Vec2, half: Vec2) -> MeanTexel {
+    fn read_enlarged(&self, contours: &EnlargedContours, center: Vec2, half: Vec2) -> MeanTexel {
         let border = vec2(self.size().width as f32, self.size().height as f32);
         if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {
             return MeanTexel::default();

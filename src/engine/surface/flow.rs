@@ -80,7 +80,8 @@ impl FlowField {
         let range_px = surface.depth_range_px();
         let tensors = Plane::from_fn(surface.size(), |x, y| {
             position_tensor(
-                DifferencePairs::linked(surface, x, y).slope(|x, y| surface.depth(x, y)) * range_px,
+                DifferencePairs::between_links(surface, x, y).slope(|x, y| surface.depth(x, y))
+                    * range_px,
             )
         });
         Self { tensors, unbent: 1.0 }
@@ -89,7 +90,7 @@ impl FlowField {
     /// T_n of every pixel, from the normals.
     pub fn of_normals(surface: &Surface) -> Self {
         let tensors = Plane::from_fn(surface.size(), |x, y| {
-            let near = DifferencePairs::linked(surface, x, y);
+            let near = DifferencePairs::between_links(surface, x, y);
             let slopes = [0, 1, 2].map(|c| near.slope(|x, y| surface.normal(x, y)[c]));
             normal_tensor(Vec3::from(slopes.map(|s| s.x)), Vec3::from(slopes.map(|s| s.y)))
         });

@@ -187,7 +187,7 @@ impl HatchLines {
             for (i, level) in levels.iter().enumerate().filter(|(_, l)| l.family == family) {
                 lines.fill(i as u8, (level.apart * settings.spacing).max(1.2));
             }
-            lines.done()
+            lines.into_lines()
         };
         let (first, second) = rayon::join(|| family(0), || family(1));
         let mut all: Vec<(u8, Vec<Vec2>)> = first.into_iter().chain(second).collect();

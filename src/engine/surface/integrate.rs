@@ -7,7 +7,7 @@ mod slopes;
 
 use super::poisson::{Effort, GoOn, PoissonGrid, PoissonSolver};
 use crate::math::Vec3;
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::raster::Plane;
 pub use slopes::Slopes;
 
@@ -62,7 +62,7 @@ fn solver(slopes: &Slopes) -> PoissonSolver {
 fn heights(solver: &PoissonSolver, slopes: &Slopes, go_on: GoOn) -> Vec<f32> {
     let size = slopes.inside.size();
     let source = Plane::from_fn(size, |x, y| slopes.source(x, y));
-    let mut heights = filled_or_unwind(size.area(), 0.0);
+    let mut heights = fill_or_unwind(size.area(), 0.0);
     solver.solve_while(source.values(), &mut heights, Effort::EXACT, go_on);
     heights
 }

@@ -107,7 +107,7 @@ pub fn find(
 
 /// Which of the nine pixels around one, row by row, links join to it without crossing a contour;
 /// itself too.
-pub fn joined_around(linked: &Plane<u8>, (x, y): (usize, usize)) -> [bool; 9] {
+pub fn joined_neighbors(linked: &Plane<u8>, (x, y): (usize, usize)) -> [bool; 9] {
     let here = linked.at(x, y);
     if here == 15
         && (1..linked.width() - 1).contains(&x)

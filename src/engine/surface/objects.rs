@@ -53,7 +53,7 @@ impl Objects {
         }
         let mut pieces = PieceForest::of(surface);
         pieces.join_fragments(surface);
-        pieces.numbered(surface)
+        pieces.number_objects(surface)
     }
 
     /// One object for each part that is seen.
@@ -187,7 +187,7 @@ impl PieceForest {
         }
     }
 
-    fn numbered(mut self, surface: &Surface) -> Objects {
+    fn number_objects(mut self, surface: &Surface) -> Objects {
         let mut labels = Plane::filled(surface.size(), 0);
         let mut rects: Vec<Rect> = Vec::new();
         for i in 0..self.parent.len() {

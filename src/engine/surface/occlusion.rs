@@ -197,7 +197,7 @@ impl Surface {
             self.on_either_side(
                 || {
                     let open = rows::compute(base, &HorizonSlices::new(radius_px));
-                    rows::smoothed(base, &open)
+                    rows::smooth(base, &open)
                 },
                 |far, front| {
                     let open = front.map(|front| front.occlusion(radius_px));

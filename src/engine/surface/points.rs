@@ -61,21 +61,21 @@ impl Surface {
     /// The same; off the surface, what it holds nearest to the point: maps are grown outward.
     pub fn near_point(&self, q: Vec2) -> MapValues {
         let (surface, at) = self.read_at(q);
-        let values = surface.blended_at(at);
+        let values = surface.interpolate_maps(at);
         let depth = match self.points.as_ref().is_none_or(|points| points.has_same_depths) {
             true => values.depth,
-            false => self.blended(q, |x, y| self.depth(x, y)),
+            false => self.interpolate(q, |x, y| self.depth(x, y)),
         };
         MapValues { depth, ..values }
     }
 
     /// The maps between the pixels of this surface itself.
-    fn blended_at(&self, q: Vec2) -> MapValues {
+    fn interpolate_maps(&self, q: Vec2) -> MapValues {
         let mut around = self.linked_pixels_around(q);
         let (x, y) = match (around.next(), around.next()) {
             (Some(_), Some(_)) => {
                 let of = |x: usize, y: usize| self.normal(x, y).extend(self.depth(x, y));
-                let (blended, nearest) = (self.blended(q, of), self.pixel_of(q));
+                let (blended, nearest) = (self.interpolate(q, of), self.pixel_of(q));
                 let normal = blended.truncate().normalize_or(self.normal(nearest.0, nearest.1));
                 return MapValues {
                     depth: blended.w,
@@ -91,7 +91,7 @@ impl Surface {
 
     /// A value of each pixel between pixels: the mean over [`Surface::linked_pixels_around`]; where none is
     /// covered, at the pixel that holds the point.
-    pub fn blended<T: Add<Output = T> + Mul<f32, Output = T>>(
+    pub fn interpolate<T: Add<Output = T> + Mul<f32, Output = T>>(
         &self,
         q: Vec2,
         of: impl Fn(usize, usize) -> T,
@@ -115,7 +115,7 @@ impl Surface {
         // Of equal shares the last: a point between pixels is held by the one to its right and
         // below.
         let held = (0..4).filter(|i| covered[*i]).max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
-        let is_joined = held.map_or([false; 4], |held| self.joined(&pixels, held));
+        let is_joined = held.map_or([false; 4], |held| self.joined_pixels(&pixels, held));
         shares
             .iter_mut()
             .zip(is_joined)
@@ -127,7 +127,7 @@ impl Surface {
     }
 
     /// Which of four pixels links join to one of them.
-    fn joined(&self, pixels: &[(usize, usize); 4], held: usize) -> [bool; 4] {
+    fn joined_pixels(&self, pixels: &[(usize, usize); 4], held: usize) -> [bool; 4] {
         let link = |from: usize, to: usize| {
             let ((x, y), (u, v)) = (pixels[from], pixels[to]);
             let bit = match (u as i32 - x as i32, v as i32 - y as i32) {

@@ -16,7 +16,7 @@ mod rows;
 use crate::math::conjugate_gradients::{
     ConjugateSystem, JACOBI_STEPS as STEPS, conjugate_gradients,
 };
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 pub use constraints::SoftConstraints;
 use graph::PoissonGraph;
 use rayon::prelude::*;
@@ -195,7 +195,7 @@ impl PoissonSolver {
         let SolveScratch { residual, direction, pulled, z, levels } = scratch;
         for buffer in [&mut *residual, direction, pulled].into_iter().chain(z.iter_mut()) {
             if buffer.len() != n {
-                *buffer = filled_or_unwind(n, 0.0);
+                *buffer = fill_or_unwind(n, 0.0);
             }
         }
         levels.resize_with(self.graphs.len(), Default::default);
@@ -242,7 +242,7 @@ impl PoissonSolver {
     }
 
     /// `direction` = z + turn · direction and `pulled` = A direction; returns the two's product.
-    fn turned(
+    fn turn_direction(
         &self,
         constraints: &SoftConstraints,
         z: &[f32],
@@ -271,7 +271,7 @@ impl PoissonSolver {
     }
 
     /// v += step · direction and residual −= step · pulled; returns the residual's length, squared.
-    fn walked(
+    fn walk(
         &self,
         step: f32,
         (direction, pulled): (&[f32], &[f32]),
@@ -353,11 +353,11 @@ impl ConjugateSystem for PoissonSystem<'_> {
     }
 
     fn turn(&mut self, turn: f32) -> f64 {
-        self.solver.turned(self.constraints, &self.z[0], turn, self.direction, self.pulled)
+        self.solver.turn_direction(self.constraints, &self.z[0], turn, self.direction, self.pulled)
     }
 
     fn walk(&mut self, along: f32) -> f64 {
-        self.solver.walked(along, (self.direction, self.pulled), self.v, self.residual)
+        self.solver.walk(along, (self.direction, self.pulled), self.v, self.residual)
     }
 }
 

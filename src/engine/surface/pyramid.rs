@@ -326,7 +326,7 @@ impl MapPyramids {
         self.nbar.get_or_init(|| Pyramid::of_points(surface, |x, y| surface.nbar(x, y)))
     }
 
-    pub(super) fn mirrored(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
+    pub(super) fn reflections(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
         let value = |x, y| reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
         self.mirrored.get_or_init(|| Pyramid::of_points(surface, value))
     }

@@ -126,7 +126,7 @@ impl RayMap {
     }
 
     /// How a step in space moves what is seen in the picture, px, at a point of a nearness. The
-    /// inverse of `spanned`.
+    /// inverse of `px_per_pixel`.
     pub fn seen_step(&self, at: Vec2, nearness: f32, step: Vec3) -> Vec2 {
         let flat = vec2(step.x, -step.y);
         match self.near {
@@ -136,7 +136,7 @@ impl RayMap {
     }
 
     /// The px of space that a pixel spans at a nearness, across the view.
-    pub fn spanned(&self, nearness: f32) -> f32 {
+    pub fn px_per_pixel(&self, nearness: f32) -> f32 {
         self.near.map_or(1.0, |near| near.focal_px() / nearness.max(1e-3))
     }
 

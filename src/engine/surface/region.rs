@@ -147,7 +147,7 @@ impl RegionField {
         // An object is joined as it is, fragments of its edge across jumps among it.
         let is_joined = wanted.contiguous && !is_object;
         let reached = is_joined
-            .then(|| Flooded::from(self.at, self.surface.size(), |at| self.opened(at, t, soft)));
+            .then(|| Flooded::from(self.at, self.surface.size(), |at| self.open_tile(at, t, soft)));
         let all = self.surface.size().rect();
         match reached {
             None => CoverageGrid::from_tiles(all, |at, bytes| self.fill(at, t, soft, None, bytes)),
@@ -184,7 +184,7 @@ impl RegionField {
     }
 
     /// The pixels of a tile that are covered at all, and how the surface joins them.
-    fn opened(&self, at: TileAt, t: f32, soft: f32) -> OpenTile {
+    fn open_tile(&self, at: TileAt, t: f32, soft: f32) -> OpenTile {
         let (tile, area) = (at.rect(), at.rect().intersect(self.surface.size().rect()));
         let mut open = [0; TILE];
         let columns = area.x0 as usize..area.x1 as usize;
@@ -256,7 +256,8 @@ fn half_steps(surface: &Surface, deviation: &Plane<f32>) -> Plane<f32> {
     Plane::from_fn(deviation.size(), |x, y| {
         let (v, linked) = (deviation.at(x, y), surface.links_plane().at(x, y));
         let step = |bit: u8, dx: i32, dy: i32| {
-            (linked & bit != 0).then(|| (deviation.clamped(x as i32 + dx, y as i32 + dy) - v).abs())
+            (linked & bit != 0)
+                .then(|| (deviation.at_clamped(x as i32 + dx, y as i32 + dy) - v).abs())
         };
         let of_axis = |a: Option<f32>, b: Option<f32>| match (a, b) {
             (Some(a), Some(b)) => a.min(b),

@@ -158,7 +158,7 @@ pub(in crate::surface) struct ShadowKey {
 /// * `rise`: of the ray, px a px.
 /// * `spread`: of the ray.
 #[inline(always)]
-fn hidden(above_px: f32, distance_px: f32, rise: f32, spread: f32) -> f32 {
+fn hidden_share(above_px: f32, distance_px: f32, rise: f32, spread: f32) -> f32 {
     let width = width_at(distance_px, rise, spread);
     // A level surface does not hide itself, however low the lamp stands.
     let bump = BUMP_PX * fast::max(1.0 - distance_px * (1.0 / BUMP_REACH_PX), 0.0);
@@ -182,7 +182,7 @@ fn width_at(distance_px: f32, rise: f32, spread: f32) -> f32 {
 /// The share of a lamp that is seen where `hidden` of it is, `[0, 1]`: smoothly from the one to the
 /// other.
 #[inline(always)]
-fn seen(hidden: f32) -> f32 {
+fn seen_share(hidden: f32) -> f32 {
     let t = 1.0 - hidden;
     t * t * (3.0 - 2.0 * t)
 }

@@ -134,17 +134,17 @@ impl<'s> SupportBounds<'s> {
 
     /// The blocks of a tile that may be touched.
     pub fn blocks(&self, at: TileAt) -> TileBlocks {
-        self.judged(at).map_or(TileBlocks::default(), |judged| judged.touched)
+        self.judge_blocks(at).map_or(TileBlocks::default(), |judged| judged.touched)
     }
 
     /// The same, and how long pixels are there; `None` where nothing may be touched.
-    pub fn judged(&self, at: TileAt) -> Option<JudgedBlocks> {
+    pub fn judge_blocks(&self, at: TileAt) -> Option<JudgedBlocks> {
         match self.judge(PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row }) {
             BlockOverlap::Nowhere => None,
             BlockOverlap::Everywhere => {
-                Some(JudgedBlocks { touched: self.on_canvas(at), ..blocks::judged(self, at) })
+                Some(JudgedBlocks { touched: self.on_canvas(at), ..blocks::judge_blocks(self, at) })
             }
-            BlockOverlap::Perhaps => Some(blocks::judged(self, at)),
+            BlockOverlap::Perhaps => Some(blocks::judge_blocks(self, at)),
         }
     }
 

@@ -27,7 +27,7 @@ use super::poisson::{Effort, GoOn, PoissonGrid, PoissonSolver, SolveScratch};
 use super::pyramid::{Pyramid, TurnSpan};
 use super::{Surface, links};
 use crate::math::{Rect, Size, Vec2, vec2};
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::raster::Plane;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -75,7 +75,7 @@ impl Unwrapping {
         ];
         let rect = covered_rect(surface);
         if settings.amount > 0.0 && !rect.is_empty() {
-            let moved = solved(surface, rect, settings, go_on)?;
+            let moved = solve_plane(surface, rect, settings, go_on)?;
             for (plane, moved) in planes.iter_mut().zip(&moved) {
                 let w = size.width as usize;
                 let rows =
@@ -143,7 +143,7 @@ fn covered_rect(surface: &Surface) -> Rect {
 }
 
 /// δ = D − q over a rectangle, x and y: the steps of MATH 8; `None` where it is given up.
-fn solved(
+fn solve_plane(
     surface: &Surface,
     rect: Rect,
     settings: UnwrapSettings,
@@ -154,8 +154,8 @@ fn solved(
     let solver = PoissonSolver::new(couplings(surface, rect, &normals));
     drop(normals);
     let n = rect.width() * rect.height();
-    let mut moved = [filled_or_unwind(n, 0.0), filled_or_unwind(n, 0.0)];
-    let mut sources = [filled_or_unwind(n, 0.0), filled_or_unwind(n, 0.0)];
+    let mut moved = [fill_or_unwind(n, 0.0), fill_or_unwind(n, 0.0)];
+    let mut sources = [fill_or_unwind(n, 0.0), fill_or_unwind(n, 0.0)];
     let mut scratch = SolveScratch::default();
     for step in 0..=TURNS {
         let before = (step > 0).then(|| moved.each_ref().map(|v| &v[..]));
@@ -217,7 +217,7 @@ fn couplings(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> Poisso
         facing.max(metric::STEEPEST_NZ).min(1.0)
     };
     let plane = |bit: u8, step: usize, along: Vec2| {
-        let mut plane = filled_or_unwind(n, 0.0f32);
+        let mut plane = fill_or_unwind(n, 0.0f32);
         plane.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
             let linked = surface.links_plane().row(y + rect.y0 as usize);
             for (x, (coupling, linked)) in

@@ -73,7 +73,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     })?;
     let meaning = ColorModel::of(entry.value);
     let others = "its colors are neither gray, indexed, RGB, YCbCr nor CMYK";
-    let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
+    let meaning = meaning.ok_or_else(|| Error::unsupported_file(file, others))?;
     // The crate reads palettes and white-is-zero with alpha as plain gray. Their meaning is
     // restored here.
     let as_gray = match meaning {
@@ -137,7 +137,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
         alpha,
         map,
     };
-    let image = stored.image(values).map_err(|reason| Error::unsupported(file, reason))?;
+    let image = stored.image(values).map_err(|reason| Error::unsupported_file(file, reason))?;
     let orientation = turned.unwrap_or(Orientation::NoTransforms);
     Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
 }
@@ -187,7 +187,7 @@ fn failure(file: &Path, error: &TiffError) -> Error {
             Error::too_large(file, "the TIFF needs more memory than allowed")
                 .with_remedy(Remedy::MorePixels)
         }
-        TiffError::UnsupportedError(e) => Error::unsupported(file, format!("TIFF: {e}")),
+        TiffError::UnsupportedError(e) => Error::unsupported_file(file, format!("TIFF: {e}")),
         e => Error::decode(file, format!("the TIFF data is damaged or cut short ({e})")),
     }
 }
@@ -236,7 +236,7 @@ impl TiffLayout {
     fn image(&self, values: DecodingResult) -> Result<DynamicImage, TiffRefusal> {
         use DecodingResult::{F16, F32, F64, U8, U16, U32, U64};
         match values {
-            U8(v) if self.bits < 8 => self.picture(self.unpacked(&v)),
+            U8(v) if self.bits < 8 => self.picture(self.unpack_samples(&v)),
             U8(v) => self.picture(v),
             U16(v) => self.picture(v),
             U32(v) => self.picture(v.into_iter().map(|v| (v >> 16) as u16).collect()),
@@ -250,7 +250,7 @@ impl TiffLayout {
 
     /// Unpacks samples of less than a byte to a byte each, scaled to its range unless they are
     /// palette indices.
-    fn unpacked(&self, packed: &[u8]) -> Vec<u8> {
+    fn unpack_samples(&self, packed: &[u8]) -> Vec<u8> {
         let bits = usize::from(self.bits);
         let most = (1u32 << bits) - 1;
         let in_row =
@@ -270,15 +270,15 @@ impl TiffLayout {
 
     fn picture<T: TiffSample>(&self, values: Vec<T>) -> Result<DynamicImage, TiffRefusal> {
         let pixels =
-            self.gathered(&values).ok_or("this TIFF holds fewer samples than it promises")?;
+            self.gather_pixels(&values).ok_or("this TIFF holds fewer samples than it promises")?;
         drop(values);
         let channels = self.channels();
         match self.meaning {
-            ColorModel::Palette => self.looked_up(&pixels),
+            ColorModel::Palette => self.look_up_palette(&pixels),
             ColorModel::YCbCr => {
                 T::rgb_of_ycbcr(pixels).and_then(|rgb| T::image(self.size, channels, rgb))
             }
-            ColorModel::Cmyk => T::image(self.size, channels - 1, self.printed(pixels)),
+            ColorModel::Cmyk => T::image(self.size, channels - 1, self.rgb_from_inks(pixels)),
             ColorModel::Gray | ColorModel::Ink | ColorModel::Rgb => {
                 T::image(self.size, channels, self.straight(pixels))
             }
@@ -292,7 +292,7 @@ impl TiffLayout {
 
     /// The colors and the alpha of each pixel in turn, further samples left out; `None` where
     /// there are too few.
-    fn gathered<T: TiffSample>(&self, values: &[T]) -> Option<Vec<T>> {
+    fn gather_pixels<T: TiffSample>(&self, values: &[T]) -> Option<Vec<T>> {
         let (area, channels) = (self.size.area(), self.channels());
         let values = values.get(..area.checked_mul(self.samples)?)?;
         let at = |i: usize, c: usize| {
@@ -323,7 +323,7 @@ impl TiffLayout {
     }
 
     /// RGB of cyan, magenta, yellow and black, with ideal inks.
-    fn printed<T: TiffSample>(&self, pixels: Vec<T>) -> Vec<T> {
+    fn rgb_from_inks<T: TiffSample>(&self, pixels: Vec<T>) -> Vec<T> {
         let rgb = |pixel: &[T]| {
             let [c, m, y] =
                 [pixel[0], pixel[1], pixel[2]].map(|ink| ink.inverted().times(pixel[3].inverted()));
@@ -333,7 +333,7 @@ impl TiffLayout {
     }
 
     /// The colors of palette indices.
-    fn looked_up<T: TiffSample>(&self, pixels: &[T]) -> Option<DynamicImage> {
+    fn look_up_palette<T: TiffSample>(&self, pixels: &[T]) -> Option<DynamicImage> {
         let count = self.map.len() / 3;
         // Some programs wrote bytes where 16 bits are meant.
         let shift = if self.map.iter().any(|v| *v > 255) { 8 } else { 0 };

@@ -42,7 +42,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
         1 | 2 => reading.old(&mut cursor, version, usize::from(second))?,
         6 | 7 | 9 | 10 => reading.later(&mut cursor, second)?,
         _ => {
-            return Err(Error::unsupported(
+            return Err(Error::unsupported_file(
                 file,
                 format!("version {version} of Photoshop's brushes"),
             ));
@@ -83,7 +83,7 @@ impl AbrReader<'_> {
                 break;
             };
             match kind {
-                1 => self.computed(record),
+                1 => self.read_computed_tip(record),
                 2 => self.old_sample(record, version)?,
                 _ => self.damaged += 1,
             }
@@ -92,7 +92,7 @@ impl AbrReader<'_> {
     }
 
     /// A computed round or elliptic tip.
-    fn computed(&mut self, mut record: ByteCursor) {
+    fn read_computed_tip(&mut self, mut record: ByteCursor) {
         let mut number = || {
             let value = record.i16()?;
             Some(f32::from(value))
@@ -134,7 +134,7 @@ impl AbrReader<'_> {
             2 => 301,
             _ => {
                 let reason = format!("subversion {subversion} of Photoshop's brushes");
-                return Err(Error::unsupported(self.file, reason));
+                return Err(Error::unsupported_file(self.file, reason));
             }
         };
         let mut said = None;

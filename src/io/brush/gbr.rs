@@ -50,20 +50,25 @@ pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<Gbr
             // Per cent; the greatest spacing is ten times the size.
             cursor.u32().ok_or_else(cut)?.clamp(1, 1000) as f32 / 100.0
         }
-        _ => return Err(Error::unsupported(file, format!("version {version} of GIMP's brushes"))),
+        _ => {
+            return Err(Error::unsupported_file(
+                file,
+                format!("version {version} of GIMP's brushes"),
+            ));
+        }
     };
     let size = budget.size(file, u64::from(width), u64::from(height))?;
     let name =
         (header as usize).checked_sub(start - cursor.rest().len()).and_then(|n| cursor.take(n));
     let name = text_of(name.ok_or_else(cut)?);
     let depth = GbrDepth::of(version, kind).ok_or_else(|| {
-        Error::unsupported(
+        Error::unsupported_file(
             file,
             format!("a GIMP brush of version {version} with {kind} bytes a pixel"),
         )
     })?;
     let texels = texels(cursor.take(size.area() * depth.bytes()).ok_or_else(cut)?, depth);
-    let texels = colored(cursor, size, &texels).unwrap_or(texels);
+    let texels = read_pattern_colors(cursor, size, &texels).unwrap_or(texels);
     let picture = Picture::srgb8(size, texels).ok_or_else(cut)?;
     Ok(GbrBrush { name, picture, spacing })
 }
@@ -113,7 +118,11 @@ fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
 }
 
 /// A gray brush in the colors of the pattern at the cursor, if a pattern of its size is there.
-fn colored(cursor: &mut ByteCursor, size: Size, coverage: &[[u8; 4]]) -> Option<Vec<[u8; 4]>> {
+fn read_pattern_colors(
+    cursor: &mut ByteCursor,
+    size: Size,
+    coverage: &[[u8; 4]],
+) -> Option<Vec<[u8; 4]>> {
     let mut ahead = *cursor;
     let start = ahead.rest().len();
     let [header, _, width, height, channels] =

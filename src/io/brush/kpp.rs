@@ -61,7 +61,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
             let reason = format!(
                 "Krita's brush engine “{other}”; pixel, color smudge and clone presets are read"
             );
-            return Err(Error::unsupported(file, reason));
+            return Err(Error::unsupported_file(file, reason));
         }
     };
     let brush = Brush { mode, dynamics: Dynamics::none(), ..Brush::default() };
@@ -73,7 +73,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
         pickup: pickup(&preset),
         ..brush
     };
-    let brush = driven(&preset, brush, &mut notes);
+    let brush = read_drives(&preset, brush, &mut notes);
     for (key, what) in
         [("Texture/Pattern/Enabled", "texture"), ("MaskingBrush/Enabled", "masked brush")]
     {
@@ -234,7 +234,7 @@ const OPTIONS: [(&str, Property); 6] = [
     ("Spacing", Property::Spacing),
 ];
 
-fn driven(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
+fn read_drives(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     let mut brush = brush;
     let mut follow = |brush: &mut Brush, option: &str, property: Property| {
         if !preset.is_true(&format!("Pressure{option}"))

@@ -43,7 +43,7 @@ fn newer(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Map<String, Value
     let version = value.get("version").and_then(Value::as_f64);
     if version != Some(3.0) {
         let found = version.map_or("no version".to_owned(), |v| format!("version {v}"));
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             format!("{found} of MyPaint's brushes; JSON of version 3 is read"),
         ));
@@ -74,7 +74,7 @@ impl Lengths {
 
 fn brush(settings: &mut MyPaintSettings) -> Brush {
     let custom = settings.custom().within(0.0, 0.0);
-    let radius_log = settings.added("radius_logarithmic", 2.0);
+    let radius_log = settings.take_added("radius_logarithmic", 2.0);
     let base = settings.base("radius_logarithmic", 2.0);
     let here = dab::hardness(settings, radius_log.base.exp()).halfway();
     let radius = DabSmoothing::new(settings, here).radius_log_here(radius_log.clone());
@@ -104,7 +104,7 @@ fn with(brush: Brush, property: Property, added: &Added) -> Brush {
 
 /// With a constant that is added to a property that has no number of its own.
 fn with_constant(brush: Brush, property: Property, value: f32) -> Brush {
-    let curve = Curve::added(vec![crate::math::vec2(0.0, value)]).filter(|_| value != 0.0);
+    let curve = Curve::additive(vec![crate::math::vec2(0.0, value)]).filter(|_| value != 0.0);
     match curve {
         Some(curve) => {
             Brush { dynamics: brush.dynamics.with(property, Input::Pressure, curve), ..brush }

@@ -43,7 +43,7 @@ pub fn read(file: &Path, bytes: &[u8]) -> Result<ImportedBrush> {
         "1.5" => true,
         _ => {
             let version: String = version.chars().filter(|c| !c.is_control()).take(20).collect();
-            return Err(Error::unsupported(
+            return Err(Error::unsupported_file(
                 file,
                 format!("version {version} of GIMP's parametric brushes"),
             ));

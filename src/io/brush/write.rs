@@ -36,7 +36,7 @@ pub fn encode(file: &Path, preset: &BrushPreset) -> Result<Encoded> {
     })?;
     let preset = BrushPreset { brush, ..preset.clone() };
     let text = serde_json::to_string_pretty(&write_preset(&preset))
-        .map_err(|e| Error::unsupported(file, e))?
+        .map_err(|e| Error::unsupported_file(file, e))?
         + "\n";
     files.push((file.into(), text.into_bytes().into()));
     Ok(Encoded { preset, files })

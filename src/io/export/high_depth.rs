@@ -76,7 +76,7 @@ pub fn encode(
 ) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() || pixels.len() != canvas.area() {
-        return Err(Error::unsupported(file, "the part to write has no pixels"));
+        return Err(Error::unsupported_file(file, "the part to write has no pixels"));
     }
     let size = Size::new(rect.width() as u32, rect.height() as u32);
     let rows =
@@ -89,7 +89,7 @@ pub fn encode(
             let values: Vec<u8> =
                 part.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
             png([values].into_iter(), size, png::BitDepth::Sixteen, options)
-                .map_err(|e| Error::unsupported(file, e))
+                .map_err(|e| Error::unsupported_file(file, e))
         }
         ExportFormat::Tiff => {
             let values = part.iter().flat_map(straight16).collect();
@@ -98,9 +98,9 @@ pub fn encode(
         }
         ExportFormat::Exr => {
             let bits = format.bits(file, options.bits)?;
-            exr(size, bits, |i| light(&part[i])).map_err(|e| Error::unsupported(file, e))
+            exr(size, bits, |i| light(&part[i])).map_err(|e| Error::unsupported_file(file, e))
         }
-        ExportFormat::Jpeg | ExportFormat::WebP => Err(Error::unsupported(
+        ExportFormat::Jpeg | ExportFormat::WebP => Err(Error::unsupported_file(
             file,
             "this format has 8 bits a channel; PNG, TIFF and EXR have more",
         )),
@@ -122,10 +122,11 @@ fn straight16(&[r, g, b, a]: &[f32; 4]) -> [u16; 4] {
 /// A TIFF of an image, whatever its depth.
 pub(super) fn tiff(file: &Path, image: Option<DynamicImage>) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
-    let image = image.ok_or_else(|| Error::unsupported(file, "the picture holds no pixels"))?;
+    let image =
+        image.ok_or_else(|| Error::unsupported_file(file, "the picture holds no pixels"))?;
     image
         .write_to(&mut bytes, image::ImageFormat::Tiff)
-        .map_err(|e| Error::unsupported(file, e))?;
+        .map_err(|e| Error::unsupported_file(file, e))?;
     Ok(bytes.into_inner())
 }
 

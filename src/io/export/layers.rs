@@ -57,7 +57,7 @@ pub fn encode(
         let depth = pixels().map(|(x, y)| surface.depth(x, y)).collect();
         channels.push(AnyChannel::new("depth.Z", FlatSamples::F32(depth)));
     }
-    write_exr(size, channels).map(Some).map_err(|e| Error::unsupported(file, e))
+    write_exr(size, channels).map(Some).map_err(|e| Error::unsupported_file(file, e))
 }
 
 fn push_picture(

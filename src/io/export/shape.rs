@@ -165,7 +165,7 @@ fn png(file: &Path, bytes: &[u8], size: Size, color: ExtendedColorType) -> Resul
     let encoder = PngEncoder::new(&mut out);
     encoder
         .write_image(bytes, size.width, size.height, color)
-        .map_err(|e| Error::unsupported(file, e))?;
+        .map_err(|e| Error::unsupported_file(file, e))?;
     Ok(out.into_inner())
 }
 

@@ -39,6 +39,6 @@ pub fn encode_channels(
     Image::from_layer(layer)
         .write()
         .to_buffered(&mut bytes)
-        .map_err(|e| Error::unsupported(file, e))?;
+        .map_err(|e| Error::unsupported_file(file, e))?;
     Ok(bytes.into_inner())
 }

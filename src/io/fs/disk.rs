@@ -58,7 +58,7 @@ impl Fs for Disk {
         std::fs::canonicalize(path)
     }
 
-    fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
+    fn find(&self, path: &Path) -> io::Result<Option<EntryKind>> {
         let kind = match std::fs::symlink_metadata(path) {
             Ok(data) => data.file_type(),
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),

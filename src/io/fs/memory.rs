@@ -270,7 +270,7 @@ impl Fs for MemoryFs {
         self.inode(path).map(|_| path.into())
     }
 
-    fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
+    fn find(&self, path: &Path) -> io::Result<Option<EntryKind>> {
         self.turn()?;
         let is_folder =
             self.state().names.keys().any(|name| name != path && name.starts_with(path));

@@ -30,7 +30,7 @@ impl<'a> JsonNode<'a> {
 
     /// A value that is not from a file, whose numbers need only be finite: `Document::fits` refuses
     /// later what does not fit.
-    pub fn unranged(value: &'a Value) -> Self {
+    pub fn without_range(value: &'a Value) -> Self {
         Self { file: Path::new(""), path: String::new(), value, ranged: false }
     }
 
@@ -236,7 +236,7 @@ impl<'a> Fields<'a> {
     }
 
     /// A field that has no default.
-    pub fn required(&mut self, name: &'static str) -> Result<JsonNode<'a>> {
+    pub fn require(&mut self, name: &'static str) -> Result<JsonNode<'a>> {
         let found = self.get(name);
         found.ok_or_else(|| self.below(name, &Value::Null).refusal("is missing"))
     }
@@ -345,7 +345,7 @@ mod tests {
         says(f.number("d", 0.0, COORDINATE), "must be between");
         says(f.color("e", Color::BLACK).map(|_| 0.0), "#rrggbb");
         says(f.get("f").unwrap().integer(0..=9).map(|_| 0.0), "a whole number");
-        says(f.required("g").map(|_| 0.0), "g: is missing");
+        says(f.require("g").map(|_| 0.0), "g: is missing");
     }
 
     #[test]

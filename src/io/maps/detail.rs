@@ -23,7 +23,7 @@ pub fn read(
     budget: &Budget,
 ) -> Result<Plane<Vec3>> {
     if overrides.space == Some(NormalSpace::World) {
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             "a detail map is in the space of the surface, not of the world",
         ));

@@ -25,15 +25,15 @@ impl TexelReading {
             NormalEncoding::Unsigned => vec3(biased(v[0]), biased(v[1]), biased(v[2])),
             NormalEncoding::Signed => vec3(v[0], v[1], v[2]),
             NormalEncoding::FullZ => vec3(biased(v[0]), biased(v[1]), v[2]),
-            NormalEncoding::TwoChannel if self.signed_pair => rebuilt(v[0], v[1]),
-            NormalEncoding::TwoChannel => rebuilt(biased(v[0]), biased(v[1])),
-            NormalEncoding::Dxt5nm => rebuilt(biased(v[3]), biased(v[1])),
+            NormalEncoding::TwoChannel if self.signed_pair => rebuild_normal(v[0], v[1]),
+            NormalEncoding::TwoChannel => rebuild_normal(biased(v[0]), biased(v[1])),
+            NormalEncoding::Dxt5nm => rebuild_normal(biased(v[3]), biased(v[1])),
         }
     }
 }
 
 /// z = √(1 − x² − y²); 0 where rounding pushed x and y beyond the unit circle.
-fn rebuilt(x: f32, y: f32) -> Vec3 {
+fn rebuild_normal(x: f32, y: f32) -> Vec3 {
     vec3(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
 }
 

@@ -139,13 +139,13 @@ impl ReducedMap {
 
     /// The mean over the sizes, each of which must have enough evidence.
     fn handedness(all: &[Self], axes: AxisMapping) -> f32 {
-        let votes: Vec<f32> = all.iter().filter_map(|map| map.handed(axes)).collect();
+        let votes: Vec<f32> = all.iter().filter_map(|map| map.compare_handedness(axes)).collect();
         votes.iter().sum::<f32>() / votes.len().max(1) as f32
     }
 
     /// Compares the curl of (n_x/n_z, n_y/n_z) with that of its mirror image: 1 if only the axes as
     /// they are fit a surface. `None` if too few pixels are evidence.
-    fn handed(&self, axes: AxisMapping) -> Option<f32> {
+    fn compare_handedness(&self, axes: AxisMapping) -> Option<f32> {
         let w = self.vectors.width();
         let (mut plain, mut mirrored, mut count) = (0.0f64, 0.0f64, 0u32);
         for &i in &self.at {

@@ -10,12 +10,12 @@ const ENOUGH: usize = 60_000;
 
 /// Indices of pixels where `inside` holds, evenly thinned.
 pub fn spread(inside: &Plane<bool>) -> Vec<usize> {
-    thinned(inside.values().len(), ENOUGH, |i| inside.values()[i])
+    pick_evenly(inside.values().len(), ENOUGH, |i| inside.values()[i])
 }
 
 /// About `enough` of the numbers below `n` that `is` accepts, evenly thinned. Calls `is` twice for
 /// each instead of storing them all.
-pub fn thinned(n: usize, enough: usize, is: impl Fn(usize) -> bool + Sync) -> Vec<usize> {
+pub fn pick_evenly(n: usize, enough: usize, is: impl Fn(usize) -> bool + Sync) -> Vec<usize> {
     let count = (0..n).into_par_iter().filter(|&i| is(i)).count();
     (0..n).filter(|&i| is(i)).step_by(count.div_ceil(enough).max(1)).collect()
 }
@@ -27,7 +27,7 @@ pub fn thinned(n: usize, enough: usize, is: impl Fn(usize) -> bool + Sync) -> Ve
 pub fn rim(inside: &Plane<bool>) -> Vec<(usize, Vec2)> {
     let (w, h) = (inside.width(), inside.height());
     let ends_toward = |x: usize, y: usize| {
-        let is = |dx: i32, dy: i32| inside.clamped(x as i32 + dx, y as i32 + dy);
+        let is = |dx: i32, dy: i32| inside.at_clamped(x as i32 + dx, y as i32 + dy);
         let outside = (-2..=2)
             .flat_map(|dy| (-2..=2).map(move |dx| (dx, dy)))
             .filter(|&(dx, dy)| !is(dx, dy));

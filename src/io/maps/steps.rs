@@ -17,7 +17,7 @@ pub fn snap_flat(normals: &mut Plane<Vec3>) -> usize {
     let (w, h) = (flat.width(), flat.height());
     let whole = Plane::from_fn(flat.size(), |x, y| {
         flat.at(x, y)
-            && (-2..=2).all(|dy| (-2..=2).all(|dx| flat.clamped(x as i32 + dx, y as i32 + dy)))
+            && (-2..=2).all(|dy| (-2..=2).all(|dx| flat.at_clamped(x as i32 + dx, y as i32 + dy)))
     });
     // A pixel next to a wholly flat one belongs to the flat part if it is nearly flat itself.
     let snapped = Plane::from_fn(flat.size(), |x, y| {
@@ -54,9 +54,9 @@ pub fn smooth(stored: &Plane<f32>, step: f32, inside: &Plane<bool>) -> Plane<f32
             for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
                 let (nx, ny) = (x as i32 + dx, y as i32 + dy);
                 if inside.get(nx, ny) == Some(true)
-                    && (stored.clamped(nx, ny) - own).abs() <= 1.5 * step
+                    && (stored.at_clamped(nx, ny) - own).abs() <= 1.5 * step
                 {
-                    sum += now.clamped(nx, ny);
+                    sum += now.at_clamped(nx, ny);
                     weight += 1.0;
                 }
             }

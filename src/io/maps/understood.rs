@@ -97,7 +97,7 @@ impl LoadedMaps<'_> {
         let judged = Plane::from_fn(size, |x, y| inside.at(x, y) && !fills(y * w + x));
         let enough = judged.values().iter().filter(|j| **j).count() >= 16;
         let judged = if enough { &judged } else { &inside };
-        let (mut unit, planar) = self.joined(raw_normals, raw_depth, judged);
+        let (mut unit, planar) = self.settle_maps(raw_normals, raw_depth, judged);
         let turned_away = (0..size.area())
             .find(|&i| fills(i))
             .zip(unit.as_ref())
@@ -120,7 +120,7 @@ impl LoadedMaps<'_> {
 
     /// Settles axes and polarity together; unit normals and planar depth that grows away from the
     /// viewer.
-    fn joined(
+    fn settle_maps(
         &mut self,
         raw_normals: Option<normals::RawNormals>,
         raw_depth: Option<depth::RawDepth>,

@@ -20,7 +20,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
 /// is none.
 ///
 /// * `maps`: the layer that was read as normals, which is no picture.
-pub fn finished(
+pub fn read_finished_picture(
     file: &Path,
     bytes: &[u8],
     maps: &str,
@@ -75,7 +75,7 @@ pub fn choose_pass<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     let found = passes.iter().filter(color).min_by_key(|p| rank(p));
     found.or_else(|| passes.iter().filter(gray).min_by_key(|p| rank(p))).ok_or_else(|| {
         let names: Vec<&str> = passes.iter().map(|p| p.name.as_str()).collect();
-        Error::unsupported(
+        Error::unsupported_file(
             file,
             format!("no layer of this EXR has R, G and B; it has {}", names.join(", ")),
         )

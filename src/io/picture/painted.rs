@@ -63,7 +63,7 @@ pub fn of_light(
         let texels: Vec<[f32; 4]> = band.iter().map(|&texel| light::straight(texel)).collect();
         gathered.add(|[w, h], [x, y]| TileGrid::from_light(&texels, w, h, x, y), texels.len())
     })?;
-    Ok(gathered.done())
+    Ok(gathered.finish())
 }
 
 /// The tiles of a picture whose rows are read from the top.
@@ -104,7 +104,7 @@ impl<'a> GatheredTiles<'a> {
         self.budget.room(self.file, &what, self.beside_bytes.saturating_add(bytes))
     }
 
-    fn done(self) -> Painted {
+    fn finish(self) -> Painted {
         Painted { size: self.size, tiles: self.tiles, warning: None }
     }
 
@@ -128,7 +128,7 @@ impl<'a> GatheredTiles<'a> {
             None => super::strips(&bitmap.image)
                 .try_for_each(|strip| add(strip.into_rgba16().as_raw().as_chunks().0))?,
         }
-        Ok(self.done())
+        Ok(self.finish())
     }
 
     /// Linear light, through its profile if there is one.
@@ -142,6 +142,6 @@ impl<'a> GatheredTiles<'a> {
             let texels = profiled.as_deref().unwrap_or(texels);
             self.add(|[w, h], [x, y]| TileGrid::from_light(texels, w, h, x, y), texels.len())?;
         }
-        Ok(self.done())
+        Ok(self.finish())
     }
 }

@@ -186,13 +186,13 @@ fn list(
             .map_err(|_| Error::decode(file, "the name of an entry is not UTF-8"))?
             .into_owned();
         if let Some(reason) = refusal(&name) {
-            return Err(Error::unsupported(
+            return Err(Error::unsupported_file(
                 file,
                 format!("the entry “{name}” is refused: {reason}"),
             ));
         }
         if entry.is_symlink() {
-            return Err(Error::unsupported(file, format!("the entry “{name}” is a link")));
+            return Err(Error::unsupported_file(file, format!("the entry “{name}” is a link")));
         }
         if !folded.insert(name.to_lowercase()) {
             return Err(Error::decode(

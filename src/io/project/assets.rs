@@ -167,7 +167,7 @@ impl AssetList {
         let known = known.filter(|source| {
             files_of(source).all(|name| document.surface_files.contains_key(name))
         });
-        let Some(source) = known else { return self.made_surface(file, surface) };
+        let Some(source) = known else { return self.write_made_surface(file, surface) };
         let mut source = source.clone();
         for name in files_of_mut(&mut source) {
             if let Some(asset) = document.surface_files.get(name.as_str()) {
@@ -178,7 +178,7 @@ impl AssetList {
     }
 
     /// A surface that came from no file: normals and depth of 32 bits, and its coverage.
-    fn made_surface(&mut self, file: &Path, surface: &Arc<Surface>) -> Result<SurfaceSource> {
+    fn write_made_surface(&mut self, file: &Path, surface: &Arc<Surface>) -> Result<SurfaceSource> {
         let (maps, mask) = self.made.surface(file, surface)?;
         let (maps, mask) = (self.add("surface.exr", maps), self.add("surface-mask.png", mask));
         let opengl = NormalConvention::from_word("opengl").unwrap_or_default();

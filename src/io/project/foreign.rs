@@ -226,7 +226,7 @@ impl ForeignReader<'_, '_> {
                     return Ok(Layer { name, visible, opacity, blend, ..live });
                 }
                 if !kind.is_empty() {
-                    self.reading.note(became_pixels(&layer.name, &kind));
+                    self.reading.note(pixels_note(&layer.name, &kind));
                 }
                 layer.content = Content::Pixels(self.picture(&layer.name, src, x, y)?);
             }
@@ -293,7 +293,7 @@ pub fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
     vec![Arc::new(Layer { clip_to_surface: false, ..Layer::new(name, group) })]
 }
 
-fn became_pixels(name: &str, kind: &str) -> String {
+fn pixels_note(name: &str, kind: &str) -> String {
     match kind {
         "composed" => format!("“{name}” is pixels: it shows several layers composed by Rilievo"),
         kind => format!(

@@ -109,7 +109,7 @@ impl KritaReader<'_, '_> {
     }
 
     /// The pixels of an entry, placed as its node says; `None` where there are none, with a note.
-    fn stored(&mut self, node: &KritaNode, ending: &str) -> Result<Option<KritaPixels>> {
+    fn read_pixels(&mut self, node: &KritaNode, ending: &str) -> Result<Option<KritaPixels>> {
         let name = node.text("name").to_owned();
         let Some(entry) = self.entry(node, ending) else {
             self.reading.note_loss(format!("“{name}” has no pixels in the file"));
@@ -151,7 +151,7 @@ impl KritaReader<'_, '_> {
             ));
             return Ok(layer);
         };
-        let Some(pixels) = self.stored(node, "")? else { return Ok(layer) };
+        let Some(pixels) = self.read_pixels(node, "")? else { return Ok(layer) };
         let icc = self.entry(node, ".icc").and_then(|entry| self.bytes(&entry).ok());
         let is_srgb = node.text("profile").to_lowercase().starts_with("srgb");
         layer.tiles =
@@ -186,7 +186,7 @@ impl KritaReader<'_, '_> {
                     .note_loss(format!("the hidden mask “{}” is left out", mask.text("name")));
                 continue;
             }
-            let Some(pixels) = self.stored(mask, ".pixelselection")? else { continue };
+            let Some(pixels) = self.read_pixels(mask, ".pixelselection")? else { continue };
             let coverage = pixels.coverage(self.size);
             all = Some(match all {
                 None => coverage,

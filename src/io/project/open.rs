@@ -65,7 +65,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
 /// with a sentence that says what would not come back.
 pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget) -> Result<()> {
     let lost = |what: String| {
-        Err(Error::unsupported(file, format!("the drawing would not open as it is: {what}")))
+        Err(Error::unsupported_file(file, format!("the drawing would not open as it is: {what}")))
     };
     let archive = Archive::open(file, bytes, budget)?;
     let paint = encode_paint(file, document)?;
@@ -145,7 +145,7 @@ impl ProjectReader<'_> {
         let path = self.archive_path(DOCUMENT);
         let source =
             RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None };
-        let document = match recipe::read_with_tiles(&value, source, self.decoded_ahead(&value)) {
+        let document = match recipe::read_with_tiles(&value, source, self.decode_ahead(&value)) {
             Ok(document) => document,
             Err(error) => {
                 // A newer version or a field out of range is no damage: leaving something out would
@@ -168,7 +168,7 @@ impl ProjectReader<'_> {
     }
 
     /// The pixels of the paint layers, decoded in parallel; failures are reported later, in order.
-    fn decoded_ahead(&self, value: &Value) -> TileGrids {
+    fn decode_ahead(&self, value: &Value) -> TileGrids {
         let mut wanted = BTreeSet::new();
         list_paint(&value["layers"], &mut wanted);
         let left_px = AtomicU64::new(self.budget.document_px);

@@ -118,7 +118,7 @@ impl Planner<'_> {
         let last = runs.iter().rposition(|run| self.is_composed_with_beneath(run));
         let mut items = Vec::new();
         if let Some(last) = last {
-            items.extend(self.composed_with_beneath(&runs[..=last]));
+            items.extend(self.plan_composed_with_beneath(&runs[..=last]));
         }
         let above = last.map_or(0, |last| last + 1);
         for runs in runs[above..].chunk_by(|a, b| are_on_surface(a) == are_on_surface(b)) {
@@ -145,7 +145,7 @@ impl Planner<'_> {
     }
 
     /// A layer that reads what lies beneath it, and all that lies beneath it, as one picture.
-    fn composed_with_beneath(&self, runs: &[&[Arc<Layer>]]) -> [PlanItem; 2] {
+    fn plan_composed_with_beneath(&self, runs: &[&[Arc<Layer>]]) -> [PlanItem; 2] {
         let parts = runs.iter().flat_map(|run| self.run(run)).collect();
         let top = runs.last().and_then(|run| run.first());
         let name = top.map_or(String::new(), |layer| layer.name.clone());
@@ -171,7 +171,7 @@ impl Planner<'_> {
         if is_base && base.visible && clipped {
             return self.clipping_stack(base, run);
         }
-        if let Some(items) = self.clipped_by_format(run) {
+        if let Some(items) = self.plan_clipping(run) {
             return items;
         }
         let mut items: Vec<PlanItem> = run.iter().map(|layer| self.single(layer)).collect();
@@ -183,7 +183,7 @@ impl Planner<'_> {
     }
 
     /// A layer and those clipped to it as the format clips; `None` where it cannot.
-    fn clipped_by_format(&self, run: &[Arc<Layer>]) -> Option<Vec<PlanItem>> {
+    fn plan_clipping(&self, run: &[Arc<Layer>]) -> Option<Vec<PlanItem>> {
         let (base, rest) = run.split_first()?;
         let is_said = |layer: &Arc<Layer>| {
             !layer.clip_below || !layer.visible || self.can_express_blending(layer)
@@ -199,7 +199,7 @@ impl Planner<'_> {
 
     fn clipping_stack(&self, base: &Arc<Layer>, run: &[Arc<Layer>]) -> Vec<PlanItem> {
         let single = || run.iter().map(|layer| self.single(layer)).collect();
-        let parts = self.clipped_by_format(run).unwrap_or_else(single);
+        let parts = self.plan_clipping(run).unwrap_or_else(single);
         let layers = run.iter().filter(|layer| layer.visible).map(|layer| layer.id).collect();
         let composed = ItemContent::Composed { document: self.plain(base.id), layers };
         if self.words.clipping {

@@ -335,12 +335,12 @@ fn a_drawing_whose_canvas_was_changed_again_and_again_is_saved_as_it_is() {
         let size = here.size;
         let change = match step {
             0 => CanvasChange::quarter_turns(size, 1),
-            1 => CanvasChange::mirrored(size, CanvasMirror::LeftRight),
+            1 => CanvasChange::mirror(size, CanvasMirror::LeftRight),
             2 => CanvasChange::crop(size, crate::math::Rect::new(9, 5, 60, 58)).unwrap(),
-            3 => CanvasChange::turned(size, 25.0),
-            4 => CanvasChange::resized(size, Size::new(90, 70), CanvasAnchor::BottomRight).unwrap(),
-            5 => CanvasChange::turned(size, -25.0),
-            _ => CanvasChange::mirrored(size, CanvasMirror::UpDown),
+            3 => CanvasChange::turn(size, 25.0),
+            4 => CanvasChange::resize(size, Size::new(90, 70), CanvasAnchor::BottomRight).unwrap(),
+            5 => CanvasChange::turn(size, -25.0),
+            _ => CanvasChange::mirror(size, CanvasMirror::UpDown),
         };
         here = here.on_other_canvas(&change).unwrap();
         assert_eq!(here.fits(None), Ok(()), "step {step}");

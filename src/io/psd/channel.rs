@@ -56,9 +56,12 @@ impl ChannelValue for u16 {
     fn all_of(stored: &[u8], shape: ChannelLayout) -> Vec<Self> {
         match shape.bits {
             16 => stored.as_chunks().0.iter().map(|v| u16::from_be_bytes(*v)).collect(),
-            32 => {
-                stored.as_chunks().0.iter().map(|v| srgb::quantize16(encoded(*v, shape))).collect()
-            }
+            32 => stored
+                .as_chunks()
+                .0
+                .iter()
+                .map(|v| srgb::quantize16(encode_float(*v, shape)))
+                .collect(),
             _ => to_bytes(stored, shape).into_iter().map(|v| u16::from(v) * LEVEL).collect(),
         }
     }
@@ -69,7 +72,7 @@ impl ChannelValue for u16 {
 }
 
 /// A float as stored; of colors, linear light, which is clipped to white and encoded.
-fn encoded(stored: [u8; 4], shape: ChannelLayout) -> f32 {
+fn encode_float(stored: [u8; 4], shape: ChannelLayout) -> f32 {
     let value = f32::from_be_bytes(stored);
     if shape.is_color { srgb::encode(value.max(0.0).min(1.0)) } else { value }
 }
@@ -245,7 +248,9 @@ fn to_bytes(values: &[u8], shape: ChannelLayout) -> Vec<u8> {
             rows.flat_map(|row| (0..shape.width).map(move |x| bit(row, x))).collect()
         }
         16 => values.as_chunks().0.iter().map(|v| byte_of(u16::from_be_bytes(*v))).collect(),
-        32 => values.as_chunks().0.iter().map(|v| srgb::quantize(encoded(*v, shape))).collect(),
+        32 => {
+            values.as_chunks().0.iter().map(|v| srgb::quantize(encode_float(*v, shape))).collect()
+        }
         _ => values.to_vec(),
     }
 }

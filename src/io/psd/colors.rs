@@ -168,7 +168,7 @@ impl Colors<'_> {
                 self.through_profile(size, pixels(&|i| [value(0, i), value(1, i), value(2, i)]))
             }
             Mode::Indexed => {
-                let mut rgba = pixels(&|i| self.looked_up(value(0, i)));
+                let mut rgba = pixels(&|i| self.look_up(value(0, i)));
                 let gone = |i: usize| self.nothing == Some(value(0, i));
                 rgba.as_chunks_mut::<4>()
                     .0
@@ -212,7 +212,7 @@ impl Colors<'_> {
     }
 
     /// A color of the table by its number; a number beyond the table is black.
-    fn looked_up(&self, number: u8) -> [u8; 3] {
+    fn look_up(&self, number: u8) -> [u8; 3] {
         let (count, number) = (self.table.len() / 3, usize::from(number));
         [0, 1, 2].map(|c| {
             self.table.get(c * count + number).filter(|_| number < count).copied().unwrap_or(0)

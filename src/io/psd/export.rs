@@ -44,7 +44,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
             "a Photoshop file has at most {LONGEST_PX} pixels a side, not {}",
             document.size
         );
-        return Err(Error::unsupported(file, reason));
+        return Err(Error::unsupported_file(file, reason));
     }
     let items = plan(document, FormatSupport::PHOTOSHOP);
     let paint = layer_preview::encode_paint(file, document)?;
@@ -64,13 +64,13 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
             "its layers would be {} for Photoshop, which may be {MOST_RECORDS}",
             records.len()
         );
-        return Err(Error::unsupported(file, reason));
+        return Err(Error::unsupported_file(file, reason));
     }
     let shown: BTreeMap<LayerId, &(String, EncodedPixels)> =
         shown.iter().map(|(id, picture)| (*id, picture)).collect();
     let ours =
         project::documents(file, document, &paint, &shown, signature(&records), &whole_rims)?;
-    let ours = project::packed(file, &ours)?;
+    let ours = project::pack_zip(file, &ours)?;
     let merged = merged.to_straight_rgba(document.size.rect());
     let merged = on_white(&merged);
     let selections = alpha_channels::of_document(document);
@@ -93,7 +93,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
             "a Photoshop file has at most 2 GB, not {}",
             memory::bytes_text(bytes.len() as u64)
         );
-        return Err(Error::unsupported(file, reason));
+        return Err(Error::unsupported_file(file, reason));
     }
     verify::read_back(
         file,
@@ -168,9 +168,9 @@ impl RecordBuilder {
             return Ok(());
         }
         let damaged =
-            || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
+            || Error::unsupported_file(file, "a layer could not be encoded; nothing was saved");
         let mut preview = self.previews.next().ok_or_else(damaged)?;
-        let rgba = pixels::decoded(preview.file.bytes()).ok_or_else(damaged)?;
+        let rgba = pixels::decode_png(preview.file.bytes()).ok_or_else(damaged)?;
         if pixels::is_16_bit(preview.file.bytes()) {
             // Our part of the file says what the record holds; it has all of the paint, too.
             preview = in_bytes(file, preview, &rgba)?;

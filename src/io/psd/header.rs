@@ -65,10 +65,10 @@ pub fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<Psd
         return Err(Error::decode(file, "it does not begin like a Photoshop file"));
     }
     let size = budget.size(file, width.into(), height.into())?;
-    let unknown = || Error::unsupported(file, format!("its color mode {mode} is unknown"));
+    let unknown = || Error::unsupported_file(file, format!("its color mode {mode} is unknown"));
     let mode = Mode::of(mode).ok_or_else(unknown)?;
     if ![8, 16, 32].contains(&bits) && (bits, mode) != (1, Mode::Bitmap) {
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             format!("it has {bits} bits a channel; 1, 8, 16 and 32 can be read"),
         ));

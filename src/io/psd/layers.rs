@@ -79,8 +79,8 @@ impl<'a> RecordReader<'a> {
         }
         let is_16_bit = self.header.is_16_bit;
         let filled = |pending| match is_16_bit {
-            true => self.filled::<u16>(pending, &mut rest),
-            false => self.filled::<u8>(pending, &mut rest),
+            true => self.read_channels::<u16>(pending, &mut rest),
+            false => self.read_channels::<u8>(pending, &mut rest),
         };
         pending.into_iter().map(filled).collect()
     }
@@ -127,7 +127,7 @@ impl<'a> RecordReader<'a> {
     }
 
     /// Reads a record's channels.
-    fn filled<T: ColorValue>(
+    fn read_channels<T: ColorValue>(
         &mut self,
         pending: PendingRecord,
         rest: &mut ByteCursor,
@@ -172,13 +172,13 @@ impl<'a> RecordReader<'a> {
         let StraightPixels { rgba, rgba16 } =
             T::pixels(*self.colors, size, &planes, alpha.as_deref());
         (record.rgba, record.rgba16) = (rgba, rgba16);
-        self.masked(&mut record, masks, drawn)?;
+        self.read_mask(&mut record, masks, drawn)?;
         self.spend_for_canvas(&record)?;
         Ok(record)
     }
 
     /// The mask that a layer's masks are together. `drawn`: channels −2 and −3.
-    fn masked(
+    fn read_mask(
         &mut self,
         record: &mut LayerRecord,
         masks: Option<MaskData>,
@@ -196,7 +196,7 @@ impl<'a> RecordReader<'a> {
             (_, Some(painted)) if is_shape => Some(painted),
             (Some(_), None) if is_shape && is_drawn => None,
             (shown, _) if has_both || is_drawn => shown,
-            (Some(shown), _) => Some(self.softened(shown, softness.map(|[soft, _]| soft))?),
+            (Some(shown), _) => Some(self.soften_mask(shown, softness.map(|[soft, _]| soft))?),
             (None, _) => None,
         };
         let Some(outline) = record.outline.take().filter(|_| !is_shape && !has_both && !is_drawn)
@@ -214,7 +214,7 @@ impl<'a> RecordReader<'a> {
             return Ok(());
         }
         let drawn = RecordMask::of_canvas(size, outline.coverage(size));
-        let drawn = self.softened(drawn, softness.map(|[_, soft]| soft))?;
+        let drawn = self.soften_mask(drawn, softness.map(|[_, soft]| soft))?;
         record.mask = Some(match record.mask.take().filter(|mask| !mask.disabled) {
             Some(mask) => mask.times(size, &drawn),
             None => drawn,
@@ -222,7 +222,7 @@ impl<'a> RecordReader<'a> {
         Ok(())
     }
 
-    fn softened(&mut self, mask: RecordMask, softness: Option<Softness>) -> Result<RecordMask> {
+    fn soften_mask(&mut self, mask: RecordMask, softness: Option<Softness>) -> Result<RecordMask> {
         let Some(softness) = softness else { return Ok(mask) };
         if softness.feather_px > 0.0 {
             // The blur works in floats, on two planes of the canvas.

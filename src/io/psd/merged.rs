@@ -27,7 +27,7 @@ pub struct Merged {
 
 /// Reads the picture; `None` if it is damaged. `count`: the number before the layers, if there are
 /// any; `has_room`: there is memory for selections too.
-pub fn merged<T: ColorValue>(
+pub fn read_merged<T: ColorValue>(
     rest: &mut ByteCursor,
     header: &PsdHeader,
     colors: &Colors,

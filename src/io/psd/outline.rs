@@ -93,7 +93,7 @@ impl VectorPaths {
     pub fn coverage(&self, size: Size) -> Vec<u8> {
         let mut coverage = vec![if self.begins_full { 255 } else { 0 }; size.area()];
         for shape in &self.shapes {
-            let drawn = shape.drawn(size);
+            let drawn = shape.fill_mask(size);
             for (i, c) in coverage.iter_mut().enumerate() {
                 *c = shape.way.meet(*c, drawn.as_ref().map_or(0, |mask| mask.data()[i]));
             }
@@ -107,7 +107,7 @@ impl VectorPaths {
 
 impl FilledPaths {
     /// `None` if nothing is covered.
-    fn drawn(&self, size: Size) -> Option<Mask> {
+    fn fill_mask(&self, size: Size) -> Option<Mask> {
         let path = self.path(size)?;
         let mut mask = Mask::new(size.width, size.height)?;
         mask.fill_path(&path, FillRule::EvenOdd, true, Transform::identity());

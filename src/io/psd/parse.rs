@@ -6,7 +6,7 @@ use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::header::{PsdHeader, header, resource};
 use super::layers::RecordReader;
-use super::merged::{Merged, merged};
+use super::merged::{Merged, read_merged};
 use super::pattern::{self, PatternResource};
 use super::{ICC_PROFILE, LayerRecord, OURS, marks};
 use crate::Budget;
@@ -78,8 +78,8 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     }
     let merged = match (is_there, header.is_16_bit) {
         (false, _) => None,
-        (true, true) => merged::<u16>(&mut rest, &header, &colors, resources, count, has_room),
-        (true, false) => merged::<u8>(&mut rest, &header, &colors, resources, count, has_room),
+        (true, true) => read_merged::<u16>(&mut rest, &header, &colors, resources, count, has_room),
+        (true, false) => read_merged::<u8>(&mut rest, &header, &colors, resources, count, has_room),
     };
     if merged.is_none() && records.is_empty() {
         return Err(Error::decode(

@@ -87,7 +87,7 @@ pub(super) fn build_document(
         notes: std::mem::take(notes),
     };
     std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
-    let (layers, is_less, found_notes) = builder.done();
+    let (layers, is_less, found_notes) = builder.finish();
     *notes = found_notes;
     let (selections, inks) = kept;
     if inks > 0 {
@@ -337,7 +337,7 @@ impl TreeBuilder<'_> {
     }
 
     /// Groups that were never closed end with the file.
-    fn done(mut self) -> (Vec<Arc<Layer>>, bool, Vec<String>) {
+    fn finish(mut self) -> (Vec<Arc<Layer>>, bool, Vec<String>) {
         while self.open.len() > 1 {
             let layers = self.open.pop().unwrap_or_default();
             if let Some(list) = self.open.last_mut() {

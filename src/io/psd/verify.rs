@@ -23,7 +23,7 @@ pub struct Meant<'a> {
 /// Fails with a sentence that says what would not come back: to other programs, or here.
 pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
     let lost = |what: String| {
-        Err(Error::unsupported(file, format!("the drawing would not open as it is: {what}")))
+        Err(Error::unsupported_file(file, format!("the drawing would not open as it is: {what}")))
     };
     let budget = Budget::holding(meant.document);
     let mut parsed = match parse(file, bytes, &budget) {

@@ -52,7 +52,7 @@ fn read<T: Clone>(
     let mut fields = node.fields()?;
     let names: Vec<(usize, &str)> =
         kinds.iter().enumerate().map(|(i, kind)| (i, name(kind))).collect();
-    let mut own = kinds[fields.required("kind")?.one_of(&names)?].clone();
+    let mut own = kinds[fields.require("kind")?.one_of(&names)?].clone();
     let mut reader = ParameterReader { fields, read: Ok(()) };
     show(&mut own, &mut reader);
     reader.read?;
@@ -123,9 +123,9 @@ impl ParameterVisitor for ParameterReader<'_> {
 fn table(node: &JsonNode) -> Result<ColorTable> {
     let mut fields = node.fields()?;
     let title = fields.get("title").map_or(Ok(""), |title| title.text())?;
-    let side = fields.required("side")?.whole(2..=ColorTable::MOST_SEPARATE as u32)? as usize;
+    let side = fields.require("side")?.whole(2..=ColorTable::MOST_SEPARATE as u32)? as usize;
     let is_separate = fields.boolean("separate", false)?;
-    let values = fields.required("values")?;
+    let values = fields.require("values")?;
     let bytes = base64::decode(values.text()?);
     fields.finish()?;
     let read = |bytes: Vec<u8>| {

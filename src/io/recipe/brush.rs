@@ -180,7 +180,7 @@ fn curves(node: &JsonNode) -> Result<[Option<Curve>; 2]> {
                  not fall",
             )
         };
-        Curve::added(points(&node, -MOST_ADDED..=MOST_ADDED)?).ok_or_else(refused)
+        Curve::additive(points(&node, -MOST_ADDED..=MOST_ADDED)?).ok_or_else(refused)
     });
     let times = fields.get("times").map(|node| curve(&node));
     fields.finish()?;

@@ -77,7 +77,7 @@ impl RecipeValue for LayerEffect {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
-        let mut effect = LayerEffect::new(fields.required("kind")?.one_of(&EffectKind::ALL)?);
+        let mut effect = LayerEffect::new(fields.require("kind")?.one_of(&EffectKind::ALL)?);
         effect.on = fields.boolean("on", true)?;
         for field in effect.kind.fields() {
             read_field(&mut fields, field, &mut effect)?;
@@ -181,9 +181,9 @@ pub fn contour(node: &JsonNode) -> Result<ToneCurve> {
 fn pattern(node: &JsonNode) -> Result<EffectPattern> {
     let mut fields = node.fields()?;
     let name = fields.get("name").map_or(Ok(""), |name| name.text())?;
-    let mut side = |name| fields.required(name)?.whole(1..=EffectPattern::LONGEST_PX);
+    let mut side = |name| fields.require(name)?.whole(1..=EffectPattern::LONGEST_PX);
     let size = Size::new(side("width")?, side("height")?);
-    let pixels = fields.required("pixels")?;
+    let pixels = fields.require("pixels")?;
     let bytes = base64::decode(pixels.text()?);
     fields.finish()?;
     bytes

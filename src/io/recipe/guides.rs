@@ -25,8 +25,8 @@ pub fn read_assistants(node: &JsonNode) -> Result<Vec<Assistant>> {
 
 fn read_assistant(node: &JsonNode) -> Result<Assistant> {
     let mut fields = node.fields()?;
-    let kind = fields.required("kind")?.one_of(&AssistantKind::ALL)?;
-    let points = fields.required("points")?;
+    let kind = fields.require("kind")?.one_of(&AssistantKind::ALL)?;
+    let points = fields.require("points")?;
     fields.finish()?;
     let assistant = Assistant {
         kind,

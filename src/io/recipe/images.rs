@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 impl LayerReader<'_> {
     pub fn image(&mut self, fields: &mut Fields) -> Result<PlacedImage> {
-        let source = self.picture_source(&fields.required("source")?)?;
+        let source = self.picture_source(&fields.require("source")?)?;
         let by_itself = source.default_placement(self.size);
         let placement =
             fields.get("placement").map_or(Ok(by_itself), |node| placement(&node, by_itself))?;
@@ -82,7 +82,7 @@ impl LayerReader<'_> {
         let text = text.map(|node| Ok::<_, Error>((Text::from_json(&node)?, node))).transpose()?;
         let file = match &text {
             Some(_) => fields.get("file"),
-            None => Some(fields.required("file")?),
+            None => Some(fields.require("file")?),
         };
         let adjust = adjust(&mut fields)?;
         fields.finish()?;
@@ -151,7 +151,7 @@ impl RecipeValue for Anchor {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
-        let at = fields.required("at")?.point()?;
+        let at = fields.require("at")?.point()?;
         let source = fields.point("source", at)?;
         fields.finish()?;
         Ok(Anchor { at, source })
@@ -173,7 +173,7 @@ impl RecipeValue for PlanePiece {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
-        let still = PlanePiece::at(fields.required("at")?.point()?);
+        let still = PlanePiece::at(fields.require("at")?.point()?);
         let piece = PlanePiece {
             moved: fields.point("move", still.moved)?,
             scale: fields.number("scale", still.scale, PlanePiece::SCALE)?,
@@ -208,7 +208,7 @@ impl RecipeValue for Placement {
     }
 
     fn from_json(node: &JsonNode) -> Result<Self> {
-        let center = node.fields()?.required("center")?.point()?;
+        let center = node.fields()?.require("center")?.point()?;
         placement(node, place_unscaled(center))
     }
 }

@@ -41,12 +41,12 @@ const KINDS: [(ReadContent, &str); 14] = [
         "radiance-scaling",
     ),
     (
-        |_, fields, _| Ok(ColorAdjustment::from_json(&fields.required("adjust")?)?.into()),
+        |_, fields, _| Ok(ColorAdjustment::from_json(&fields.require("adjust")?)?.into()),
         "adjustment",
     ),
-    (|_, fields, _| Ok(PictureFilter::from_json(&fields.required("filter")?)?.into()), "filter"),
+    (|_, fields, _| Ok(PictureFilter::from_json(&fields.require("filter")?)?.into()), "filter"),
     (|reader, fields, _| Ok(Content::Normals(reader.normals(fields)?)), "normals"),
-    (|_, fields, _| Ok(Content::Ink(InkLayer::of(fields.required("of")?.text()?))), "ink"),
+    (|_, fields, _| Ok(Content::Ink(InkLayer::of(fields.require("of")?.text()?))), "ink"),
     (|reader, fields, depth| Ok(Content::Group(reader.group(fields, depth)?)), "group"),
 ];
 
@@ -60,7 +60,7 @@ impl LayerReader<'_> {
 
     fn layer(&mut self, node: &JsonNode, depth: usize) -> Result<Layer> {
         let mut fields = node.fields()?;
-        let read_content = fields.required("kind")?.one_of(&KINDS)?;
+        let read_content = fields.require("kind")?.one_of(&KINDS)?;
         let name = fields.get("name").map_or(Ok(""), |name| name.text())?.to_owned();
         let visible = fields.boolean("visible", true)?;
         let opacity = fields.number("opacity", 1.0, Layer::OPACITY)?;

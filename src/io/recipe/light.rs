@@ -49,7 +49,7 @@ impl RecipeValue for Light {
                 None => base.kind,
             },
             RecipeLightKind::Here => {
-                LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? }
+                LightKind::Point { position: fields.require("position")?.vector(COORDINATE)? }
             }
         };
         let color = fields.color("color", base.color)?;

@@ -21,10 +21,10 @@ const MOST_BLOCKS: usize = Document::MOST_VALUES / 150;
 pub fn read(node: &JsonNode) -> Result<Option<Arc<Lattice>>> {
     let mut fields = node.fields()?;
     let mut lattice = Lattice::default();
-    for block in fields.required("blocks")?.list(MOST_BLOCKS)? {
+    for block in fields.require("blocks")?.list(MOST_BLOCKS)? {
         let mut fields = block.fields()?;
-        let at = place(&fields.required("at")?)?;
-        let (x, y) = (side(&fields.required("x")?)?, side(&fields.required("y")?)?);
+        let at = place(&fields.require("at")?)?;
+        let (x, y) = (side(&fields.require("x")?)?, side(&fields.require("y")?)?);
         fields.finish()?;
         lattice.set(at, LatticeBlock(std::array::from_fn(|k| vec2(x[k], y[k]))));
     }

@@ -66,7 +66,8 @@ pub(super) struct BuiltInFiles;
 impl Files for BuiltInFiles {
     fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
         let ball = PaintedBall::all().find(|ball| ball.file() == name);
-        let ball = ball.ok_or_else(|| Error::unsupported(name, "no painted ball has this name"))?;
+        let ball =
+            ball.ok_or_else(|| Error::unsupported_file(name, "no painted ball has this name"))?;
         Ok(ball.bytes.to_vec())
     }
 
@@ -129,7 +130,7 @@ pub(super) fn live_layers(path: &Path, layers: Value, canvas: Size) -> Result<Ve
     let source = RecipeSource { file: path, files: &BuiltInFiles, budget: &budget, onto: None };
     let whole = read_value(&recipe, source)?;
     let factor = canvas.longer_side() / SIDE as f32;
-    Ok(whole.scaled(factor).map_err(|e| Error::unsupported(path, e))?.layers)
+    Ok(whole.scaled(factor).map_err(|e| Error::unsupported_file(path, e))?.layers)
 }
 
 /// Whether a layer holds something of a drawing. Fills are paper, and shading is what a look covers.
@@ -153,11 +154,11 @@ fn path(key: &str) -> PathBuf {
 }
 
 fn parse_look(key: &str, text: &str) -> Result<Value> {
-    parsed_file(&path(key), text)
+    parse_file(&path(key), text)
 }
 
 /// A file that comes with the program.
-pub(super) fn parsed_file(path: &Path, text: &str) -> Result<Value> {
+pub(super) fn parse_file(path: &Path, text: &str) -> Result<Value> {
     json::parse(path, text.as_bytes(), &Budget::default())
 }
 

@@ -54,7 +54,7 @@ impl LayerReader<'_> {
             None => {
                 let (file, coverage) = self.pictures.coverage(
                     self.source,
-                    &fields.required("file")?,
+                    &fields.require("file")?,
                     Some(self.size),
                 )?;
                 MaskKind::File { file, coverage }

@@ -3,7 +3,7 @@
 //! at the lengths of a canvas of `looks::SIDE` px. Shading layers without lights are lit by the
 //! lamps of the document; those that are `opposite` by one across from its first.
 
-use super::looks::{live_layers, parsed_file};
+use super::looks::{live_layers, parse_file};
 use super::value::RecipeValue;
 use super::{RecipeSource, read_value};
 use crate::document::parts::forms::visible_place;
@@ -33,7 +33,7 @@ impl PartMaterial {
     /// All of them, in the order of the list.
     pub fn all() -> impl Iterator<Item = PartMaterial> {
         MATERIALS.iter().filter_map(|(key, text)| {
-            let file = parsed_file(&path(key), text).ok()?;
+            let file = parse_file(&path(key), text).ok()?;
             let word = |field: &str| file.get(field).and_then(Value::as_str).unwrap_or(key);
             Some(PartMaterial { key, name: word("name").into(), about: word("about").into() })
         })
@@ -100,7 +100,7 @@ impl PartMaterial {
     /// Its layers, at the lengths of a canvas.
     fn group(&self, canvas: Size, lights: &[Light]) -> Result<Content> {
         let text = MATERIALS.iter().find(|(key, _)| *key == self.key).map_or("", |found| found.1);
-        let mut file = parsed_file(&path(self.key), text)?;
+        let mut file = parse_file(&path(self.key), text)?;
         let mut layers = file.get_mut("layers").map(Value::take).unwrap_or_default();
         light(&mut layers, lights);
         let layers = live_layers(&path(self.key), layers, canvas)?;
@@ -110,7 +110,7 @@ impl PartMaterial {
     /// The mask of what is seen of a part.
     fn mask_of(&self, document: &Document, part: &str) -> Result<LayerMask> {
         let at = visible_place(document, part)
-            .ok_or_else(|| Error::unsupported(part, "no part of this name is seen"))?;
+            .ok_or_else(|| Error::unsupported_file(part, "no part of this name is seen"))?;
         let region =
             SurfaceRegion { contiguous: false, ..SurfaceRegion::new(RegionKind::Object, at) };
         Ok(LayerMask::new(DerivedMask::Region(region)))

@@ -15,7 +15,7 @@ use serde_json::Value;
 
 impl LayerReader<'_> {
     pub fn normals(&mut self, fields: &mut Fields) -> Result<NormalLayer> {
-        let source = fields.required("source")?;
+        let source = fields.require("source")?;
         let convention = fields.get("convention").map(|c| normal_convention(&c)).transpose()?;
         let mut inner = source.fields()?;
         let source = match inner.get("noise") {
@@ -40,7 +40,7 @@ impl LayerReader<'_> {
         convention: NormalConvention,
     ) -> Result<DetailSource> {
         let picture = self.picture_source(node)?;
-        let file = node.fields()?.required("file")?;
+        let file = node.fields()?.require("file")?;
         let map = self.pictures.detail(self.source, &file, &convention, picture.adjust.blur)?;
         Ok(DetailSource::Map { picture, convention, map })
     }

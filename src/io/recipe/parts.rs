@@ -134,7 +134,7 @@ impl LayerReader<'_> {
             (|reader, fields| reader.profiles(fields), "profiles"),
             (|reader, fields| reader.maps(fields), "maps"),
         ];
-        fields.required("kind")?.one_of(&KINDS)?(self, fields)
+        fields.require("kind")?.one_of(&KINDS)?(self, fields)
     }
 
     fn inflate(&mut self, fields: &mut Fields) -> Result<PartKind> {
@@ -177,7 +177,7 @@ impl LayerReader<'_> {
             edge: fields.number("edge", plain.edge, Detail::EDGE)?,
         };
         let (file, coverage) =
-            self.pictures.coverage(self.source, &fields.required("file")?, None)?;
+            self.pictures.coverage(self.source, &fields.require("file")?, None)?;
         Ok(PartKind::Relief { on: on(fields)?, picture: CoverageFile { file, coverage }, detail })
     }
 
@@ -196,12 +196,12 @@ impl LayerReader<'_> {
         let mut shading = |item: &JsonNode| {
             let mut fields = item.fields()?;
             let (file, coverage) =
-                self.pictures.coverage(self.source, &fields.required("file")?, None)?;
-            let light = fields.required("light")?.vector(ProfilePicture::LIGHT)?;
+                self.pictures.coverage(self.source, &fields.require("file")?, None)?;
+            let light = fields.require("light")?.vector(ProfilePicture::LIGHT)?;
             fields.finish()?;
             Ok(ProfilePicture { picture: CoverageFile { file, coverage }, light })
         };
-        let items = fields.required("pictures")?.list(MOST_PROFILES)?;
+        let items = fields.require("pictures")?.list(MOST_PROFILES)?;
         let shadings = items.iter().map(&mut shading).collect::<Result<_>>()?;
         Ok(PartKind::Profiles { outline, shadings })
     }
@@ -246,7 +246,7 @@ impl LayerReader<'_> {
     /// The frame that maps are put on, and how, if they are not fitted to it.
     fn frame(&mut self, node: &JsonNode) -> Result<(Size, Option<[f64; 6]>)> {
         let mut fields = node.fields()?;
-        let mut side = |name| fields.required(name)?.integer(1..=i64::from(u32::MAX));
+        let mut side = |name| fields.require(name)?.integer(1..=i64::from(u32::MAX));
         let (width, height) = (side("width")?, side("height")?);
         let matrix = fields.get("matrix").map(|node| surface::matrix(&node)).transpose()?;
         fields.finish()?;
@@ -258,7 +258,7 @@ impl LayerReader<'_> {
     fn sculpt(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let mut stroke = |item: &JsonNode| {
             let mut fields = item.fields()?;
-            let samples = fields.required("samples")?;
+            let samples = fields.require("samples")?;
             let stroke = SculptStroke {
                 tool: fields.one_of("tool", &SculptTool::ALL, SculptTool::default())?,
                 size: fields.number("size", DAB_SIZE, SculptStroke::SIZE)?,
@@ -273,13 +273,13 @@ impl LayerReader<'_> {
             fields.finish()?;
             Ok(stroke)
         };
-        let items = fields.required("strokes")?.list(SculptStroke::MOST)?;
+        let items = fields.require("strokes")?.list(SculptStroke::MOST)?;
         let strokes = items.iter().map(&mut stroke).collect::<Result<_>>()?;
         Ok(PartKind::Sculpt { on: on(fields)?, strokes })
     }
 
     fn outline(&mut self, fields: &mut Fields) -> Result<OutlineSource> {
-        let node = fields.required("outline")?;
+        let node = fields.require("outline")?;
         self.outline_of(&node)
     }
 
@@ -314,7 +314,7 @@ impl LayerReader<'_> {
 }
 
 fn on(fields: &mut Fields) -> Result<String> {
-    fields.required("on")?.text().map(str::to_owned)
+    fields.require("on")?.text().map(str::to_owned)
 }
 
 fn points(node: &JsonNode, most: usize) -> Result<Vec<Vec2>> {
@@ -338,8 +338,8 @@ fn curve(node: &JsonNode) -> Result<BevelCurve> {
 }
 
 fn primitive(fields: &mut Fields) -> Result<Primitive> {
-    let body = fields.required("shape")?.one_of(&Body::ALL)?;
-    let center = fields.required("center")?.point()?;
+    let body = fields.require("shape")?.one_of(&Body::ALL)?;
+    let center = fields.require("center")?.point()?;
     let radius = fields.number("radius", BODY_RADIUS, Primitive::LENGTH)?;
     let plain = Primitive::new(body, center, radius);
     let vector = |node: Option<JsonNode>, plain: Vec3, range: Range| {
@@ -361,7 +361,7 @@ fn sweep(fields: &mut Fields) -> Result<PartKind> {
         Ok(Ball { at: vec2(v[0], v[1]), radius: v[2] })
     };
     let balls =
-        fields.required("balls")?.list(Ball::MOST)?.iter().map(ball).collect::<Result<_>>()?;
+        fields.require("balls")?.list(Ball::MOST)?.iter().map(ball).collect::<Result<_>>()?;
     Ok(PartKind::Sweep { balls, puff: fields.number("puff", 1.0, Inflation::PUFF)? })
 }
 
@@ -369,16 +369,16 @@ fn touches(fields: &mut Fields) -> Result<PartKind> {
     let touch = |item: &JsonNode| {
         let mut fields = item.fields()?;
         let touch = Touch {
-            at: fields.required("at")?.point()?,
+            at: fields.require("at")?.point()?,
             radius: fields.number("radius", TOUCH_RADIUS, Touch::RADIUS)?,
-            normal: fields.required("normal")?.vector(-1.0..=1.0)?,
+            normal: fields.require("normal")?.vector(-1.0..=1.0)?,
             reach: fields.number("reach", 0.0, Touch::REACH)?,
         };
         fields.finish()?;
         Ok(touch)
     };
     let touches =
-        fields.required("touches")?.list(Touch::MOST)?.iter().map(touch).collect::<Result<_>>()?;
+        fields.require("touches")?.list(Touch::MOST)?.iter().map(touch).collect::<Result<_>>()?;
     Ok(PartKind::Touches { on: on(fields)?, touches })
 }
 

@@ -69,7 +69,7 @@ pub fn presets() -> impl Iterator<Item = BrushPreset> {
 pub fn preset(key: &str) -> Option<BrushPreset> {
     let key = current_name(key);
     let (_, text) = BRUSHES.iter().find(|(known, _)| *known == key)?;
-    let mut preset = built_in(key, text).ok()?;
+    let mut preset = parse_built_in(key, text).ok()?;
     preset.brush.reach = Brush::NEAR;
     Some(preset)
 }
@@ -86,17 +86,17 @@ pub(super) fn read_preset_name(key: &JsonNode) -> Result<(Brush, Operator)> {
         let names: Vec<_> = preset_names().collect();
         return Err(key.refusal(format!("is “{wanted}”; the presets are {}", names.join(", "))));
     };
-    let preset = built_in(wanted, text).map_err(|e| key.name_in_error(e))?;
+    let preset = parse_built_in(wanted, text).map_err(|e| key.name_in_error(e))?;
     Ok((preset.brush, preset.operator))
 }
 
-fn built_in(key: &str, text: &str) -> Result<BrushPreset> {
+fn parse_built_in(key: &str, text: &str) -> Result<BrushPreset> {
     let mut none =
         |node: &JsonNode| Err(node.refusal("is a file; the brushes of the program have none"));
     read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
 }
 
-/// A brush as [`written_brush`] writes it, with the pictures of `like`, because a value can only
+/// A brush as [`brush_to_json`] writes it, with the pictures of `like`, because a value can only
 /// name them.
 ///
 /// Fails with a sentence that names the field.
@@ -116,7 +116,7 @@ pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
 }
 
 /// Everything that differs from the plain brush, pictures by name.
-pub fn written_brush(brush: &Brush) -> Value {
+pub fn brush_to_json(brush: &Brush) -> Value {
     write_brush(brush).into_value()
 }
 
@@ -148,7 +148,7 @@ fn read(
     let group = root.one_of("group", &PresetGroup::ALL, PresetGroup::Imported)?;
     let color = root.color("color", SHOWN)?;
     let operator = operator(&mut root)?.unwrap_or_default();
-    let mut fields = root.required("brush")?.fields()?;
+    let mut fields = root.require("brush")?.fields()?;
     let mut brush = settings(&mut fields, Brush::default())?;
     tips::read(&mut fields, &mut brush, picture)?;
     fields.finish()?;
@@ -180,12 +180,12 @@ mod tests {
     #[test]
     fn every_preset_reads_and_has_a_name_a_group_and_a_sentence() {
         for (key, text) in BRUSHES {
-            let preset = built_in(key, text).unwrap_or_else(|e| panic!("{key}: {e}"));
+            let preset = parse_built_in(key, text).unwrap_or_else(|e| panic!("{key}: {e}"));
             assert!(!preset.name.is_empty() && preset.group != PresetGroup::Imported, "{key}");
             assert!(preset.about.ends_with('.') && preset.about.len() > 20, "{key}");
             assert_eq!(*key, crate::brush::plain(key));
             assert_eq!(
-                built_in(key, &write_preset(&preset).to_string()).map(|p| p.name).ok(),
+                parse_built_in(key, &write_preset(&preset).to_string()).map(|p| p.name).ok(),
                 Some(preset.name)
             );
         }

@@ -34,7 +34,7 @@ impl LayerReader<'_> {
         let mut kept: Vec<NamedSelection> = Vec::new();
         for item in node.list(Document::MOST_SELECTIONS)? {
             let mut fields = item.fields()?;
-            let id = fields.required("id")?;
+            let id = fields.require("id")?;
             let name = fields
                 .get("name")
                 .map(|name| Ok::<_, crate::Error>((name.text()?.to_owned(), name)))
@@ -77,7 +77,11 @@ impl LayerReader<'_> {
     }
 
     /// The selections that have no name and are outlines of parts, kept by their ids.
-    pub fn outlined(&self, parts: &[Arc<Part>], kept: &[NamedSelection]) -> Vec<NamedSelection> {
+    pub fn outline_selections(
+        &self,
+        parts: &[Arc<Part>],
+        kept: &[NamedSelection],
+    ) -> Vec<NamedSelection> {
         let mut new: Vec<NamedSelection> = Vec::new();
         for part in parts {
             let Some(OutlineSource::Selection(name)) = part.outline() else { continue };
@@ -109,7 +113,7 @@ impl LayerReader<'_> {
                 let (x, y) = (side("x")? as i32, side("y")? as i32);
                 Selection::new(self.pictures.selection(
                     self.source,
-                    &fields.required("file")?,
+                    &fields.require("file")?,
                     x,
                     y,
                 )?)
@@ -136,7 +140,7 @@ impl RecipeValue for SurfaceRegion {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
-        let kind = fields.required("kind")?.one_of(&RegionKind::ALL)?;
+        let kind = fields.require("kind")?.one_of(&RegionKind::ALL)?;
         let region = region(kind, &mut fields)?;
         fields.finish()?;
         Ok(region)
@@ -147,7 +151,7 @@ impl RecipeValue for SurfaceRegion {
 pub fn region(kind: RegionKind, fields: &mut Fields) -> Result<SurfaceRegion> {
     Ok(SurfaceRegion {
         kind,
-        at: fields.required("at")?.point()?,
+        at: fields.require("at")?.point()?,
         tolerance: fields.number("tolerance", kind.tolerance(), kind.tolerances())?,
         softness: fields.number("softness", 0.0, SurfaceRegion::SOFTNESS)?,
         contiguous: fields.boolean("contiguous", true)?,

@@ -77,7 +77,7 @@ impl LayerReader<'_> {
 
     fn environment(&mut self, node: &JsonNode) -> Result<Environment> {
         let mut fields = node.fields()?;
-        let file = fields.required("file")?;
+        let file = fields.require("file")?;
         let mut environment =
             Environment::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
         environment.projection =
@@ -91,7 +91,7 @@ impl LayerReader<'_> {
     fn sphere(&mut self, fields: &mut Fields, name: &'static str) -> Result<Option<LitSphere>> {
         let Some(node) = fields.get(name) else { return Ok(None) };
         let mut fields = node.fields()?;
-        let file = fields.required("file")?;
+        let file = fields.require("file")?;
         let sphere =
             LitSphere::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
         fields.finish()?;

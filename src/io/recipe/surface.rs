@@ -147,7 +147,7 @@ fn mask(node: &JsonNode) -> Result<MaskSource> {
 }
 
 fn file(fields: &mut Fields) -> Result<String> {
-    let node = fields.required("file")?;
+    let node = fields.require("file")?;
     let name = node.text()?;
     match files::refusal(name) {
         Some(reason) => Err(node.refusal(format!("“{name}” is refused: {reason}"))),

@@ -68,7 +68,7 @@ fn run(node: &JsonNode) -> Result<TextRun> {
 
 fn read_run(fields: &mut Fields) -> Result<TextRun> {
     let plain = TextStyle::default();
-    let string = fields.required("string")?.text()?.to_owned();
+    let string = fields.require("string")?.text()?.to_owned();
     let family = fields.get("font").map(|node| family(&node)).transpose()?;
     let weight = fields.get("weight").map(|node| {
         let (least, most) = (*TextStyle::WEIGHT.start(), *TextStyle::WEIGHT.end());

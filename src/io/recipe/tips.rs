@@ -73,7 +73,7 @@ fn tip(node: &JsonNode, picture: &mut PictureReader) -> Result<Tip> {
             let seed = whole(&mut fields, "seed", plain.seed, 0..=u32::MAX)?;
             Tip::Noise(Noise { cells, density, seed })
         }
-        TipKind::Picture => Tip::Picture(picture(&fields.required("file")?)?),
+        TipKind::Picture => Tip::Picture(picture(&fields.require("file")?)?),
         TipKind::Hose => Tip::Hose(hose(&mut fields, picture)?),
     };
     fields.finish()?;
@@ -90,7 +90,7 @@ fn whole(
 }
 
 fn hose(fields: &mut Fields, picture: &mut PictureReader) -> Result<Hose> {
-    let files = fields.required("files")?;
+    let files = fields.require("files")?;
     let pictures =
         files.list(Hose::MOST_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
     if pictures.is_empty() {
@@ -105,7 +105,7 @@ fn hose(fields: &mut Fields, picture: &mut PictureReader) -> Result<Hose> {
 
 fn rank(node: &JsonNode) -> Result<HoseRank> {
     let mut fields = node.fields()?;
-    let count = fields.required("count")?.integer(1..=Hose::MOST_PICTURES as i64)? as u32;
+    let count = fields.require("count")?.integer(1..=Hose::MOST_PICTURES as i64)? as u32;
     let select = fields.one_of("select", &RankSelect::ALL, RankSelect::default())?;
     fields.finish()?;
     Ok(HoseRank { count, select })

@@ -53,8 +53,8 @@ pub fn matrix_of(node: &JsonNode) -> Result<[f64; 6]> {
 fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
     let mut fields = node.fields()?;
     let side = *Mesh::SIDE.start() as i64..=*Mesh::SIDE.end() as i64;
-    let columns = fields.required("columns")?.integer(side.clone())? as usize;
-    let rows = fields.required("rows")?.integer(side)? as usize;
+    let columns = fields.require("columns")?.integer(side.clone())? as usize;
+    let rows = fields.require("rows")?.integer(side)? as usize;
     let frame = match (fields.get("frame"), canvas) {
         (Some(node), _) => {
             let items = node.list(4)?;
@@ -68,7 +68,7 @@ fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
         (None, Some(canvas)) => MeshFrame::of(canvas),
         (None, None) => return Err(node.refusal("needs a “frame”")),
     };
-    let list = fields.required("points")?;
+    let list = fields.require("points")?;
     let items = list.list(columns * rows)?;
     if items.len() != columns * rows {
         let (found, wanted) = (items.len(), columns * rows);

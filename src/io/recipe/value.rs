@@ -15,7 +15,7 @@ pub trait RecipeValue: Sized {
     /// Reads a value that is not from a file, its numbers in their ranges or not; a refusal is the
     /// rest of a sentence that begins with its name.
     fn from_value(value: &Value) -> Result<Self, String> {
-        let node = JsonNode::unranged(value);
+        let node = JsonNode::without_range(value);
         Self::from_json(&node).map_err(|error| match error {
             Error::Invalid { field, reason, .. } if node.is_at(&field) => reason,
             Error::Invalid { field, reason, .. } => format!("{field}: {reason}"),

@@ -52,7 +52,7 @@ pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<LostSession> {
 
 /// How many sessions below a folder other processes hold: open windows, and for a moment a killed
 /// one, whose locks the system releases only when its last thread has ended.
-pub fn held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
+pub fn count_held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
     let ours = format!("-{}-", std::process::id());
     let is_log = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "log");
     let is_theirs = |path: &&PathBuf| {
@@ -71,7 +71,7 @@ pub fn held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
 /// `None` while its own process, or another window, holds it.
 fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<LostSession> {
     let lock = fs.lock(&path.with_extension("lock")).ok()??;
-    let has_failed = !matches!(fs.found(&path.with_extension("trying")), Ok(None));
+    let has_failed = !matches!(fs.find(&path.with_extension("trying")), Ok(None));
     // Only the beginning: a broken log may be long.
     let mut start = Vec::new();
     if let Ok(handle) = fs.open(&path) {

@@ -153,7 +153,7 @@ impl StateWriter<'_> {
             Some((key, _)) => *key,
             None => {
                 if self.given_up.load(Ordering::Relaxed) {
-                    return Err(Error::unsupported(
+                    return Err(Error::unsupported_file(
                         self.file,
                         "the drawing was closed in the meantime",
                     ));

@@ -34,7 +34,7 @@ impl PartFile {
             // A disk that cannot hold files is not swept either. One that is swept may have been so
             // before it was held.
             let is_ours = handle.hold().unwrap_or(true);
-            match fs.found(&path) {
+            match fs.find(&path) {
                 Ok(Some(_)) if is_ours => return Ok(Self { path, handle }),
                 Err(e) => {
                     let _ = fs.remove(&path);
@@ -56,7 +56,7 @@ impl PartFile {
 pub fn sweep(fs: &dyn Fs, folder: &Path) {
     for path in fs.list(folder).unwrap_or_default().into_iter().filter(|path| is_ours(path)) {
         // Only a regular file: opening a pipe would wait for ever.
-        if !matches!(fs.found(&path), Ok(Some(EntryKind::File))) {
+        if !matches!(fs.find(&path), Ok(Some(EntryKind::File))) {
             continue;
         }
         let part = path.with_extension(PART);

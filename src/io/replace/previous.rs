@@ -66,7 +66,7 @@ impl Previous {
 /// Gives an existing previous version a temporary name; `None` if there is none.
 fn set_aside(fs: &dyn Fs, part: &PartFile, name: &Path) -> io::Result<Option<PathBuf>> {
     let older = part.path.with_extension(OLDER);
-    match fs.found(name)? {
+    match fs.find(name)? {
         // Only a file can be a previous version.
         Some(EntryKind::File) => take(fs, part, name, &older).map(|()| Some(older)),
         _ => Ok(None),

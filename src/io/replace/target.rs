@@ -31,32 +31,36 @@ fn is_named(fs: &dyn Fs, path: &Path, target: &Path, identity: Option<Identity>)
 impl ReplaceJob<'_> {
     /// The file itself: where a link leads to, not the link.
     pub(super) fn target(&self) -> Result<PathBuf> {
-        let io = |e| self.failed("", e);
-        let irregular =
-            || Error::unsupported(self.named, "it is not a regular file, so it cannot be replaced");
-        match self.fs.found(self.named).map_err(io)? {
+        let io = |e| self.describe_failure("", e);
+        let irregular = || {
+            Error::unsupported_file(
+                self.named,
+                "it is not a regular file, so it cannot be replaced",
+            )
+        };
+        match self.fs.find(self.named).map_err(io)? {
             Some(EntryKind::File) | Some(EntryKind::Link) => {
                 let target = self.fs.resolve(self.named);
-                let target = target.map_err(|e| self.failed("it is a broken link", e))?;
-                match self.fs.found(&target).map_err(io)? {
+                let target = target.map_err(|e| self.describe_failure("it is a broken link", e))?;
+                match self.fs.find(&target).map_err(io)? {
                     Some(EntryKind::File) => Ok(target),
                     _ => Err(irregular()),
                 }
             }
-            Some(EntryKind::Folder) => Err(Error::unsupported(self.named, "it is a folder")),
+            Some(EntryKind::Folder) => Err(Error::unsupported_file(self.named, "it is a folder")),
             Some(EntryKind::Other) => Err(irregular()),
             None => {
                 let name = self
                     .named
                     .file_name()
-                    .ok_or_else(|| Error::unsupported(self.named, "it has no name"))?;
+                    .ok_or_else(|| Error::unsupported_file(self.named, "it has no name"))?;
                 let folder = self.fs.resolve(folder_of(self.named));
                 let unreached = |e: io::Error| {
                     let is_absent = e.kind() == ErrorKind::NotFound;
                     let what = "its folder cannot be reached";
                     let absent =
                         format!("{what}: there is no folder {}", folder_of(self.named).display());
-                    self.failed(if is_absent { &absent } else { what }, e)
+                    self.describe_failure(if is_absent { &absent } else { what }, e)
                 };
                 Ok(folder.map_err(unreached)?.join(name))
             }
@@ -65,13 +69,13 @@ impl ReplaceJob<'_> {
 
     /// Checks that the existing file may be replaced.
     pub(super) fn check_allowed(&self, target: &Path) -> Result<()> {
-        let io = |e| self.failed("", e);
-        if self.fs.found(target).map_err(io)?.is_none() {
+        let io = |e| self.describe_failure("", e);
+        if self.fs.find(target).map_err(io)?.is_none() {
             // A file that is gone cannot be lost.
             return Ok(());
         }
         if self.is_read(target)? {
-            return Err(Error::unsupported(
+            return Err(Error::unsupported_file(
                 self.named,
                 "an open document was made from it; write to another file",
             ));
@@ -80,7 +84,7 @@ impl ReplaceJob<'_> {
             |reason: &str| Err(Error::Changed { file: self.named.into(), reason: reason.into() });
         match self.terms.over {
             Overwrite::Forced => return Ok(()),
-            Overwrite::Nothing => return Err(self.taken_error()),
+            Overwrite::Nothing => return Err(self.name_taken_error()),
             Overwrite::This(stamp) if self.stamp_of(target)? != stamp => {
                 return changed("another program changed it since it was opened");
             }
@@ -89,7 +93,7 @@ impl ReplaceJob<'_> {
         if self.fs.is_read_only(target).map_err(io)? { changed("it is read-only") } else { Ok(()) }
     }
 
-    pub(super) fn taken_error(&self) -> Error {
+    pub(super) fn name_taken_error(&self) -> Error {
         Error::Changed {
             file: self.named.into(),
             reason: "a file of this name already exists".into(),
@@ -101,13 +105,13 @@ impl ReplaceJob<'_> {
         if self.terms.reads.is_empty() {
             return Ok(false);
         }
-        let identity = self.fs.identity(target).map_err(|e| self.failed("", e))?;
+        let identity = self.fs.identity(target).map_err(|e| self.describe_failure("", e))?;
         let is_it = |file: &PathBuf| is_named(self.fs, file, target, identity);
         Ok(self.terms.reads.iter().any(is_it))
     }
 
     fn stamp_of(&self, target: &Path) -> Result<FileStamp> {
-        let failed = |e| self.failed("it cannot be compared with what was opened", e);
+        let failed = |e| self.describe_failure("it cannot be compared with what was opened", e);
         FileStamp::read(&mut *self.fs.open(target).map_err(failed)?).map_err(failed)
     }
 }

@@ -174,7 +174,7 @@ fn a_project_whose_16_bits_do_not_fit_opens_with_8_and_is_not_whole() {
     let mut held = MemoryCount::default();
     held.add(&document, true);
     // Too little to flatten it, and too little to hold it.
-    for free in [held.used().total(), held.used().total() / 2] {
+    for free in [held.sum_up().total(), held.sum_up().total() / 2] {
         let opened = open(&file, &Budget { memory_bytes: free, ..Budget::default() }).unwrap();
         assert_eq!(
             (opened.notes.as_slice(), opened.is_whole),

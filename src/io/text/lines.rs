@@ -67,7 +67,7 @@ pub(super) fn lines(text: &Text) -> Result<Vec<Line>> {
     let mut lines = Vec::new();
     for paragraph in paragraphs(text) {
         if text.width > 0.0 && text.arc == 0.0 {
-            lines.extend(broken(text, paragraph));
+            lines.extend(break_lines(text, paragraph));
         } else {
             lines.push(paragraph);
         }
@@ -99,7 +99,7 @@ fn paragraphs(text: &Text) -> Vec<Line> {
 }
 
 /// A paragraph in lines of the text's width.
-fn broken(text: &Text, paragraph: Line) -> Vec<Line> {
+fn break_lines(text: &Text, paragraph: Line) -> Vec<Line> {
     let string = paragraph.string();
     let letters = super::advances(text, &paragraph);
     let begins = |byte: usize| {

@@ -83,7 +83,7 @@ impl ConvertedBrush {
             return Ok(ConvertedBrush::Preset(encoded.into()));
         }
         let target = OutputFile::new(to, terms.clone())?;
-        let none = || Error::unsupported(to, "the brush cannot be shown");
+        let none = || Error::unsupported_file(to, "the brush cannot be shown");
         let (pixels, size) =
             (swatch::render_swatch(preset, side).ok_or_else(none)?, Size::new(side, side));
         let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;

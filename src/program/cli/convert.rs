@@ -3,7 +3,7 @@
 
 use super::force::Force;
 use super::messages::print_notes;
-use super::painted::{refuse_incomplete, scaled};
+use super::painted::{refuse_incomplete, scale_document};
 use super::{LimitArgs, progress, values};
 use crate::Result;
 use crate::document::Document;
@@ -67,7 +67,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
         let OpenedDocument { document, notes, reads, .. } =
             open(&args.from, &args.limits.budget())?;
         let terms = terms(args, output, reads);
-        let document = scaled(&args.from, args.scale, &args.limits, document)?;
+        let document = scale_document(&args.from, args.scale, &args.limits, document)?;
         args.limits.room_to_paint(&args.from, &document)?;
         match output {
             Output::Project | Output::Psd => {

@@ -233,7 +233,7 @@ impl MapFiles {
     }
 
     /// The source with all detected conventions stated.
-    fn spelled(&self, findings: &Findings) -> SurfaceSource {
+    fn spell_out_source(&self, findings: &Findings) -> SurfaceSource {
         let mut source = self.source.clone();
         if let (Some(map), Some(convention)) = (&mut source.normal, &findings.normal) {
             map.convention = convention.clone();
@@ -295,7 +295,7 @@ impl PictureReport {
 }
 
 impl SurfaceReport {
-    fn covered_share(import: &ImportedSurface) -> f64 {
+    fn covered_ratio(import: &ImportedSurface) -> f64 {
         let coverage = import.surface.coverage_plane().values();
         coverage.iter().map(|c| f64::from(*c)).sum::<f64>() / 255.0 / coverage.len().max(1) as f64
     }
@@ -319,11 +319,12 @@ impl SurfaceReport {
         });
         out["width"] = json!(size.width);
         out["height"] = json!(size.height);
-        out["covered"] = json!((Self::covered_share(import) * 1e4).round() / 1e4);
+        out["covered"] = json!((Self::covered_ratio(import) * 1e4).round() / 1e4);
         out["depth_range_px"] = json!(import.surface.depth_range_px());
         out["depth_at_0_and_1"] = json!(findings.depth_range.map(|(near, far)| [near, far]));
         out["found"] = Value::Object(found.collect());
-        out["surface"] = recipe::surface::write(&self.source.spelled(findings)).into_value();
+        out["surface"] =
+            recipe::surface::write(&self.source.spell_out_source(findings)).into_value();
         out["notes"] = json!(findings.notes);
         out
     }
@@ -337,7 +338,7 @@ impl SurfaceReport {
         let mut out = format!(
             "\n{name}: a surface of {} pixels, {:.0} % covered, from {}\n",
             import.surface.size(),
-            Self::covered_share(import) * 100.0,
+            Self::covered_ratio(import) * 100.0,
             self.source.files.join(" and ")
         );
         for c in &import.findings.choices {

@@ -3,7 +3,7 @@
 
 use super::force::Force;
 use super::messages::print_notes;
-use super::object::{LoadedDocument, ObjectArgs, loaded};
+use super::object::{LoadedDocument, ObjectArgs, load_object};
 use super::{LimitArgs, values};
 use crate::document::{Content, Document, Progress};
 use crate::io::fs::Disk;
@@ -41,14 +41,14 @@ pub struct LinesArgs {
 /// Runs it.
 pub fn run(args: &LinesArgs) -> Result<()> {
     args.limits.install(|| {
-        let named = args.onto.named(args.document.as_deref());
+        let named = args.onto.named_path(args.document.as_deref());
         let LoadedDocument { document, notes, reads } =
-            loaded(args.document.as_deref(), &args.onto, &args.limits)?;
+            load_object(args.document.as_deref(), &args.onto, &args.limits)?;
         let terms = args.force.export(reads);
         check(&Disk, &args.output, &terms)?;
         if document.surface.is_none() {
             let reason = "it has no shape: name its maps with --normal or --depth";
-            return Err(Error::unsupported(named, reason));
+            return Err(Error::unsupported_file(named, reason));
         }
         let mut drawing = drawing_of(&document);
         if let (Some(detail), FormPattern::Lines(lines)) = (args.detail, &mut drawing.pattern) {

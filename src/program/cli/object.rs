@@ -45,7 +45,7 @@ fn near(word: &str) -> std::result::Result<Near, String> {
 
 impl ObjectArgs {
     /// What messages name: the document, or the map that stands for it.
-    pub fn named<'a>(&'a self, document: Option<&'a Path>) -> &'a Path {
+    pub fn named_path<'a>(&'a self, document: Option<&'a Path>) -> &'a Path {
         let maps = [&self.normal, &self.depth].into_iter().flatten().map(PathBuf::as_path);
         document.into_iter().chain(maps).next().unwrap_or(Path::new(""))
     }
@@ -60,7 +60,7 @@ pub struct LoadedDocument {
 }
 
 /// Reads a document, or maps alone: a document of nothing else.
-pub fn loaded(
+pub fn load_object(
     document: Option<&Path>,
     object: &ObjectArgs,
     limits: &LimitArgs,
@@ -74,7 +74,7 @@ pub fn loaded(
         // A recipe of nothing else.
         let read = |budget: &Budget| {
             let source = RecipeSource {
-                file: object.named(None),
+                file: object.named_path(None),
                 files: &UserFiles::default(),
                 budget,
                 onto,

@@ -18,8 +18,12 @@ pub struct OpenArgs {
 
 pub fn run(args: OpenArgs, window: Option<OpenWindow>) -> Result<()> {
     args.memory.set();
-    let none =
-        || Error::unsupported("window", "this build has none; “rilievo render” paints without one");
+    let none = || {
+        Error::unsupported_file(
+            "window",
+            "this build has none; “rilievo render” paints without one",
+        )
+    };
     window.ok_or_else(none)?(args.files.into_iter().map(whole).collect())
 }
 

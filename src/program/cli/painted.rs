@@ -17,7 +17,7 @@ pub fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> {
 }
 
 /// The document at another size, within the limits.
-pub fn scaled(
+pub fn scale_document(
     file: &Path,
     factor: f32,
     limits: &LimitArgs,

@@ -3,8 +3,8 @@
 
 use super::force::Force;
 use super::messages::print_notes;
-use super::object::{LoadedDocument, ObjectArgs, loaded};
-use super::painted::{refuse_incomplete, scaled};
+use super::object::{LoadedDocument, ObjectArgs, load_object};
+use super::painted::{refuse_incomplete, scale_document};
 use super::{LimitArgs, progress, values};
 use crate::document::Document;
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
@@ -81,13 +81,13 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     // A misspelled extension is reported before the work, not after it.
     ExportFormat::of(&args.output)?.bits(&args.output, args.bits)?;
     args.limits.install(|| {
-        let named_file = args.named();
+        let named_file = args.named_path();
         let LoadedDocument { document, notes, reads } =
-            loaded(args.document.as_deref(), &args.onto, &args.limits)?;
+            load_object(args.document.as_deref(), &args.onto, &args.limits)?;
         refuse_incomplete(named_file, &document)?;
         let target = OutputFile::new(&args.output, args.force.export(reads))?;
         let document = apply_arguments(args, document)?;
-        let document = scaled(named_file, args.scale, &args.limits, document)?;
+        let document = scale_document(named_file, args.scale, &args.limits, document)?;
         args.limits.room_to_paint(named_file, &document)?;
         let alone =
             args.layer.as_ref().map(|name| find_layer(args, &document, name)).transpose()?;
@@ -109,8 +109,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
 
 impl RenderArgs {
     /// What messages name: the document, or the map that stands for it.
-    fn named(&self) -> &Path {
-        self.onto.named(self.document.as_deref())
+    fn named_path(&self) -> &Path {
+        self.onto.named_path(self.document.as_deref())
     }
 }
 
@@ -121,7 +121,7 @@ fn apply_arguments(args: &RenderArgs, document: Document) -> Result<Document> {
     }
     if document.surface.is_none() {
         let reason = "it has no shape: name its maps with --normal or --depth";
-        return Err(Error::unsupported(args.named(), reason));
+        return Err(Error::unsupported_file(args.named_path(), reason));
     }
     let give = |document: Document, choice: &MaterialChoice| {
         Ok(choice.material.on(&document, choice.part.as_deref())?.0)
@@ -139,7 +139,7 @@ fn find_layer(
         let names: Vec<_> =
             document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
         Error::invalid(
-            args.named(),
+            args.named_path(),
             "--layer",
             format!("no layer is called “{name}”; there are {}", names.join(", ")),
         )

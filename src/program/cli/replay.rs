@@ -46,7 +46,7 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
             return Ok(());
         };
         if let Some(trouble) = autosave.follow(open_documents, *tool) {
-            return Err(Error::unsupported(&args.file, trouble));
+            return Err(Error::unsupported_file(&args.file, trouble));
         }
         let now = session.active().map(|open| open.document().clone());
         if last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| !is_same(last, now)) {

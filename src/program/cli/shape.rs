@@ -101,8 +101,9 @@ fn rim(text: &str) -> std::result::Result<f32, String> {
 pub fn run(args: &ShapeArgs) -> Result<()> {
     args.limits.install(|| {
         let (document, note) = shape_drawing(args)?;
-        let nothing =
-            || Error::unsupported(&args.drawing, "nothing in it is opaque enough to have a shape");
+        let nothing = || {
+            Error::unsupported_file(&args.drawing, "nothing in it is opaque enough to have a shape")
+        };
         let surface = document.surface.as_ref().ok_or_else(nothing)?;
         std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, e))?;
         let stem = args.drawing.file_stem().unwrap_or_default().to_string_lossy();
@@ -177,7 +178,7 @@ fn shape_drawing(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
         Some(file) => {
             let (other, flats) = tiles(file, &budget)?;
             if other != size {
-                return Err(Error::unsupported(
+                return Err(Error::unsupported_file(
                     file,
                     format!("it has {other} pixels, the drawing {size}"),
                 ));
@@ -190,7 +191,7 @@ fn shape_drawing(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
             };
             let parts = from_flats::parts_of_flats(&flats, "Flats", inflation, each);
             if parts.parts.is_empty() {
-                return Err(Error::unsupported(
+                return Err(Error::unsupported_file(
                     file,
                     "no flat color in it covers enough to be a part",
                 ));
@@ -222,17 +223,17 @@ fn figure(file: &Path, drawing: TileGrid, size: Size) -> Result<TileGrid> {
     match FigureBackground::of(&drawing, size) {
         FigureBackground::Transparent => Ok(drawing),
         FigureBackground::Flat(ground) => Ok(without_background(&drawing, size, ground)),
-        FigureBackground::Painted => Err(Error::unsupported(
+        FigureBackground::Painted => Err(Error::unsupported_file(
             file,
             "it is opaque everywhere, so it has no outline; give it a transparent background, or \
              name its flats with --flats",
         )),
-        FigureBackground::Bare(_) => Err(Error::unsupported(
+        FigureBackground::Bare(_) => Err(Error::unsupported_file(
             file,
             "it has one color all over, so there is no figure in it to have a shape",
         )),
         FigureBackground::Empty => {
-            Err(Error::unsupported(file, "nothing in it is opaque enough to have a shape"))
+            Err(Error::unsupported_file(file, "nothing in it is opaque enough to have a shape"))
         }
     }
 }

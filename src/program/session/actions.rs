@@ -54,8 +54,8 @@ macro_rules! rooms {
         }
 
         impl ReplayValue for Action {
-            fn written(&self) -> Value {
-                let (room, mut value) = match self { $(Action::$room(action) => ($word, action.written())),+ };
+            fn to_value(&self) -> Value {
+                let (room, mut value) = match self { $(Action::$room(action) => ($word, action.to_value())),+ };
                 if let Some(object) = value.as_object_mut() {
                     object.insert("in".into(), room.into());
                 }
@@ -71,10 +71,10 @@ macro_rules! rooms {
         }
 
         #[cfg(test)]
-        impl super::tests::stories::Drawn for Action {
-            fn drawn(dice: &mut super::tests::stories::Dice) -> Self {
+        impl super::tests::stories::Roll for Action {
+            fn roll(dice: &mut super::tests::stories::Dice) -> Self {
                 let all: &[fn(&mut super::tests::stories::Dice) -> Self] =
-                    &[$(|dice| Action::$room(super::tests::stories::Drawn::drawn(dice))),+];
+                    &[$(|dice| Action::$room(super::tests::stories::Roll::roll(dice))),+];
                 all[dice.variant(Self::ROOMS, "Action")](dice)
             }
         }

@@ -168,7 +168,7 @@ impl Autosave {
     }
 
     /// For a thread that finds or recovers lost sessions.
-    pub fn lost_sessions(&self) -> LostSessions {
+    pub fn find_lost_sessions(&self) -> LostSessions {
         LostSessions { fs: self.fs.clone(), folder: self.folder.clone() }
     }
 }
@@ -191,7 +191,7 @@ pub struct RestoredDocument {
 
 /// What a log holds of an open document.
 fn version(open: &OpenDocument, tool: ToolKind) -> DrawingVersion {
-    let aside = json!({ "target": open.stored_target(), "tool": tool.written() });
+    let aside = json!({ "target": open.stored_target(), "tool": tool.to_value() });
     DrawingVersion { document: open.document().clone(), aside }
 }
 
@@ -203,7 +203,7 @@ impl LostSessions {
     pub fn list(&self) -> Vec<recovery::LostSession> {
         for _ in 0..DYING.as_millis() / LOOK_AGAIN.as_millis() {
             let lost = self.list_now();
-            if !lost.is_empty() || recovery::held_by_others(&self.fs, &self.folder) == 0 {
+            if !lost.is_empty() || recovery::count_held_by_others(&self.fs, &self.folder) == 0 {
                 return lost;
             }
             self.fs.pause(LOOK_AGAIN);

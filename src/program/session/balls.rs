@@ -77,7 +77,7 @@ fn picture(ball: &Document) -> Option<Picture> {
 
 impl BallLink {
     /// The figure with the ball as it is now.
-    fn repainted(&self, figure: &Document, ball: &Document) -> Option<Document> {
+    fn repaint(&self, figure: &Document, ball: &Document) -> Option<Document> {
         let Content::Shading(live) = &figure.layer(self.layer)?.content else { return None };
         let own = live.params().ball(self.hollows).map(|ball| ball.file.clone());
         // A ball that came with the program, or with a file, is another one from now on.
@@ -146,7 +146,7 @@ impl Session {
         if is_ours {
             figure.history.undo();
         }
-        let next = link.repainted(figure.document(), &painted)?;
+        let next = link.repaint(figure.document(), &painted)?;
         figure.commit(STEP, next);
         link.made = Some(figure.document().clone());
         link.shown = painted;

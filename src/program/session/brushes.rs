@@ -287,14 +287,14 @@ mod tests {
 
     #[test]
     fn the_brush_in_hand_is_changed_by_what_a_recipe_would_say_and_keeps_its_pictures() {
-        use crate::io::recipe::written_brush;
+        use crate::io::recipe::brush_to_json;
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pen.gbr");
         std::fs::write(&file, gbr()).unwrap();
         let mut session = Session::default();
         import(&mut session, &file).unwrap();
         let scattered = Brush { scatter: 2.0, ..session.tools.brush.clone() };
-        Action::Hand(HandAction::Brush { brush: written_brush(&scattered) })
+        Action::Hand(HandAction::Brush { brush: brush_to_json(&scattered) })
             .apply(&mut session)
             .unwrap();
         assert_eq!((session.tools.brush.scatter, session.tools.brush.spacing), (2.0, 0.4));

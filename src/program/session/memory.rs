@@ -50,10 +50,10 @@ impl HeldDocuments {
             return DocumentMemory::default();
         };
         let mut add = |document: &Document, is_shown: bool| {
-            let before = count.used();
+            let before = count.sum_up();
             let keeps = is_shown || before.kept < ceiling;
             count.add(document, keeps);
-            count.used().minus(before)
+            count.sum_up().minus(before)
         };
         let mut of_front = add(front, true);
         for document in others {
@@ -67,7 +67,7 @@ impl HeldDocuments {
                 }
             }
         }
-        DocumentMemory { front: of_front, all: count.used() }
+        DocumentMemory { front: of_front, all: count.sum_up() }
     }
 }
 

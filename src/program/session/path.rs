@@ -80,10 +80,10 @@ impl From<&LayerPath> for LayerPaths {
 }
 
 impl ReplayValue for LayerPaths {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         match &self.0[..] {
-            [one] => one.written(),
-            all => Value::Array(all.iter().map(ReplayValue::written).collect()),
+            [one] => one.to_value(),
+            all => Value::Array(all.iter().map(ReplayValue::to_value).collect()),
         }
     }
 
@@ -97,7 +97,7 @@ impl ReplayValue for LayerPaths {
 }
 
 impl ReplayValue for LayerPath {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         self.0.iter().map(ToString::to_string).collect::<Vec<_>>().join(".").into()
     }
 
@@ -122,8 +122,8 @@ mod tests {
         let layers = vec![fill("a"), Arc::new(Layer::new("g", group))];
         let document = Document { layers, ..Document::empty(Size::new(4, 4)) };
         let path = LayerPath::of(&document, document.layer_named("c").unwrap().id).unwrap();
-        assert_eq!(path.written(), "1.1");
-        assert_eq!(LayerPath::read(&path.written()).unwrap().find(&document).unwrap().name, "c");
+        assert_eq!(path.to_value(), "1.1");
+        assert_eq!(LayerPath::read(&path.to_value()).unwrap().find(&document).unwrap().name, "c");
         assert!(LayerPath(vec![0, 1]).find(&document).is_none());
     }
 
@@ -135,11 +135,11 @@ mod tests {
         let ids: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
         let [one, both] = [&ids[1..], &ids[..]].map(|ids| LayerPaths::of(&document, ids));
         assert_eq!(
-            (one.written(), both.written()),
+            (one.to_value(), both.to_value()),
             (Value::from("1"), serde_json::json!(["0", "1"]))
         );
         for paths in [one, both] {
-            assert_eq!(LayerPaths::read(&paths.written()), Ok(paths));
+            assert_eq!(LayerPaths::read(&paths.to_value()), Ok(paths));
         }
         assert_eq!(
             LayerPaths::read(&"7".into()).unwrap().find(&document),

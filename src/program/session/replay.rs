@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// A value of an action's field. Reading fails with the reason, for a sentence that names the line.
 pub trait ReplayValue: Sized {
     /// The value in a line of JSON.
-    fn written(&self) -> Value;
+    fn to_value(&self) -> Value;
     /// Reads it; fails with what it must be.
     fn read(value: &Value) -> std::result::Result<Self, String>;
 }
@@ -21,7 +21,7 @@ pub fn field<T: ReplayValue>(object: &Value, name: &str) -> std::result::Result<
 }
 
 impl ReplayValue for bool {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         (*self).into()
     }
 
@@ -31,7 +31,7 @@ impl ReplayValue for bool {
 }
 
 impl ReplayValue for f32 {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         // Through its shortest decimal form: 0.1 reads 0.1, not 0.10000000149.
         self.to_string().parse::<f64>().map_or(Value::Null, Value::from)
     }
@@ -43,7 +43,7 @@ impl ReplayValue for f32 {
 }
 
 impl ReplayValue for f64 {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         json!(self)
     }
 
@@ -53,7 +53,7 @@ impl ReplayValue for f64 {
 }
 
 impl<const N: usize> ReplayValue for [f64; N] {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         json!(self.as_slice())
     }
 
@@ -66,7 +66,7 @@ impl<const N: usize> ReplayValue for [f64; N] {
 /// Whole numbers.
 macro_rules! whole {
     ($($ty:ty),+) => { $(impl ReplayValue for $ty {
-        fn written(&self) -> Value {
+        fn to_value(&self) -> Value {
             json!(self)
         }
 
@@ -79,7 +79,7 @@ macro_rules! whole {
 whole!(usize, u32, i32, u8);
 
 impl ReplayValue for String {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         self.as_str().into()
     }
 
@@ -90,7 +90,7 @@ impl ReplayValue for String {
 
 /// Values with their own JSON form in files.
 impl ReplayValue for Value {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         self.clone()
     }
 
@@ -100,7 +100,7 @@ impl ReplayValue for Value {
 }
 
 impl ReplayValue for PathBuf {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         self.to_string_lossy().into()
     }
 
@@ -110,7 +110,7 @@ impl ReplayValue for PathBuf {
 }
 
 impl ReplayValue for Color {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         self.to_string().into()
     }
 
@@ -123,8 +123,8 @@ impl ReplayValue for Color {
 }
 
 impl ReplayValue for Vec2 {
-    fn written(&self) -> Value {
-        Value::Array(self.to_array().iter().map(ReplayValue::written).collect())
+    fn to_value(&self) -> Value {
+        Value::Array(self.to_array().iter().map(ReplayValue::to_value).collect())
     }
 
     fn read(value: &Value) -> std::result::Result<Self, String> {
@@ -136,8 +136,8 @@ impl ReplayValue for Vec2 {
 }
 
 impl ReplayValue for Vec3 {
-    fn written(&self) -> Value {
-        Value::Array(self.to_array().iter().map(ReplayValue::written).collect())
+    fn to_value(&self) -> Value {
+        Value::Array(self.to_array().iter().map(ReplayValue::to_value).collect())
     }
 
     fn read(value: &Value) -> std::result::Result<Self, String> {
@@ -149,8 +149,8 @@ impl ReplayValue for Vec3 {
 }
 
 impl<T: ReplayValue> ReplayValue for Vec<T> {
-    fn written(&self) -> Value {
-        Value::Array(self.iter().map(ReplayValue::written).collect())
+    fn to_value(&self) -> Value {
+        Value::Array(self.iter().map(ReplayValue::to_value).collect())
     }
 
     fn read(value: &Value) -> std::result::Result<Self, String> {
@@ -159,8 +159,8 @@ impl<T: ReplayValue> ReplayValue for Vec<T> {
 }
 
 impl<T: ReplayValue> ReplayValue for Option<T> {
-    fn written(&self) -> Value {
-        self.as_ref().map_or(Value::Null, ReplayValue::written)
+    fn to_value(&self) -> Value {
+        self.as_ref().map_or(Value::Null, ReplayValue::to_value)
     }
 
     fn read(value: &Value) -> std::result::Result<Self, String> {
@@ -185,8 +185,8 @@ macro_rules! actions {
         }
 
         #[cfg(test)]
-        impl $crate::session::tests::stories::Drawn for $name {
-            fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
+        impl $crate::session::tests::stories::Roll for $name {
+            fn roll(dice: &mut $crate::session::tests::stories::Dice) -> Self {
                 let all: &[fn(&mut $crate::session::tests::stories::Dice) -> Self] = &[$(|_dice| Self::$variant {
                     $($field: _dice.value($word, stringify!($field))),*
                 }),+];
@@ -195,11 +195,11 @@ macro_rules! actions {
         }
 
         impl $crate::session::replay::ReplayValue for $name {
-            fn written(&self) -> serde_json::Value {
+            fn to_value(&self) -> serde_json::Value {
                 let mut object = serde_json::Map::new();
                 match self { $(Self::$variant { $($field),* } => {
                     object.insert("do".into(), $word.into());
-                    $(object.insert(stringify!($field).into(), $field.written());)*
+                    $(object.insert(stringify!($field).into(), $field.to_value());)*
                 })+ }
                 serde_json::Value::Object(object)
             }
@@ -222,9 +222,9 @@ pub(crate) use actions;
 macro_rules! record {
     ($name:ty { $($field:ident),+ $(,)? }) => {
         impl $crate::session::replay::ReplayValue for $name {
-            fn written(&self) -> serde_json::Value {
+            fn to_value(&self) -> serde_json::Value {
                 let mut object = serde_json::Map::new();
-                $(object.insert(stringify!($field).into(), self.$field.written());)+
+                $(object.insert(stringify!($field).into(), self.$field.to_value());)+
                 serde_json::Value::Object(object)
             }
 
@@ -235,8 +235,8 @@ macro_rules! record {
         }
 
         #[cfg(test)]
-        impl $crate::session::tests::stories::Drawn for $name {
-            fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
+        impl $crate::session::tests::stories::Roll for $name {
+            fn roll(dice: &mut $crate::session::tests::stories::Dice) -> Self {
                 Self { $($field: dice.value(stringify!($name), stringify!($field))),+ }
             }
         }
@@ -247,7 +247,7 @@ pub(crate) use record;
 /// Replays values as recipes write them.
 macro_rules! as_in_recipes {
     ($($name:ty),+) => { $(impl $crate::session::replay::ReplayValue for $name {
-        fn written(&self) -> serde_json::Value {
+        fn to_value(&self) -> serde_json::Value {
             $crate::io::recipe::value::RecipeValue::to_json(self)
         }
 
@@ -262,7 +262,7 @@ pub(crate) use as_in_recipes;
 macro_rules! names {
     ($name:ty) => {
         impl $crate::session::replay::ReplayValue for $name {
-            fn written(&self) -> serde_json::Value {
+            fn to_value(&self) -> serde_json::Value {
                 self.name().into()
             }
 
@@ -273,8 +273,8 @@ macro_rules! names {
         }
 
         #[cfg(test)]
-        impl $crate::session::tests::stories::Drawn for $name {
-            fn drawn(dice: &mut $crate::session::tests::stories::Dice) -> Self {
+        impl $crate::session::tests::stories::Roll for $name {
+            fn roll(dice: &mut $crate::session::tests::stories::Dice) -> Self {
                 dice.one_of(&<$name>::ALL.map(|row| row.0))
             }
         }

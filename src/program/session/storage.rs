@@ -9,7 +9,8 @@ pub use endings::{
     is_whole_document, with_document_extension, without_ending,
 };
 pub use maps::{
-    SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of, sorted,
+    SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of,
+    sort_files,
 };
 
 use super::stored_preview::StoredPreview;

@@ -250,8 +250,8 @@ fn actions_read_back_as_they_were_written() {
     let story = format!("{PAPER}{STROKE}");
     let actions = replay::lines::<Action>(Path::new("story"), &story).unwrap();
     for action in actions {
-        let written = action.written();
-        assert_eq!(Action::read(&written).unwrap().written(), written);
+        let written = action.to_value();
+        assert_eq!(Action::read(&written).unwrap().to_value(), written);
     }
 }
 

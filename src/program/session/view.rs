@@ -27,7 +27,7 @@ impl CanvasView {
     pub fn fitting(canvas: Size, window_pt: Vec2) -> Self {
         let side = vec2(canvas.width as f32, canvas.height as f32);
         let zoom = (window_pt / side).min_element() * 0.94;
-        Self { center: canvas.center(), zoom: clamped(zoom), turn_rad: 0.0, mirrored: false }
+        Self { center: canvas.center(), zoom: clamp_zoom(zoom), turn_rad: 0.0, mirrored: false }
     }
 
     /// Screen points from canvas px.
@@ -44,7 +44,7 @@ impl CanvasView {
 
     /// Zoomed about a screen point, which stays fixed on the canvas.
     pub fn zoomed(&self, factor: f32, about: Vec2) -> Self {
-        let zoom = clamped(self.zoom * factor);
+        let zoom = clamp_zoom(self.zoom * factor);
         let still = self.canvas_from_screen().transform_point2(about);
         Self { zoom, center: still + (self.center - still) * (self.zoom / zoom), ..*self }
     }
@@ -65,7 +65,7 @@ impl CanvasView {
     }
 }
 
-fn clamped(zoom: f32) -> f32 {
+fn clamp_zoom(zoom: f32) -> f32 {
     zoom.max(ZOOMS[0]).min(ZOOMS[1])
 }
 

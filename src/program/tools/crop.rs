@@ -45,7 +45,7 @@ impl CropAspect {
     }
 
     /// An area with this aspect about the middle of another one, with its width.
-    pub fn given(self, area: Rect, canvas: Size) -> Rect {
+    pub fn apply(self, area: Rect, canvas: Size) -> Rect {
         let Some(ratio) = self.ratio(canvas) else { return area };
         let height = (area.width() as f32 / ratio).round().max(1.0) as i32;
         let top = area.y0 + (area.height() as i32 - height).div_euclid(2);
@@ -119,7 +119,7 @@ struct CropGesture {
 
 impl CropGesture {
     /// The area with the held handle at the pen; Shift keeps its aspect.
-    fn dragged(&self, pen: &PenSample) -> Rect {
+    fn area_at(&self, pen: &PenSample) -> Rect {
         let at = pen.place();
         let Some(area) = self.area.filter(|_| self.handle != TransformHandle::Outside) else {
             let ratio = self.ratio.or(pen.keys.shift.then_some(1.0));
@@ -199,7 +199,7 @@ impl Gesture for CropGesture {
             let found = self.snap.point(pen.place());
             (snapped.sample.at, self.lines) = (found.at, found.lines);
         }
-        let area = self.dragged(&snapped);
+        let area = self.area_at(&snapped);
         Outcome::set(move |tools| tools.crop.area = Some(area))
     }
 
@@ -264,7 +264,7 @@ mod tests {
                 assert!(off <= 0.5 + 0.5 * ratio, "{aspect:?} {from}: {area:?}");
             }
         }
-        assert_eq!(CropAspect::Square.given(FRAME, Size::new(9, 9)), Rect::new(50, 0, 150, 100));
+        assert_eq!(CropAspect::Square.apply(FRAME, Size::new(9, 9)), Rect::new(50, 0, 150, 100));
     }
 
     #[test]

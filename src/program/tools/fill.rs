@@ -45,7 +45,8 @@ fn fill(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
         context.tools.fill.from(pen.place(), document.size, &part, |at| picture.flatten_tile(at))
     }?;
     let mix = Mix { atop: layer.lock == LayerLock::Alpha, ..Mix::default() };
-    let tiles = painted(&pixels.tiles, &filled, document.selected(), context.tools.color, mix);
+    let tiles =
+        fill_tiles(&pixels.tiles, &filled, document.active_coverage(), context.tools.color, mix);
     let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
     let document = document.with_layer(id, |layer| layer.content = Content::Pixels(next))?;
     Some(Outcome::Commit { label: "Fill".into(), document, select: Some(id) })
@@ -69,7 +70,7 @@ fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
 }
 
 /// The layer's pixels with a color over the filled area.
-fn painted(
+fn fill_tiles(
     base: &TileGrid,
     filled: &FilledArea,
     selected: Option<&CoverageGrid>,

@@ -248,7 +248,7 @@ impl GizmoMemory {
                 ..Self::default()
             };
         }
-        if layers.len() > 1 && self.taken_along(document).is_none() {
+        if layers.len() > 1 && self.common_map(document).is_none() {
             let inner = TransformGizmo::around(document, layers).map(|gizmo| gizmo.inner);
             self.first = inner.map(|inner| FirstPlacement { inner, each: each(document, layers) });
         }
@@ -259,7 +259,7 @@ impl GizmoMemory {
         let known = Some(self).filter(|kept| kept.is_of(content));
         let layers = content.layers();
         let turned =
-            known.and_then(|kept| Some((kept.first.as_ref()?.inner, kept.taken_along(document)?)));
+            known.and_then(|kept| Some((kept.first.as_ref()?.inner, kept.common_map(document)?)));
         let plain = || match content {
             GizmoContent::Layers(layers) => TransformGizmo::around(document, layers),
             GizmoContent::Shape => TransformGizmo::of_shape(document),
@@ -285,7 +285,7 @@ impl GizmoMemory {
 
     /// The map by which several layers were moved since they were first held; `None` if it is not
     /// the same for all, or something else was done to them.
-    fn taken_along(&self, document: &Document) -> Option<PlaneMap> {
+    fn common_map(&self, document: &Document) -> Option<PlaneMap> {
         let first = self.first.as_ref()?;
         let now = each(document, &self.layers);
         let mut moves =

@@ -65,7 +65,7 @@ impl ImageGesture {
 impl Gesture for ImageGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        self.image.placement = placed(self.placement, self.how, self.from, pen.place());
+        self.image.placement = drag_placement(self.placement, self.how, self.from, pen.place());
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
@@ -86,7 +86,7 @@ impl Gesture for ImageGesture {
 }
 
 /// A placement dragged from one point to another.
-fn placed(placement: Placement, how: ImageDrag, from: Vec2, to: Vec2) -> Placement {
+fn drag_placement(placement: Placement, how: ImageDrag, from: Vec2, to: Vec2) -> Placement {
     let (before, after) = (from - placement.center, to - placement.center);
     match how {
         ImageDrag::Move => Placement { center: placement.center + to - from, ..placement },
@@ -113,10 +113,13 @@ mod tests {
     #[test]
     fn a_drag_moves_scales_or_turns_about_the_center() {
         let start = Placement { center: vec2(50.0, 50.0), scale: 1.0, rotation: 10.0 };
-        let moved = placed(start, ImageDrag::Move, vec2(10.0, 10.0), vec2(15.0, 30.0));
+        let moved = drag_placement(start, ImageDrag::Move, vec2(10.0, 10.0), vec2(15.0, 30.0));
         assert_eq!(moved.center, vec2(55.0, 70.0));
-        assert_eq!(placed(start, ImageDrag::Scale, vec2(60.0, 50.0), vec2(50.0, 70.0)).scale, 2.0);
-        let turned = placed(start, ImageDrag::Turn, vec2(60.0, 50.0), vec2(50.0, 40.0));
+        assert_eq!(
+            drag_placement(start, ImageDrag::Scale, vec2(60.0, 50.0), vec2(50.0, 70.0)).scale,
+            2.0
+        );
+        let turned = drag_placement(start, ImageDrag::Turn, vec2(60.0, 50.0), vec2(50.0, 40.0));
         assert!(
             (turned.rotation - 100.0).abs() < 1e-3,
             "upward is a quarter turn as seen: {}",

@@ -28,7 +28,7 @@ pub fn handles(lights: &[Light], canvas: Size) -> Vec<Vec2> {
 
 /// The light whose handle was dragged to a point of the canvas. Directions stay in front of the
 /// surface.
-fn dragged(light: Light, to: Vec2, canvas: Size) -> Light {
+fn drag_light(light: Light, to: Vec2, canvas: Size) -> Light {
     let kind = match light.kind {
         LightKind::Directional { .. } => {
             let flat = ((to - canvas.center()) / reach_px(canvas).max(1.0)).clamp_length_max(0.999);
@@ -66,7 +66,7 @@ impl Gesture for LightGesture {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let canvas = self.document.size;
         if let Some(light) = self.shading.lights.get_mut(self.index) {
-            *light = dragged(*light, pen.place(), canvas);
+            *light = drag_light(*light, pen.place(), canvas);
         }
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
@@ -95,9 +95,9 @@ mod tests {
         ] {
             let light = Light { kind, ..Light::default() };
             let to = vec2(240.0, 110.0);
-            assert!(handles(&[dragged(light, to, canvas)], canvas)[0].distance(to) < 1e-3);
+            assert!(handles(&[drag_light(light, to, canvas)], canvas)[0].distance(to) < 1e-3);
         }
-        let beyond = dragged(Light::default(), vec2(9000.0, 150.0), canvas);
+        let beyond = drag_light(Light::default(), vec2(9000.0, 150.0), canvas);
         let LightKind::Directional { direction } = beyond.kind else { panic!("a direction") };
         assert!(direction.is_finite() && direction.z > 0.0 && direction.x > 0.99);
     }

@@ -61,7 +61,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     strokes.iter().for_each(|(_, stroke)| stroke.begin(&mut lattice, pen.sample.pressure));
     let gesture =
         LiquifyGesture { document: document.clone(), layer: layer.id, old, lattice, strokes };
-    let outcome = gesture.shown();
+    let outcome = gesture.preview();
     (Some(Box::new(gesture)), outcome)
 }
 
@@ -80,7 +80,7 @@ impl LiquifyGesture {
         self.document.with_layer(self.layer, |layer| layer.liquify = next)
     }
 
-    fn shown(&self) -> Outcome {
+    fn preview(&self) -> Outcome {
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
 }
@@ -96,7 +96,7 @@ impl Gesture for LiquifyGesture {
                 );
             }
         }
-        self.shown()
+        self.preview()
     }
 
     fn release(&mut self) -> Outcome {

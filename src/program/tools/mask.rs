@@ -42,7 +42,7 @@ pub fn press_on_selection(
     purpose: StrokePurpose,
 ) -> GestureStart {
     let size = context.document.size;
-    let mask = match context.document.selected() {
+    let mask = match context.document.active_coverage() {
         Some(selected) => selected.to_plane(size.rect()),
         None => Plane::filled(size, 255),
     };
@@ -77,7 +77,7 @@ fn paint(
     };
     let mut painting =
         MaskGesture { document: context.document.clone(), target, mask, shown, stroke };
-    let outcome = painting.took(first);
+    let outcome = painting.copy_to_mask(first);
     (Some(Box::new(painting)), outcome)
 }
 
@@ -101,7 +101,7 @@ struct MaskGesture {
 
 impl MaskGesture {
     /// Copies what the brush did to the sheet into the mask.
-    fn took(&mut self, outcome: Outcome) -> Outcome {
+    fn copy_to_mask(&mut self, outcome: Outcome) -> Outcome {
         match outcome {
             Outcome::Preview(sheet) => self.with(&sheet).map_or(Outcome::Idle, Outcome::Preview),
             Outcome::Commit { document: sheet, .. } => match self.with(&sheet) {
@@ -144,12 +144,12 @@ impl MaskGesture {
 impl Gesture for MaskGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let outcome = self.stroke.drag(pens);
-        self.took(outcome)
+        self.copy_to_mask(outcome)
     }
 
     fn release(&mut self) -> Outcome {
         let outcome = self.stroke.release();
-        self.took(outcome)
+        self.copy_to_mask(outcome)
     }
 }
 
@@ -176,7 +176,7 @@ fn grays(mask: &Plane<u8>) -> TileGrid {
         let tile = if is_plain {
             plain.entry(first).or_insert_with(|| made(&|_, _| first)).clone()
         } else {
-            made(&|x, y| mask.clamped(x, y))
+            made(&|x, y| mask.at_clamped(x, y))
         };
         grid.set(at, tile);
     }

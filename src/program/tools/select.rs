@@ -82,8 +82,12 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
 }
 
 /// The selection of a lasso that is closed by a key.
-pub fn closed(document: &Document, points: &[Vec2], settings: &SelectSettings) -> Option<Document> {
-    (points.len() >= 3).then(|| lasso::selected(document, points, settings.combine))
+pub fn select_closed_lasso(
+    document: &Document,
+    points: &[Vec2],
+    settings: &SelectSettings,
+) -> Option<Document> {
+    (points.len() >= 3).then(|| lasso::select_inside(document, points, settings.combine))
 }
 
 /// Whether the pen grabs the present selection: it comes down within it, and would replace it.
@@ -92,12 +96,13 @@ fn is_grabbing(context: &ToolContext, pen: PenSample) -> bool {
     let document = context.document;
     // A drag within a selection of the whole canvas makes a new rectangle.
     let is_all = |grid: &CoverageGrid| grid.area_px() >= document.size.area() as f64;
-    let is_in = document.selected().is_some_and(|grid| grid.at(at.x, at.y) >= 128 && !is_all(grid));
+    let is_in =
+        document.active_coverage().is_some_and(|grid| grid.at(at.x, at.y) >= 128 && !is_all(grid));
     is_in && pen.place().is_finite() && context.tools.select.how(pen.keys) == SelectionMode::Replace
 }
 
 /// The tolerance that a drag to the right or the left sets.
-fn dragged(from: f32, by_px: f32, px_per_pt: f32, range: &Range) -> f32 {
+fn drag_tolerance(from: f32, by_px: f32, px_per_pt: f32, range: &Range) -> f32 {
     let span = range.end() - range.start();
     crate::math::range::clamp_to_range(
         from + by_px / px_per_pt.max(1e-6) * span / TOLERANCE_PT,
@@ -120,6 +125,6 @@ fn adjust(document: Document, select: SelectSettings, is_done: bool) -> Outcome 
     outcome.with_settings(move |tools| tools.select = select)
 }
 
-fn combined(document: &Document, new: Selection, how: SelectionMode) -> Document {
+fn combine_selections(document: &Document, new: Selection, how: SelectionMode) -> Document {
     document.with_combined(new, how)
 }

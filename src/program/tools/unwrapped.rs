@@ -92,7 +92,7 @@ pub fn point(
         return pieces::press(context, pen, &layout);
     }
     let sheet = Sheet { layout, surface };
-    let Some((pen, _)) = sheet.led(pen) else { return (None, Outcome::Idle) };
+    let Some((pen, _)) = sheet.map_sample(pen) else { return (None, Outcome::Idle) };
     let (gesture, outcome) = super::press(tool, context, pen);
     let led = |tool| Box::new(LedGesture { sheet, tool }) as Box<dyn Gesture>;
     (gesture.map(led), outcome)
@@ -106,7 +106,7 @@ struct Sheet {
 
 impl Sheet {
     /// The sample on the canvas, and the object there; the pen leans as it does on the sheet.
-    fn led(&self, pen: PenSample) -> Option<(PenSample, u32)> {
+    fn map_sample(&self, pen: PenSample) -> Option<(PenSample, u32)> {
         let CanvasPlace { at, object, turn } = self.layout.canvas_at(&self.surface, pen.place())?;
         let sample = Sample { at, tilt: turn.transpose() * pen.sample.tilt, ..pen.sample };
         Some((PenSample { sample, ..pen }, object))
@@ -122,7 +122,7 @@ struct LedGesture {
 impl Gesture for LedGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let led: Vec<PenSample> =
-            pens.iter().filter_map(|pen| Some(self.sheet.led(*pen)?.0)).collect();
+            pens.iter().filter_map(|pen| Some(self.sheet.map_sample(*pen)?.0)).collect();
         if led.is_empty() { Outcome::Idle } else { self.tool.drag(&led) }
     }
 
@@ -179,7 +179,7 @@ impl FlatStroke {
     }
 
     fn step(&mut self, pen: PenSample) {
-        let Some((led, object)) = self.sheet.led(pen).filter(|_| !self.is_refused) else {
+        let Some((led, object)) = self.sheet.map_sample(pen).filter(|_| !self.is_refused) else {
             return self.cut();
         };
         let goes_on = self

@@ -94,7 +94,7 @@ impl Ants {
         visible: Rect,
         draw: impl Fn(&mut Mesh, &Run, f32),
     ) {
-        let selected = session.shown_document().and_then(|document| document.selected());
+        let selected = session.shown_document().and_then(|document| document.active_coverage());
         self.follow(selected);
         let Some(grid) = selected else { return };
         if session.hides_selection || session.active().is_some_and(|open| open.quick_mask) {

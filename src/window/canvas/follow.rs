@@ -84,7 +84,7 @@ impl Canvas {
             if is_draft {
                 self.draft.take(painted);
             } else {
-                self.sheet.changed(painted.tiles.iter().map(|(at, _)| *at));
+                self.sheet.mark_changed(painted.tiles.iter().map(|(at, _)| *at));
                 self.whole.take(painted);
             }
         }

@@ -34,7 +34,7 @@ pub struct LoupeColors {
 pub fn draw(ui: &Ui, at: Pos2, pixel: Vec2, grid: &TileGrid, colors: LoupeColors) {
     let layer = LayerId::new(Order::Tooltip, Id::unique("loupe"));
     let painter = Painter::new(ui.ctx().clone(), layer, ui.clip_rect());
-    painter.add(Shape::mesh(enlarged(at, pixel, grid)));
+    painter.add(Shape::mesh(pixel_mesh(at, pixel, grid)));
     // Upper half, then lower half; y points down.
     for (color, from) in [(colors.new, PI), (colors.before, 0.0)] {
         painter.add(Shape::line(arc(at, from), Stroke::new(RING_PT, color32(color))));
@@ -60,7 +60,7 @@ fn arc(at: Pos2, from: f32) -> Vec<Pos2> {
 }
 
 /// The pixels within the ring as squares.
-fn enlarged(at: Pos2, pixel: Vec2, grid: &TileGrid) -> Mesh {
+fn pixel_mesh(at: Pos2, pixel: Vec2, grid: &TileGrid) -> Mesh {
     let mut mesh = Mesh::default();
     let (x, y) = (pixel.x.floor() as i32, pixel.y.floor() as i32);
     for dy in -AROUND..=AROUND {
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn the_middle_square_is_the_pixel_under_the_pen_and_none_lies_outside_the_ring() {
-        let mesh = enlarged(Pos2::ZERO, Vec2::new(3.7, 2.2), &TileGrid::default());
+        let mesh = pixel_mesh(Pos2::ZERO, Vec2::new(3.7, 2.2), &TileGrid::default());
         let farthest = mesh.vertices.iter().map(|v| v.pos.to_vec2().length()).fold(0.0, f32::max);
         assert!(farthest < RADIUS_PT + 0.5 * RING_PT, "{farthest}");
         let is_under = |rect: &[eframe::egui::epaint::Vertex]| {

@@ -80,7 +80,8 @@ impl DrawnView {
         }
         if let Some(done) = self.coming.as_ref().and_then(|coming| coming.try_recv().ok()) {
             self.coming = None;
-            self.texture = done.and_then(|picture| loaded(ctx, "view of the surface", &picture));
+            self.texture =
+                done.and_then(|picture| load_texture(ctx, "view of the surface", &picture));
             ctx.request_repaint();
         }
         Ok(self.texture.as_ref())
@@ -172,7 +173,7 @@ fn inset(painter: &Painter, texture: &TextureHandle, anchors: usize) {
 }
 
 /// A picture as a texture, shrunk to a size that any driver takes.
-pub fn loaded(ctx: &egui::Context, name: &str, picture: &Picture) -> Option<TextureHandle> {
+pub fn load_texture(ctx: &egui::Context, name: &str, picture: &Picture) -> Option<TextureHandle> {
     const LARGEST: u32 = 2048;
     let longer = picture.size.width.max(picture.size.height);
     let step = longer.div_ceil(LARGEST).max(1) as usize;

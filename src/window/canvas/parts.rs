@@ -96,7 +96,7 @@ impl PartMarks {
         if let Some((part, area)) = selected.and_then(area_of) {
             let look = Stroke::new(1.4, LIGHT);
             // While it is dragged, its last form moves with it.
-            let map = self.known.moved(&part.id);
+            let map = self.known.map_since(&part.id);
             let moved = |p: Vec2| to_screen(map.transform_point2(p));
             outline(painter, self.selected.runs(area, level), &moved, look);
             if tool == ToolKind::Shape {

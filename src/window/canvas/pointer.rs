@@ -196,7 +196,7 @@ impl PointerState {
         for event in events {
             self.pen.read_event(&event, ui.ctx().pixels_per_point(), now_secs);
             if let Event::Touch { phase, pos, .. } = &event {
-                self.touched(*phase, ours(*pos), now_secs, &mut listening);
+                self.touch(*phase, ours(*pos), now_secs, &mut listening);
             }
             while let Some(report) = self.pen.next() {
                 self.reports.push(report);
@@ -216,9 +216,9 @@ impl PointerState {
                         self.pull(&report, canvas.rect, &mut listening);
                     }
                     PenPhase::Down(_) => {}
-                    PenPhase::Move => self.moved(&report, &mut listening),
+                    PenPhase::Move => self.move_to(&report, &mut listening),
                     PenPhase::Up => {
-                        self.moved(&report, &mut listening);
+                        self.move_to(&report, &mut listening);
                         self.release(&mut listening);
                     }
                     PenPhase::Lost if self.holding == PointerGesture::Drawing => {
@@ -249,7 +249,7 @@ impl PointerState {
     }
 
     /// A finger, or a pen that reports itself as one. A tap with two fingers is undo.
-    fn touched(
+    fn touch(
         &mut self,
         phase: TouchPhase,
         is_here: bool,
@@ -336,7 +336,7 @@ impl PointerState {
         self.holding = PointerGesture::Drawing;
     }
 
-    fn moved(&mut self, report: &PenReport, listening: &mut FrameInput) {
+    fn move_to(&mut self, report: &PenReport, listening: &mut FrameInput) {
         let (pos, by) = (report.at, report.at - self.last);
         if by == eframe::egui::Vec2::ZERO {
             return;

@@ -67,7 +67,7 @@ impl SecondView {
         let was_fitting = CanvasView::fitting(size, self.area_pt);
         let known = self.view.filter(|(key, view)| *key == open.key && *view != was_fitting);
         let view = known.map_or(fitting, |(_, view)| view);
-        let view = moved(ui, rect, &response, view).unwrap_or(view);
+        let view = drag_view(ui, rect, &response, view).unwrap_or(view);
         let view = if response.double_clicked() { fitting } else { view };
         (self.view, self.area_pt) = (Some((open.key, view)), area_pt);
         let middle = rect.center();
@@ -77,7 +77,7 @@ impl SecondView {
 }
 
 /// The view after this frame's drags and wheel.
-fn moved(
+fn drag_view(
     ui: &Ui,
     rect: Rect,
     response: &eframe::egui::Response,

@@ -38,7 +38,7 @@ impl UnwrappedSheet {
     }
 
     /// Tiles of the picture were painted.
-    pub fn changed(&mut self, tiles: impl Iterator<Item = TileAt>) {
+    pub fn mark_changed(&mut self, tiles: impl Iterator<Item = TileAt>) {
         if let Some(changed) = &mut self.changed {
             changed.extend(tiles);
         }
@@ -211,7 +211,7 @@ mod tests {
         let mut painted = plain.clone();
         let tile = TileAt::of_pixel(150, 50);
         painted.set(tile, Tile::from_pixels([255, 0, 0, 255].repeat(TILE * TILE)).map(Arc::new));
-        sheet.changed([tile].into_iter());
+        sheet.mark_changed([tile].into_iter());
         assert!(sheet.follow(&ctx, &layout, &painted));
         assert_eq!(sheet.shown.grid.pixel(x, y), [255, 0, 0, 255]);
         let (x, y) = at(vec2(20.0, 50.0));

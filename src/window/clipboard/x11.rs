@@ -54,7 +54,7 @@ pub fn picture(most_bytes: u64) -> Result<Option<PictureFile>> {
 }
 
 fn failure(error: impl ToString) -> Error {
-    Error::unsupported("clipboard", error)
+    Error::unsupported_file("clipboard", error)
 }
 
 /// Asks the owner of the clipboard for its content, which it puts into a property of a window of
@@ -119,7 +119,7 @@ impl SelectionReader {
             CURRENT_TIME,
         );
         asked.map_err(failure)?;
-        let answer = self.awaited(|event| match event {
+        let answer = self.await_event(|event| match event {
             Event::SelectionNotify(answer)
                 if answer.requestor == window && answer.target == target =>
             {
@@ -136,7 +136,7 @@ impl SelectionReader {
         }
         let mut bytes = Vec::new();
         loop {
-            self.awaited(|event| match event {
+            self.await_event(|event| match event {
                 Event::PropertyNotify(changed) => {
                     let is_ours = changed.window == window && changed.atom == property;
                     (is_ours && changed.state == Property::NEW_VALUE).then_some(())
@@ -178,7 +178,7 @@ impl SelectionReader {
     }
 
     /// The first event that is meant; others are passed over.
-    fn awaited<T>(&self, meant: impl Fn(Event) -> Option<T>) -> Result<T> {
+    fn await_event<T>(&self, meant: impl Fn(Event) -> Option<T>) -> Result<T> {
         self.connection.flush().map_err(failure)?;
         let began = Instant::now();
         while began.elapsed() < PATIENCE {

@@ -24,7 +24,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Redo",
         &[ctrl_shift(Key::Z), ctrl(Key::Y)],
         "Redo the last undone step",
-        |session| session.active().is_some_and(|open| open.history.undone().is_some()),
+        |session| session.active().is_some_and(|open| open.history.redo_name().is_some()),
         |_, requests| requests.act(Action::Edit(EditAction::Redo {})),
     ),
     LINE,

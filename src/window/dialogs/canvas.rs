@@ -196,7 +196,7 @@ impl TurnDialog {
                 DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
             begin_with(&ui.add(angle).labelled_by(label.id));
         });
-        ui.weak(about(self.size, CanvasChange::turned(self.size, f64::from(self.degrees)).size()));
+        ui.weak(about(self.size, CanvasChange::turn(self.size, f64::from(self.degrees)).size()));
         answer(ui, requests, "Turn", CanvasAction::Turn { degrees: self.degrees })
     }
 }

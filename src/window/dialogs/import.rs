@@ -8,7 +8,7 @@ mod ways;
 use super::{DialogAnswer, buttons};
 use crate::Result;
 use crate::advice::with_advice;
-use crate::canvas::loaded;
+use crate::canvas::load_texture;
 use crate::document::SurfaceSource;
 use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
 use crate::file_purpose::FilePurpose;
@@ -121,7 +121,7 @@ impl ImportDialog {
         self.clicked = 0;
         self.lit.clear();
         if let Ok(import) = &found {
-            let now = self.flipped(&import.findings);
+            let now = self.flipped_axes(&import.findings);
             let file = self.shown_file().unwrap_or_default().to_owned();
             let first = match self.first.take() {
                 Some(known) if known.0 == file => known.1,
@@ -131,8 +131,10 @@ impl ImportDialog {
             let chosen = xor(now, first);
             self.clicked = self.ways().iter().position(|(_, flips)| *flips == chosen).unwrap_or(0);
             let shown = |flips: [bool; 2]| light_surface(&import.surface, xor(flips, chosen));
-            let pictures =
-                self.ways().iter().filter_map(|&(name, flips)| loaded(ctx, name, &shown(flips)?));
+            let pictures = self
+                .ways()
+                .iter()
+                .filter_map(|&(name, flips)| load_texture(ctx, name, &shown(flips)?));
             self.lit = pictures.collect();
         }
         self.found = Some(found);
@@ -150,7 +152,7 @@ impl ImportDialog {
     }
 
     /// Which axes were read flipped; for depth alone, both if near is bright.
-    fn flipped(&self, findings: &maps::Findings) -> [bool; 2] {
+    fn flipped_axes(&self, findings: &maps::Findings) -> [bool; 2] {
         if self.source.normal.is_some() {
             let normal = findings.normal.clone().unwrap_or_default();
             return [normal.flip_x.unwrap_or(false), normal.flip_y.unwrap_or(false)];
@@ -191,7 +193,7 @@ impl ImportDialog {
             Some(Err(error)) => {
                 drop(ui.colored_label(ui.visuals().error_fg_color, with_advice(error)))
             }
-            Some(Ok(_)) => self.understood(ui),
+            Some(Ok(_)) => self.show_findings(ui),
         }
         let is_doubtful = matches!(&self.found, Some(Ok(import)) if import.findings.is_doubtful());
         if is_doubtful {
@@ -278,7 +280,7 @@ impl ImportDialog {
     }
 
     /// Shows what was detected, and lets the user correct it.
-    fn understood(&mut self, ui: &mut Ui) {
+    fn show_findings(&mut self, ui: &mut Ui) {
         self.pictures(ui);
         if let Some(map) = &mut self.source.normal {
             let encodings: Vec<(Option<NormalEncoding>, &str)> = std::iter::once((None, "found"))

@@ -77,7 +77,7 @@ fn first((lost, _): (LostSession, bool)) -> LostSession {
 /// When the session began, its file, and a warning if recovery failed before.
 fn describe(lost: &LostSession) -> String {
     let age = lost.start_time().and_then(|begun| SystemTime::now().duration_since(begun).ok());
-    let begun = age.map(|age| format!("Started {} ago", spoken(age)));
+    let begun = age.map(|age| format!("Started {} ago", format_age(age)));
     let place = lost
         .file
         .as_ref()
@@ -87,7 +87,7 @@ fn describe(lost: &LostSession) -> String {
 }
 
 /// A time in the largest unit it fills.
-fn spoken(time: Duration) -> String {
+fn format_age(time: Duration) -> String {
     const MINUTE: u64 = 60;
     const HOUR: u64 = 60 * MINUTE;
     let secs = time.as_secs();
@@ -106,7 +106,8 @@ mod tests {
 
     #[test]
     fn times_are_spoken_in_the_largest_unit_they_fill() {
-        let said = [0, 119, 120, 7199, 7200, 172_800].map(|secs| spoken(Duration::from_secs(secs)));
+        let said =
+            [0, 119, 120, 7199, 7200, 172_800].map(|secs| format_age(Duration::from_secs(secs)));
         assert_eq!(
             said,
             ["0 seconds", "119 seconds", "2 minutes", "119 minutes", "2 hours", "2 days"]

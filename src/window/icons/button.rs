@@ -9,7 +9,7 @@ pub const BUTTON_PT: f32 = 24.0;
 
 /// A button with an icon and, for screen readers, tests and the tooltip, a name.
 pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, on: bool) -> Response {
-    sized_button(ui, icon, label, on, BUTTON_PT)
+    add_sized_button(ui, icon, label, on, BUTTON_PT)
 }
 
 /// A button that is on most of the time, so that only its icon says so.
@@ -29,7 +29,7 @@ pub fn quiet_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32
     response
 }
 
-pub fn sized_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32) -> Response {
+pub fn add_sized_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side_pt), Sense::click());
     let enabled = ui.is_enabled();
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, on, label));

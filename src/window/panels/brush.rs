@@ -2,7 +2,7 @@
 //! the list of brushes (`brushes`), the curve widget (`curve`).
 
 use super::curve;
-use crate::io::recipe::written_brush;
+use crate::io::recipe::brush_to_json;
 use crate::math::NumberSetting;
 use crate::paint::brush_options::{Bearing, DistanceMetric, Falloff, Spread};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     part(ui, "Mixing and stylus", mixing_and_stylus);
     part(ui, "Dynamics", dynamics);
     if let Some(brush) = changed {
-        requests.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
+        requests.act(Action::Hand(HandAction::Brush { brush: brush_to_json(&brush) }));
     }
 }
 

@@ -21,12 +21,12 @@ const GAP_PT: f32 = 3.0;
 /// The panel where it has a window of its own.
 pub fn show(ui: &mut Ui, session: &Session, view: &mut ColorView, requests: &mut UiRequests) {
     let area_pt = (0.8 * ui.available_width()).max(80.0).min(260.0);
-    fixed(ui, session, view, area_pt, requests);
+    show_area(ui, session, view, area_pt, requests);
 }
 
 /// The part that is always in sight: the area, so many points high, and the last colors in a row
 /// that never moves.
-pub fn fixed(
+pub fn show_area(
     ui: &mut Ui,
     session: &Session,
     view: &mut ColorView,
@@ -150,18 +150,18 @@ fn hsv(color: Color) -> [f32; 3] {
 
 /// The hue, saturation and value of a color; `label` keeps the hue while the color is gray.
 fn known_hsv(ui: &Ui, label: &str, color: Color) -> [f32; 3] {
-    let kept = ui.data(|data| data.get_temp::<(Color, [f32; 3])>(kept_id(label)));
+    let kept = ui.data(|data| data.get_temp::<(Color, [f32; 3])>(hue_id(label)));
     kept.filter(|(seen, _)| *seen == color).map_or_else(|| hsv(color), |(_, hsv)| hsv)
 }
 
-fn kept_id(label: &str) -> Id {
+fn hue_id(label: &str) -> Id {
     Id::unique(("hue", label.to_owned()))
 }
 
 /// The color of a hue, a saturation and a value, which are remembered.
 fn put(ui: &Ui, label: &str, hsv: [f32; 3], a: u8, done: bool) -> ValueChange<Color> {
     let to = srgb(hsv, a);
-    ui.data_mut(|data| data.insert_temp(kept_id(label), (to, hsv)));
+    ui.data_mut(|data| data.insert_temp(hue_id(label), (to, hsv)));
     ValueChange { to, done }
 }
 

@@ -30,7 +30,7 @@ pub fn points(curve: &Curve, span: f32) -> Vec<Vec2> {
 /// The curve through points of the square, of the kind of another.
 fn through(like: &Curve, points: Vec<Vec2>, span: f32) -> Option<Curve> {
     if like.is_additive() {
-        Curve::added(points.iter().map(|p| vec2(p.x, (2.0 * p.y - 1.0) * span)).collect())
+        Curve::additive(points.iter().map(|p| vec2(p.x, (2.0 * p.y - 1.0) * span)).collect())
     } else {
         Curve::through(points)
     }
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_curve_that_adds_stands_in_the_square_around_its_middle_and_comes_back() {
-        let curve = Curve::added(vec![vec2(0.0, -2.0), vec2(1.0, 4.0)]).unwrap();
+        let curve = Curve::additive(vec![vec2(0.0, -2.0), vec2(1.0, 4.0)]).unwrap();
         let span = span_of(&curve);
         assert_eq!((span, points(&curve, span)), (5.0, vec![vec2(0.0, 0.3), vec2(1.0, 0.9)]));
         let Some(Curve::Added(back)) = through(&curve, points(&curve, span), span) else {

@@ -31,14 +31,14 @@ pub fn show(ui: &mut Ui, document: &Document, layer: &Layer, setter: &mut LayerS
             ui.separator();
             if let Some(changed) = settings(ui, document, effect, setter) {
                 let i = chosen.unwrap_or_default();
-                let effects = changed_at(layer, i, changed.to);
+                let effects = with_effect_at(layer, i, changed.to);
                 setter.set(Property::Effects { effects }, changed.done);
             }
         }
     });
 }
 
-fn changed_at(layer: &Layer, i: usize, to: LayerEffect) -> Vec<LayerEffect> {
+fn with_effect_at(layer: &Layer, i: usize, to: LayerEffect) -> Vec<LayerEffect> {
     let mut all = layer.effects.to_vec();
     if let Some(effect) = all.get_mut(i) {
         *effect = to;
@@ -61,7 +61,7 @@ fn list(ui: &mut Ui, layer: &Layer, setter: &mut LayerSetter) -> Option<usize> {
             let shown = check_box(ui, &mut on, "").on_hover_text("Show this effect");
             set_accessible_name(&shown, &format!("Show {} {}", label.to_lowercase(), i + 1));
             if shown.changed() {
-                set(setter, changed_at(layer, i, LayerEffect { on, ..effect.clone() }));
+                set(setter, with_effect_at(layer, i, LayerEffect { on, ..effect.clone() }));
             }
             let hint = effect.kind.hint();
             if ui.selectable_label(i == chosen, label).on_hover_text(hint).clicked() {

@@ -75,7 +75,7 @@ pub fn show(
         .auto_shrink([false, false])
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 1.0;
-            let rows = filter::current(ui).listed(document, |group| row::is_folded(ui, group));
+            let rows = filter::current(ui).list_rows(document, |group| row::is_folded(ui, group));
             let listed: Vec<LayerId> = rows.iter().map(|(layer, _)| layer.id).collect();
             for (layer, depth) in &rows {
                 let Some(path) = LayerPath::of(document, layer.id) else { continue };

@@ -86,7 +86,7 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
         }
     });
     let Some(mask) = &layer.mask else { return };
-    if let Some(numbers) = mask.derived().and_then(|derived| mask_numbers(ui, derived)) {
+    if let Some(numbers) = mask.derived_mask().and_then(|derived| mask_numbers(ui, derived)) {
         setter.take(Some(numbers.map(|derived| Property::Mask { mask: Some(derived) })));
     }
     if let Some(on) = check(ui, "Invert mask", "Paint where the mask is dark", mask.invert) {

@@ -7,7 +7,7 @@ pub use keys::MenuKeys;
 
 use crate::commands::{MENUS, MenuCommand};
 use crate::file_pictures::FilePictures;
-use crate::icons::{Icon, sized_button};
+use crate::icons::{Icon, add_sized_button};
 use crate::keymap::key_text;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, SelectionAction};
@@ -47,7 +47,7 @@ pub fn show(
                             entry(ui, session, settings, command, requests);
                             match command.name {
                                 "Open…" => recent_files(ui, &settings.recent, pictures, requests),
-                                "Keep selection…" => kept_selections(ui, session, requests),
+                                "Keep selection…" => show_kept_selections(ui, session, requests),
                                 _ => {}
                             }
                         }
@@ -121,7 +121,7 @@ fn recent_files(
 }
 
 /// The selections that the document keeps.
-fn kept_selections(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+fn show_kept_selections(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let kept = session.active().map_or(&[][..], |open| &open.document().selections);
     ui.add_enabled_ui(!kept.is_empty(), |ui| {
         ui.menu_button("Select kept", |ui| {
@@ -152,7 +152,7 @@ pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                 requests.act(Action::File(FileAction::Show { index }));
             }
             let close =
-                sized_button(ui, Icon::Close, &format!("Close {}", open.title()), false, 18.0);
+                add_sized_button(ui, Icon::Close, &format!("Close {}", open.title()), false, 18.0);
             if close.clicked() || response.middle_clicked() {
                 requests.request(WindowRequest::Close(index));
             }

@@ -13,7 +13,7 @@ pub fn show(ui: &mut Ui, stops: &[GradientStop]) -> Option<ValueChange<Vec<Gradi
         if let Some(slot) = stops.get_mut(i) {
             *slot = stop;
         }
-        sorted(stops)
+        sort_stops(stops)
     };
     let mut changed = None;
     for (i, stop) in stops.iter().enumerate() {
@@ -38,12 +38,12 @@ pub fn show(ui: &mut Ui, stops: &[GradientStop]) -> Option<ValueChange<Vec<Gradi
         let mut stops = stops.to_vec();
         let color = stops.last().map_or(Color::WHITE, |stop| stop.color);
         stops.push(GradientStop { t: 0.5, color });
-        changed = Some(ValueChange { to: sorted(stops), done: true });
+        changed = Some(ValueChange { to: sort_stops(stops), done: true });
     }
     changed
 }
 
-fn sorted(mut stops: Vec<GradientStop>) -> Vec<GradientStop> {
+fn sort_stops(mut stops: Vec<GradientStop>) -> Vec<GradientStop> {
     stops.sort_by(|a, b| a.t.total_cmp(&b.t));
     stops
 }

@@ -38,7 +38,7 @@ fn leaning(normal: Vec3) -> [f32; 2] {
 }
 
 /// The direction that leans this far; at most a silhouette.
-fn leaned([right, up]: [f32; 2]) -> Vec3 {
+fn direction_from_lean([right, up]: [f32; 2]) -> Vec3 {
     let flat =
         crate::math::vec2(right.to_radians().sin(), up.to_radians().sin()).clamp_length_max(0.999);
     vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt())
@@ -68,10 +68,11 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     ui.label("right");
     let changed =
         number("Lean right", "How far it leans to the right; below 0 to the left").field(ui, right);
-    to = changed.map(|c| ShapeSettings { normal: leaned([c.to, up]), ..now }).or(to);
+    to = changed.map(|c| ShapeSettings { normal: direction_from_lean([c.to, up]), ..now }).or(to);
     ui.label("up");
     let changed = number("Lean up", "How far it leans up; below 0 down").field(ui, up);
-    to = changed.map(|c| ShapeSettings { normal: leaned([right, c.to]), ..now }).or(to);
+    to =
+        changed.map(|c| ShapeSettings { normal: direction_from_lean([right, c.to]), ..now }).or(to);
     if ui.button("Facing you").on_hover_text("Touches level the surface").clicked() {
         to = Some(ShapeSettings { normal: Vec3::Z, ..now });
     }
@@ -145,13 +146,13 @@ mod tests {
     #[test]
     fn a_direction_leans_as_far_as_its_numbers_say() {
         for told in [[0.0, 0.0], [30.0, -40.0], [-60.0, 10.0]] {
-            let back = leaning(leaned(told));
+            let back = leaning(direction_from_lean(told));
             assert!(
                 (back[0] - told[0]).abs() < 1e-3 && (back[1] - told[1]).abs() < 1e-3,
                 "{told:?} {back:?}"
             );
         }
-        let beyond = leaned([80.0, 80.0]);
+        let beyond = direction_from_lean([80.0, 80.0]);
         assert!(beyond.is_normalized() && beyond.z > 0.0);
     }
 }

@@ -59,7 +59,7 @@ pub fn show<W: JobWindow>(
             );
         }
         ui.separator();
-        if let Some(rect) = canvas.selected().filter(|_| document.active_selection.is_some()) {
+        if let Some(rect) = canvas.selected_rect().filter(|_| document.active_selection.is_some()) {
             let about = format!(
                 "Selected {} × {} at {}, {}",
                 rect.width(),
@@ -94,7 +94,7 @@ pub fn show<W: JobWindow>(
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if let Some(memory) = details {
-                measured(ui, session, canvas, (memory, kept_share), requests);
+                show_measurements(ui, session, canvas, (memory, kept_share), requests);
             }
             if document.surface.is_none() {
                 ui.weak("No surface: marks stay flat");
@@ -104,7 +104,7 @@ pub fn show<W: JobWindow>(
 }
 
 /// The time of the last redraw, and the memory of the document.
-fn measured(
+fn show_measurements(
     ui: &mut Ui,
     session: &Session,
     canvas: &Canvas,

@@ -77,7 +77,7 @@ fn list(
                 let row = Button::selectable(is_on, name).min_size(vec2(ui.available_width(), 0.0));
                 if ui.add(row).clicked() {
                     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
-                    let strokes = toggled(selected, index, adds);
+                    let strokes = toggle_selected(selected, index, adds);
                     requests.act(Action::Stroke(StrokeAction::Choose {
                         layer: layer.clone(),
                         strokes,
@@ -90,7 +90,7 @@ fn list(
 }
 
 /// The selection after a click on a row.
-fn toggled(selected: &[usize], index: usize, adds: bool) -> Vec<usize> {
+fn toggle_selected(selected: &[usize], index: usize, adds: bool) -> Vec<usize> {
     match (adds, selected.contains(&index)) {
         (false, _) => vec![index],
         (true, true) => selected.iter().copied().filter(|&other| other != index).collect(),

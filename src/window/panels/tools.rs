@@ -1,7 +1,7 @@
 //! The tool bar, and the two current colors.
 //! Floor 7.
 
-use crate::icons::{Icon, sized_button};
+use crate::icons::{Icon, add_sized_button};
 use crate::keymap::{KeyTarget, Keymap, key_text};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
@@ -94,7 +94,7 @@ fn button(
     (tool, side): (ToolKind, f32),
     requests: &mut UiRequests,
 ) {
-    let response = sized_button(ui, Icon::Tool(tool), tool.label(), session.tool == tool, side);
+    let response = add_sized_button(ui, Icon::Tool(tool), tool.label(), session.tool == tool, side);
     let keys = keymap
         .of(KeyTarget::Tool(tool))
         .first()
@@ -139,7 +139,10 @@ fn colors(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         let layout = Layout::left_to_right(Align::Min);
         let mut corner =
             ui.new_child(UiBuilder::new().max_rect(square(at, BUTTON_PT)).layout(layout));
-        if sized_button(&mut corner, icon, label, false, BUTTON_PT).on_hover_text(hint).clicked() {
+        if add_sized_button(&mut corner, icon, label, false, BUTTON_PT)
+            .on_hover_text(hint)
+            .clicked()
+        {
             requests.act(Action::Hand(action));
         }
     }

@@ -44,7 +44,7 @@ impl WindowPen {
                 (phase == TouchPhase::Cancel).then_some(PenPhase::Lost)
             }
             Event::PointerMoved(at) => {
-                self.moved(at, px_per_pt, now_secs);
+                self.move_to(at, px_per_pt, now_secs);
                 Some(PenPhase::Move)
             }
             Event::PointerButton { pos, button, pressed, .. } => {
@@ -67,7 +67,7 @@ impl WindowPen {
         }
     }
 
-    fn moved(&mut self, at: Pos2, px_per_pt: f32, now_secs: f64) {
+    fn move_to(&mut self, at: Pos2, px_per_pt: f32, now_secs: f64) {
         let at_px = [at.x * px_per_pt, at.y * px_per_pt].map(f64::from);
         if let Some(held) = self.tablet.as_ref().and_then(|tablet| tablet.borrow_mut().take(at_px))
         {
@@ -164,7 +164,7 @@ mod tests {
         let mut pen = WindowPen::default();
         pen.on(tablet.clone());
         for (at_px, pressure) in [([33.25, 10.5], 250.0), ([36.0, 12.0], 500.0)] {
-            tablet.borrow_mut().moved(at_px);
+            tablet.borrow_mut().move_to(at_px);
             tablet.borrow_mut().axis(2, pressure);
         }
         pen.read_event(&Event::PointerMoved(pos2(33.25 / 1.5, 7.0)), 1.5, 0.0);
@@ -185,11 +185,11 @@ mod tests {
                 axes: first.into_iter().collect(),
                 is_eraser: false,
             });
-            tablet.borrow_mut().moved([3.0, 4.0]);
+            tablet.borrow_mut().move_to([3.0, 4.0]);
             pen.read_event(&Event::PointerMoved(pos2(3.0, 4.0)), 1.0, 0.0);
             pen.read_event(&button(true), 1.0, 0.0);
             tablet.borrow_mut().follow(PenAxes { device: 8, ..PenAxes::default() });
-            tablet.borrow_mut().moved([50.0, 60.0]);
+            tablet.borrow_mut().move_to([50.0, 60.0]);
             pen.read_event(&Event::PointerMoved(pos2(50.0, 60.0)), 1.0, 0.0);
             std::iter::from_fn(|| pen.next()).skip(2).map(|r| (r.phase, r.at)).collect::<Vec<_>>()
         };

@@ -103,7 +103,7 @@ impl Tablet {
     }
 
     /// The pointer moved to a place of the window, px; its axes follow.
-    pub fn moved(&mut self, at_px: [f64; 2]) {
+    pub fn move_to(&mut self, at_px: [f64; 2]) {
         if self.motions.len() == MOST_MOTIONS {
             self.motions.pop_front();
         }
@@ -168,7 +168,7 @@ mod tests {
     fn each_motion_keeps_what_the_axes_told_after_it() {
         let mut pen = pen();
         for (x, pressure) in [(1.0, 500.0), (2.0, 1000.0), (3.0, 3000.0)] {
-            pen.moved([x, 0.0]);
+            pen.move_to([x, 0.0]);
             pen.axis(2, pressure);
         }
         pen.axis(3, 30.0);
@@ -185,7 +185,7 @@ mod tests {
     fn a_mouse_has_no_pressure_after_a_pen_had() {
         let mut tablet = pen();
         tablet.follow(PenAxes::default());
-        tablet.moved([5.0, 5.0]);
+        tablet.move_to([5.0, 5.0]);
         // The axis of a wheel is ignored.
         tablet.axis(3, 120.0);
         assert_eq!(tablet.take([5.0, 5.0]), Some(PenState::default()));
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn what_is_no_number_stays_none_and_an_empty_range_is_no_axis() {
         let mut pen = pen();
-        pen.moved([0.0, 0.0]);
+        pen.move_to([0.0, 0.0]);
         pen.axis(2, f64::NAN);
         assert!(pen.take([0.0, 0.0]).unwrap().pressure.unwrap().is_nan());
         assert_eq!(PenAxis::new(1, AxisMeaning::Pressure, (f64::NAN, 1.0), 0.0), None);
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn motions_that_nobody_reads_do_not_pile_up() {
         let mut pen = pen();
-        (0..10_000).for_each(|i| pen.moved([f64::from(i), 0.0]));
+        (0..10_000).for_each(|i| pen.move_to([f64::from(i), 0.0]));
         assert_eq!(pen.motions.len(), MOST_MOTIONS);
         pen.drop_motions();
         assert_eq!(pen.take([9_999.0, 0.0]), None);

@@ -89,7 +89,7 @@ impl DraftRender {
     /// Its passes take too long, and a coarser one is possible. The first does not count: it scaled
     /// everything down.
     pub fn is_slow(&self) -> bool {
-        self.step < COARSEST && self.pass.passes() > 1 && self.pass.took() > FRAME.mul_f32(1.6)
+        self.step < COARSEST && self.pass.passes() > 1 && self.pass.duration() > FRAME.mul_f32(1.6)
     }
 
     /// It was prepared, but no drag has used it.
@@ -99,6 +99,6 @@ impl DraftRender {
 
     pub fn is_quick_in_whole_pixels(&self) -> bool {
         let whole = (self.step * self.step) as f32 / DRAFT_SHARE;
-        self.pass.passes() > 1 && self.pass.took().mul_f32(whole) < FINE
+        self.pass.passes() > 1 && self.pass.duration().mul_f32(whole) < FINE
     }
 }

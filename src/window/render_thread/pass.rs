@@ -73,7 +73,7 @@ impl RenderPass {
         self.passes
     }
 
-    pub fn took(&self) -> Duration {
+    pub fn duration(&self) -> Duration {
         self.took
     }
 

@@ -33,7 +33,7 @@ fn without_memory_the_picture_waits_and_the_next_one_is_painted_whole() {
     let mut work = RenderWork::default();
     work.if_there_is_memory(|work| work.begin(wanted())).unwrap();
     let none: Result<Vec<u8>, _> =
-        work.if_there_is_memory(|_| memory::filled_or_unwind(usize::MAX / 2, 0u8));
+        work.if_there_is_memory(|_| memory::fill_or_unwind(usize::MAX / 2, 0u8));
     assert!(none.is_err() && !work.has_more(), "the thread does not try again at once");
     assert!(work.nothing().is_settled);
     work.if_there_is_memory(|work| work.begin(wanted())).unwrap();

@@ -31,10 +31,10 @@ pub fn show(
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let typing = response.id.with("typed");
     if ui.data(|data| data.get_temp::<bool>(typing)).unwrap_or_default() {
-        return typed(ui, field, value, rect, typing);
+        return edit_as_text(ui, field, value, rect, typing);
     }
     let along = Along { range: field.range.clone(), is_logarithmic: field.logarithmic };
-    let to = moved(ui, field, &along, value, &response);
+    let to = read_change(ui, field, &along, value, &response);
     tell(ui, field, value, &response);
     if ui.is_rect_visible(rect) {
         draw(ui, field, &along, to.unwrap_or(value), rect, &response);
@@ -77,7 +77,7 @@ struct Along {
 
 impl Along {
     /// What is drawn to scale: small numbers have more room where it is logarithmic.
-    fn scaled(&self, value: f32) -> f32 {
+    fn scale_value(&self, value: f32) -> f32 {
         let (low, high) = (*self.range.start(), *self.range.end());
         if !self.is_logarithmic {
             return value;
@@ -89,7 +89,7 @@ impl Along {
         value.signum() * (value.abs() / unit).ln_1p()
     }
 
-    fn unscaled(&self, scaled: f32) -> f32 {
+    fn unscale_value(&self, scaled: f32) -> f32 {
         let (low, high) = (*self.range.start(), *self.range.end());
         if !self.is_logarithmic {
             return scaled;
@@ -107,13 +107,13 @@ impl Along {
 
     /// The share of the bar's width at which a value is, in `[0, 1]`.
     fn share(&self, value: f32) -> f32 {
-        let [low, high] = [*self.range.start(), *self.range.end()].map(|end| self.scaled(end));
-        ((self.scaled(value) - low) / (high - low)).max(0.0).min(1.0)
+        let [low, high] = [*self.range.start(), *self.range.end()].map(|end| self.scale_value(end));
+        ((self.scale_value(value) - low) / (high - low)).max(0.0).min(1.0)
     }
 
     fn value(&self, share: f32) -> f32 {
-        let [low, high] = [*self.range.start(), *self.range.end()].map(|end| self.scaled(end));
-        let value = self.unscaled(low + (high - low) * share.max(0.0).min(1.0));
+        let [low, high] = [*self.range.start(), *self.range.end()].map(|end| self.scale_value(end));
+        let value = self.unscale_value(low + (high - low) * share.max(0.0).min(1.0));
         value.max(*self.range.start()).min(*self.range.end())
     }
 
@@ -124,7 +124,7 @@ impl Along {
 }
 
 /// What the pointer, the arrow keys or a screen reader make of the value.
-fn moved(
+fn read_change(
     ui: &Ui,
     field: &NumberField<'_>,
     along: &Along,
@@ -254,7 +254,7 @@ fn texts(ui: &Ui, field: &NumberField<'_>, value: f32, rect: Rect, color: egui::
     let font = TextStyle::Body.resolve(ui.style());
     let strong = ui.visuals().strong_text_color();
     let right = pos2(rect.right() - INSET_PT, rect.center().y);
-    let shown = painter.text(right, Align2::RIGHT_CENTER, field.written(value), font, strong);
+    let shown = painter.text(right, Align2::RIGHT_CENTER, field.format(value), font, strong);
     let room = (shown.left() - 6.0 - rect.left() - INSET_PT).max(0.0);
     let name = WidgetText::from(egui::RichText::new(field.label).color(color));
     let name = name.into_galley(ui, Some(TextWrapMode::Truncate), room, TextStyle::Body);
@@ -263,7 +263,7 @@ fn texts(ui: &Ui, field: &NumberField<'_>, value: f32, rect: Rect, color: egui::
 }
 
 /// The field in its place while the number is typed.
-fn typed(
+fn edit_as_text(
     ui: &mut Ui,
     field: &NumberField<'_>,
     value: f32,
@@ -275,7 +275,7 @@ fn typed(
     let number = DragValue::new(&mut to)
         .range(field.range.clone())
         .update_while_editing(false)
-        .custom_formatter(|value, _| field.written(value as f32))
+        .custom_formatter(|value, _| field.format(value as f32))
         .custom_parser(move |text| {
             let digits = text.trim().trim_end_matches(suffix.trim()).trim().replace(',', ".");
             digits.parse::<f64>().ok().map(|value| value / factor)

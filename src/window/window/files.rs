@@ -46,10 +46,10 @@ impl MainWindow {
             for file in files {
                 match storage::kind_of(&file) {
                     Ok(kind) => known.push((file, kind)),
-                    Err(error) => done.push(JobResult::failed(error)),
+                    Err(error) => done.push(JobResult::from_error(error)),
                 }
             }
-            let SortedFiles { objects, others } = storage::sorted(known);
+            let SortedFiles { objects, others } = storage::sort_files(known);
             // Of maps the import dialog shows the conventions first.
             done.extend(objects.into_iter().map(|source| {
                 let dialog = import::ImportDialog::of(source);
@@ -111,7 +111,7 @@ impl MainWindow {
     }
 
     /// What the user chose in the system's dialog for files.
-    fn answered(&mut self, purpose: FilePurpose, answer: FileAnswer) {
+    fn take_file_answer(&mut self, purpose: FilePurpose, answer: FileAnswer) {
         match answer {
             FileAnswer::File(file) => self.use_chosen_file(purpose, file),
             FileAnswer::Canceled => {}
@@ -217,7 +217,7 @@ impl MainWindow {
             }
             FilePurpose::ExportMaps => self.export_maps_to(file),
             FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportUnwrapped => {
-                self.chosen_to_write(purpose, file);
+                self.write_chosen_file(purpose, file);
             }
         }
     }
@@ -234,7 +234,7 @@ impl MainWindow {
         self.tell_notes();
     }
 
-    fn chosen_to_write(&mut self, purpose: FilePurpose, file: PathBuf) {
+    fn write_chosen_file(&mut self, purpose: FilePurpose, file: PathBuf) {
         let named = purpose.final_name(file.clone(), self.export.extension);
         let was_asked = named == file && named.exists();
         let over = if was_asked { Overwrite::Anything } else { Overwrite::Nothing };
@@ -260,7 +260,7 @@ impl MainWindow {
     }
 
     pub(super) fn ask_for(&mut self, purpose: FilePurpose, name: &str) {
-        let then = move |window: &mut Self, answer| window.answered(purpose, answer);
+        let then = move |window: &mut Self, answer| window.take_file_answer(purpose, answer);
         let asks_itself = self.asks_itself || self.settings.preferences.has_own_file_dialog;
         files::request(&mut self.jobs, purpose, name, asks_itself, then);
     }

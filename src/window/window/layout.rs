@@ -112,7 +112,13 @@ impl MainWindow {
             ui.add_space(7.0);
             // Never so large that brushes and layers have no room.
             let area_pt = (0.4 * height_pt - 186.0).max(58.0).min(190.0);
-            panels::colors::fixed(ui, &self.session, &mut self.settings.color, area_pt, requests);
+            panels::colors::show_area(
+                ui,
+                &self.session,
+                &mut self.settings.color,
+                area_pt,
+                requests,
+            );
             ui.separator();
         }
         let front = match self.settings.layout.front {
@@ -136,9 +142,9 @@ impl MainWindow {
                 // Aligned on the left with the layers beneath.
                 let above =
                     above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
-                above.show(ui, |ui| self.fronted(ui, &strip, front, requests));
+                above.show(ui, |ui| self.show_front(ui, &strip, front, requests));
             } else {
-                self.fronted(ui, &strip, front, requests);
+                self.show_front(ui, &strip, front, requests);
             }
         }
         if has_below {
@@ -161,7 +167,7 @@ impl MainWindow {
     }
 
     /// The tabs of the panels that share the area, and the one in front.
-    fn fronted(
+    fn show_front(
         &mut self,
         ui: &mut Ui,
         strip: &[(PanelKind, &str)],

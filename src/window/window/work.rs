@@ -82,14 +82,14 @@ impl MainWindow {
         self.jobs.start(name, JobKind::Working, move |progress| {
             let result = pending.run(progress);
             let is_saved = matches!(result, WriteResult::Saved(..));
-            let done = JobResult::then(|window: &mut Self, ctx| window.written(ctx, result));
+            let done = JobResult::then(|window: &mut Self, ctx| window.finish_write(ctx, result));
             if is_saved { done.even_if_canceled() } else { done }
         });
     }
 
-    fn written(&mut self, ctx: &egui::Context, result: WriteResult) {
+    fn finish_write(&mut self, ctx: &egui::Context, result: WriteResult) {
         match result {
-            WriteResult::Saved(saving, stamp) => self.saved(ctx, *saving, stamp),
+            WriteResult::Saved(saving, stamp) => self.finish_save(ctx, *saving, stamp),
             WriteResult::Loses(saving) => {
                 self.dialogs.push(Dialog::Losses(losses::Losses::new(saving)));
             }
@@ -110,7 +110,7 @@ impl MainWindow {
         }
     }
 
-    fn saved(&mut self, ctx: &egui::Context, saving: Saving, stamp: FileStamp) {
+    fn finish_save(&mut self, ctx: &egui::Context, saving: Saving, stamp: FileStamp) {
         let Saving { key, file, document, then, .. } = saving;
         if let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key) {
             open.mark_saved(document, file.clone(), stamp);
@@ -205,7 +205,7 @@ impl MainWindow {
                 })
             }
             (Err(_), Some(_)) => JobResult::then(paste_own),
-            (Err(error), None) => JobResult::failed(error),
+            (Err(error), None) => JobResult::from_error(error),
         });
     }
 
@@ -261,7 +261,7 @@ impl MainWindow {
             };
             match edit {
                 Some(Ok(edit)) => JobResult::then(move |window: &mut Self, _| {
-                    window.edited(key, action, &from, edit);
+                    window.finish_edit(key, action, &from, edit);
                 }),
                 Some(Err(why)) => JobResult::then(|window: &mut Self, _| window.jobs.say(why)),
                 None => JobResult::nothing(),
@@ -271,7 +271,7 @@ impl MainWindow {
     }
 
     /// An edit of a document, by its key, that took long. `from`: what was edited.
-    fn edited(&mut self, key: usize, action: Action, from: &Document, edit: Edit) {
+    fn finish_edit(&mut self, key: usize, action: Action, from: &Document, edit: Edit) {
         let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key)
         else {
             return;
@@ -297,7 +297,7 @@ impl MainWindow {
         self.jobs.start(name.into(), JobKind::Editing, move |progress| {
             match action.perform_long(&from, progress) {
                 Ok(Some(shape)) => JobResult::then(move |window: &mut Self, _| {
-                    window.shaped(key, action, &from, shape);
+                    window.finish_shape(key, action, &from, shape);
                 }),
                 Ok(None) => JobResult::nothing(),
                 Err(why) => {
@@ -326,7 +326,7 @@ impl MainWindow {
     }
 
     /// A drawing was given a shape. `from`: the document before.
-    fn shaped(&mut self, key: usize, action: PartAction, from: &Document, shape: FirstShape) {
+    fn finish_shape(&mut self, key: usize, action: PartAction, from: &Document, shape: FirstShape) {
         let Some(open) = self.session.open_documents.iter_mut().find(|other| other.key == key)
         else {
             return;

@@ -4,7 +4,7 @@
 
 use super::selections::{CarriedSelections, moved_rect, turned_rect};
 use super::{CanvasChange, TURNED};
-use crate::document::apply_transform::{in_place, placed};
+use crate::document::apply_transform::{apply_to_placement, in_place};
 use crate::document::layer::on_canvas::on_canvas;
 use crate::document::{
     Content, DerivedMask, DetailSource, Group, InkLayer, Layer, LayerId, LayerMap, LayerMask,
@@ -12,7 +12,7 @@ use crate::document::{
 };
 use crate::math::{Mat2, PlaneMap, Size, Vec2, vec2, vec3};
 use crate::paint::{FormDrawing, Gradient, PlacedImage, Stroke};
-use crate::raster::warp::{warped, warped_plane_onto};
+use crate::raster::warp::{warp_plane_onto, warp_tiles};
 use crate::raster::{BlendMode, TileAt};
 use crate::shading::{LightKind, Shading};
 use crate::surface::plane_piece::PlanePiece;
@@ -128,7 +128,7 @@ impl Carrier<'_> {
         let kind = match &mask.kind {
             MaskKind::File { file, coverage } => {
                 let coverage =
-                    warped_plane_onto(coverage, &self.layer_map(frame), TURNED, self.change.to);
+                    warp_plane_onto(coverage, &self.layer_map(frame), TURNED, self.change.to);
                 MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) }
             }
             // Regions lie on the canvas.
@@ -195,7 +195,7 @@ impl Carrier<'_> {
                     by.map_or_else(|| turned_rect(bounds, frame), |by| moved_rect(bounds, by));
                 let wanted: Vec<TileAt> = TileAt::covering(area).collect();
                 PixelLayer {
-                    tiles: warped(&pixels.tiles, &map, TURNED, &wanted),
+                    tiles: warp_tiles(&pixels.tiles, &map, TURNED, &wanted),
                     ..PixelLayer::default()
                 }
             }
@@ -209,7 +209,7 @@ impl Carrier<'_> {
             self.change.to,
             image.source.picture.size,
         );
-        next.placement = placed(&placement, frame).unwrap_or(placement);
+        next.placement = apply_to_placement(&placement, frame).unwrap_or(placement);
         let at = |p: Vec2| frame.to_canvas(p).unwrap_or(p);
         next.bend.go_along(at, |p| frame.stretch_at(p).unwrap_or(Mat2::IDENTITY));
         next.bend.operator = image.bend.operator.on_canvas_of(self.ratio());
@@ -266,7 +266,7 @@ impl Carrier<'_> {
             DetailSource::Map { map, .. } => normals.placement.on_canvas_of(from, to, map.size()),
             DetailSource::Grain(_) => normals.placement,
         };
-        let mut placement = placed(&placement, frame).unwrap_or(placement);
+        let mut placement = apply_to_placement(&placement, frame).unwrap_or(placement);
         if let DetailSource::Grain(_) = &normals.source {
             // Noise is counted from the canvas's middle.
             let turn = Mat2::from_angle(-placement.rotation.to_radians());

@@ -11,7 +11,7 @@ use crate::document::LayerMap;
 use crate::document::parts::{OutlineSource, Part, PartKind};
 use crate::math::plane_map::orthogonal;
 use crate::math::{Affine2, Mat2, PlaneMap, Rect, Size, Vec2, vec2, vec3};
-use crate::raster::warp::warped_plane_onto;
+use crate::raster::warp::warp_plane_onto;
 use crate::raster::{Plane, Resampling};
 use crate::shape::Primitive;
 use crate::surface::Surface;
@@ -147,7 +147,7 @@ impl Frame {
         let reach = Size::new(wide.width.max(to.width), wide.height.max(to.height));
         let map = PlaneMap::translation(vec2(-2.0, -2.0)).then(&self.map);
         let map = LayerMap::of_plane(map, Resampling::Smooth, reach);
-        warped_plane_onto(&bordered, &map, Resampling::Smooth, to)
+        warp_plane_onto(&bordered, &map, Resampling::Smooth, to)
     }
 }
 

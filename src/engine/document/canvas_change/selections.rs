@@ -6,7 +6,7 @@ use crate::document::LayerMap;
 use crate::math::plane_map::PixelMove;
 use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::{Selection, StrokeSelection};
-use crate::raster::warp::warped_plane_onto;
+use crate::raster::warp::warp_plane_onto;
 use crate::raster::{CoverageGrid, Resampling, TILE};
 use crate::surface::region::SurfaceRegion;
 use std::cell::RefCell;
@@ -64,12 +64,12 @@ impl<'c> CarriedSelections<'c> {
                     }
                 }
             }),
-            None => self.turned(grid, rect.grown(2)),
+            None => self.sample_turned(grid, rect.grown(2)),
         }
     }
 
     /// Coverage of a rectangle, sampled once.
-    fn turned(&self, grid: &CoverageGrid, rect: Rect) -> CoverageGrid {
+    fn sample_turned(&self, grid: &CoverageGrid, rect: Rect) -> CoverageGrid {
         let bounds = turned_rect(rect, &self.change.map);
         let shift = |x: i32, y: i32| PlaneMap::translation(vec2(x as f32, y as f32));
         let plane =
@@ -77,7 +77,7 @@ impl<'c> CarriedSelections<'c> {
         let size = Size::new(bounds.width() as u32, bounds.height() as u32);
         let filter = Resampling::Smooth;
         let map = LayerMap::of_plane(plane, filter, size);
-        let turned = warped_plane_onto(&grid.to_plane(rect), &map, filter, size);
+        let turned = warp_plane_onto(&grid.to_plane(rect), &map, filter, size);
         CoverageGrid::from_plane(&turned, bounds.x0, bounds.y0)
     }
 }

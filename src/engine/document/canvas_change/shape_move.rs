@@ -198,7 +198,7 @@ fn carry_layers(
 /// A layer whose mask is a region of the surface about a point, with that point moved.
 fn masked(layer: &Arc<Layer>, map: &PlaneMap) -> Arc<Layer> {
     let Some(mask) = &layer.mask else { return layer.clone() };
-    let Some(DerivedMask::Region(region)) = mask.derived() else { return layer.clone() };
+    let Some(DerivedMask::Region(region)) = mask.derived_mask() else { return layer.clone() };
     let at = map.to_canvas(region.at).unwrap_or(region.at);
     let kind = DerivedMask::Region(SurfaceRegion { at, ..region }).into();
     let mask = LayerMask { kind, ..mask.clone() };

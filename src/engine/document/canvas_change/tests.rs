@@ -140,8 +140,8 @@ fn exact() -> Vec<(&'static str, CanvasChange)> {
         ("left", CanvasChange::quarter_turns(SIZE, 1)),
         ("round", CanvasChange::quarter_turns(SIZE, 2)),
         ("right", CanvasChange::quarter_turns(SIZE, -1)),
-        ("mirror", CanvasChange::mirrored(SIZE, CanvasMirror::LeftRight)),
-        ("upside down", CanvasChange::mirrored(SIZE, CanvasMirror::UpDown)),
+        ("mirror", CanvasChange::mirror(SIZE, CanvasMirror::LeftRight)),
+        ("upside down", CanvasChange::mirror(SIZE, CanvasMirror::UpDown)),
         ("larger", crop(-7, -11, 170, 130)),
         ("crop", crop(31, 17, 101, 81)),
         ("aside", crop(40, -20, 190, 60)),
@@ -189,7 +189,7 @@ fn what_comes_round_has_the_same_bytes_beyond_the_canvas_too() {
         |document: &Document, change: CanvasChange| document.on_other_canvas(&change).unwrap();
     let turned =
         (0..4).fold(start.clone(), |d, _| step(&d, CanvasChange::quarter_turns(d.size, 1)));
-    let mirror = |d: &Document| step(d, CanvasChange::mirrored(d.size, CanvasMirror::LeftRight));
+    let mirror = |d: &Document| step(d, CanvasChange::mirror(d.size, CanvasMirror::LeftRight));
     let mirrored = mirror(&mirror(&start));
     let crop = |d: &Document, x: i32| {
         step(d, CanvasChange::crop(d.size, Rect::new(x, x, 60 + 3 * x, 50 + 3 * x)).unwrap())
@@ -263,16 +263,16 @@ fn ten_degrees_and_back_thirty_six_times_is_the_untouched_picture() {
     let start = on_dome(paint());
     let mut here = start.clone();
     for _ in 0..36 {
-        here = here.on_other_canvas(&CanvasChange::turned(here.size, 10.0)).unwrap();
+        here = here.on_other_canvas(&CanvasChange::turn(here.size, 10.0)).unwrap();
         assert!(here.size.width > SIZE.width && here.size.height > SIZE.height);
         here = here
-            .on_other_canvas(&CanvasChange::resized(here.size, SIZE, CanvasAnchor::Center).unwrap())
+            .on_other_canvas(&CanvasChange::resize(here.size, SIZE, CanvasAnchor::Center).unwrap())
             .unwrap();
         assert_eq!(here.size, SIZE);
     }
     assert!(here.layers[1].transform.is_none() && pixels(&here) == pixels(&start));
     assert!(picture(&here) == picture(&start));
-    let once = start.on_other_canvas(&CanvasChange::turned(SIZE, 10.0)).unwrap();
+    let once = start.on_other_canvas(&CanvasChange::turn(SIZE, 10.0)).unwrap();
     assert!(
         once.layers[1].transform.is_some() && pixels(&once) == pixels(&start),
         "kept as it was painted"
@@ -351,19 +351,18 @@ fn selections_go_along_once_for_all_that_share_them() {
 #[test]
 fn anchors_say_what_stays_in_place() {
     let corner = |anchor| {
-        let change = CanvasChange::resized(Size::new(10, 10), Size::new(17, 4), anchor).unwrap();
+        let change = CanvasChange::resize(Size::new(10, 10), Size::new(17, 4), anchor).unwrap();
         change.point(Vec2::ZERO)
     };
     assert_eq!(corner(CanvasAnchor::TopLeft), vec2(0.0, 0.0));
     assert_eq!(corner(CanvasAnchor::BottomRight), vec2(7.0, -6.0));
     assert_eq!(corner(CanvasAnchor::Center), vec2(3.0, -3.0));
-    assert!(CanvasChange::resized(SIZE, Size::new(0, 5), CanvasAnchor::Top).is_none());
+    assert!(CanvasChange::resize(SIZE, Size::new(0, 5), CanvasAnchor::Top).is_none());
     assert!(CanvasChange::crop(SIZE, Rect::new(5, 5, 5, 9)).is_none());
     assert!(
-        CanvasChange::turned(SIZE, f64::NAN).is_none()
-            && CanvasChange::turned(SIZE, 360.0).is_none()
+        CanvasChange::turn(SIZE, f64::NAN).is_none() && CanvasChange::turn(SIZE, 360.0).is_none()
     );
-    assert_eq!(CanvasChange::turned(SIZE, 450.0), CanvasChange::quarter_turns(SIZE, 1));
+    assert_eq!(CanvasChange::turn(SIZE, 450.0), CanvasChange::quarter_turns(SIZE, 1));
 }
 
 #[test]

@@ -50,7 +50,7 @@ impl Composer<'_> {
             if passes {
                 self.stack(&node.children, &mut inside)?;
             } else {
-                self.clipped(node, &mut own)?;
+                self.compose_clipped(node, &mut own)?;
                 own.make_opaque();
                 let mix = self.own_mix(node, atop);
                 self.fill(&mut inside, mix, &mut own, node.layer.fill_opacity);
@@ -110,7 +110,7 @@ impl Composer<'_> {
         }
         let filled = match effect.fill() {
             EffectFill::Color => self.at.rect(),
-            _ => effects.filled(number, &cover),
+            _ => effects.filled_rect(number, &cover),
         };
         let Some(paint) = effect.paint(self.at, filled, &amounts) else { return };
         let runs_with_amounts = effect.fill() == EffectFill::Gradient

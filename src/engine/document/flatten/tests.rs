@@ -81,7 +81,7 @@ fn a_tile_that_one_opaque_layer_fills_is_its_very_own_and_what_composing_gives()
     };
     let alone = prepared(vec![fill("#203040"), opaque.clone()]);
     let own = alone.alone_in_tile(first).unwrap();
-    assert!(alone.compose_tile(first, None).quantized().unwrap().bytes() == own.bytes());
+    assert!(alone.compose_tile(first, None).quantize().unwrap().bytes() == own.bytes());
     assert!(alone.alone_in_tile(second).is_none(), "the canvas ends within the tile");
     let faint = with(opaque.clone(), |layer| layer.opacity = 0.5);
     let clipped = with(fill("#ffffff"), |layer| layer.clip_below = true);

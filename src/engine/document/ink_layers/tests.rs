@@ -122,7 +122,7 @@ fn what_lies_in_front_in_a_group_hides_the_lines_behind_it() {
 fn a_drawing_is_read_once_for_its_parts_and_its_ink() {
     let (document, drawing) = (Document::empty(SIZE), drawing());
     let read = document.parts.reading_of(&drawing).unwrap();
-    let _ = document.lifted_ink(&drawing);
+    let _ = document.lift_ink(&drawing);
     let again = document.parts.reading_of(&drawing.clone()).unwrap();
     assert!(Arc::ptr_eq(&read.picture, &again.picture));
     let other = document.parts.reading_of(&TileGrid::from_straight_rgba(&[9; 4], 1, 1, 0, 0));

@@ -136,7 +136,7 @@ trait LayerKind {
 
     /// The same for a moment while the user drags, cheaper to render; `None` if it is the same
     /// then.
-    fn drafted(&self) -> Option<Content> {
+    fn draft(&self) -> Option<Content> {
         None
     }
 
@@ -194,12 +194,12 @@ trait LayerKind {
     }
 
     /// Where it can be seen; `scene`: what it sees, if that is the same before and after an edit.
-    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Canvas
     }
 
     /// Where it may look different from `old`, of the same kind; `scene`: what both see.
-    fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed;
+    fn difference_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed;
     /// Counts what it holds, as [`MemoryCount::add`] does.
     fn count(&self, _count: &mut MemoryCount, _keeps: bool) {}
 }
@@ -383,11 +383,11 @@ impl Content {
     }
 
     pub(in crate::document) fn drafted(&self) -> Option<Content> {
-        self.kind().drafted()
+        self.kind().draft()
     }
 
-    pub(in crate::document) fn touched(&self, scene: Option<&Scene>) -> Touched {
-        self.kind().touched(scene)
+    pub(in crate::document) fn painted_tiles(&self, scene: Option<&Scene>) -> Touched {
+        self.kind().painted_tiles(scene)
     }
 
     /// Whether it is the very same value in memory, or the same number.
@@ -409,12 +409,12 @@ impl Content {
         }
     }
 
-    pub(in crate::document) fn changed_from(
+    pub(in crate::document) fn difference_from(
         &self,
         old: &Content,
         scene: &dyn Fn() -> Scene,
     ) -> Changed {
-        self.kind().changed_from(old, scene)
+        self.kind().difference_from(old, scene)
     }
 
     pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {

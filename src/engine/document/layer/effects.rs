@@ -215,12 +215,12 @@ impl EffectTiles {
     fn matte(&self, rect: Rect, cover: &dyn Fn(TileAt) -> CoverTile) -> Matte {
         let mut matte = Matte::filled(rect, 0.0);
         for at in TileAt::covering(rect) {
-            self.covered(at, cover).write(at, &mut matte);
+            self.cover_tile(at, cover).write(at, &mut matte);
         }
         matte
     }
 
-    fn covered(&self, at: TileAt, cover: &dyn Fn(TileAt) -> CoverTile) -> CoverTile {
+    fn cover_tile(&self, at: TileAt, cover: &dyn Fn(TileAt) -> CoverTile) -> CoverTile {
         match self.covers.cell(at) {
             Some(cell) => once(cell, || cover(at)).clone(),
             None => cover(at),
@@ -228,13 +228,13 @@ impl EffectTiles {
     }
 
     /// What ramps and pictures of an effect lie on: all that the layer covers, or the canvas.
-    pub fn filled(&self, number: usize, cover: &dyn Fn(TileAt) -> CoverTile) -> Rect {
+    pub fn filled_rect(&self, number: usize, cover: &dyn Fn(TileAt) -> CoverTile) -> Rect {
         if !self.effects.get(number).is_some_and(LayerEffect::is_aligned) {
             return self.scene.size.rect();
         }
         let all = once(&self.filled, || {
             let tiles = TileAt::covering(self.region);
-            let bounds = tiles.map(|at| self.covered(at, cover).bounds(at));
+            let bounds = tiles.map(|at| self.cover_tile(at, cover).bounds(at));
             bounds.fold(Rect::EMPTY, Rect::union)
         });
         if all.is_empty() { self.scene.size.rect() } else { *all }
@@ -355,7 +355,7 @@ impl EffectEntry {
         if self.content.kind_name() != layer.content.kind_name() {
             return None;
         }
-        match layer.content.changed_from(&self.content, &|| self.tiles.scene.clone()) {
+        match layer.content.difference_from(&self.content, &|| self.tiles.scene.clone()) {
             Changed::Nowhere => {}
             Changed::Wholly => return None,
             Changed::Tiles(tiles) => changed.extend(tiles),

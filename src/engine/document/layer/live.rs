@@ -231,7 +231,7 @@ impl<T> Live<T> {
         let packed = || {
             let on_far_side = scene.far.and_then(|far| render(far, far_tile.at));
             let bare = if stays && far_tile.has_bare() { own() } else { None };
-            FarPixels::Packed(Arc::new(far_tile.packed(on_far_side.as_ref(), bare.as_deref())))
+            FarPixels::Packed(Arc::new(far_tile.pack(on_far_side.as_ref(), bare.as_deref())))
         };
         match once(cell, packed) {
             FarPixels::Packed(packed) => TileContent::Packed(packed.clone()),
@@ -243,17 +243,14 @@ impl<T> Live<T> {
 
     /// Takes in what was rendered behind the contours of a tile.
     pub(in crate::document) fn set_far_side(&self, scene: &FarScene, on_far_side: Option<Tile>) {
-        let bare = if scene.tile.has_bare() {
-            self.rendered_tile(scene.front, scene.tile.at)
-        } else {
-            None
-        };
+        let bare =
+            if scene.tile.has_bare() { self.render_tile(scene.front, scene.tile.at) } else { None };
         let packed =
-            FarPixels::Packed(Arc::new(scene.tile.packed(on_far_side.as_ref(), bare.as_deref())));
+            FarPixels::Packed(Arc::new(scene.tile.pack(on_far_side.as_ref(), bare.as_deref())));
         self.cells(scene.front).far_cell(scene.tile.at).map(|cell| cell.set(packed));
     }
 
-    fn rendered_tile(&self, scene: &Scene, at: TileAt) -> Option<Arc<Tile>> {
+    fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Arc<Tile>> {
         self.cells(scene).cell(at)?.get().cloned().flatten()
     }
 

@@ -73,7 +73,7 @@ impl LayerMask {
     }
 
     /// The mask that follows the surface, if it is one.
-    pub fn derived(&self) -> Option<DerivedMask> {
+    pub fn derived_mask(&self) -> Option<DerivedMask> {
         match self.kind {
             MaskKind::Derived(derived) => Some(derived),
             MaskKind::File { .. } => None,
@@ -141,7 +141,7 @@ impl LayerMask {
 
     /// The curvature that it is derived from, of the surface that a layer sees.
     pub(in crate::document) fn curvature_on(&self, scene: &Scene) -> Option<Arc<Curvature>> {
-        match self.derived()? {
+        match self.derived_mask()? {
             DerivedMask::Curvature { blur, .. } => Some(scene.surface.as_ref()?.curvature(blur)),
             _ => None,
         }
@@ -179,7 +179,7 @@ impl LayerMask {
     /// Of a mask that follows the view: n·v in the middle of what a tile's contour pixels see
     /// themselves, else NaN.
     fn own_facings(&self, scene: &Scene, at: TileAt) -> Option<Vec<f32>> {
-        let Some(DerivedMask::Fresnel { .. }) = self.derived() else { return None };
+        let Some(DerivedMask::Fresnel { .. }) = self.derived_mask() else { return None };
         let surface = scene.surface.as_ref()?;
         let contours = surface.contours().on(at)?;
         let mut own = vec![f32::NAN; TILE_AREA];

@@ -7,14 +7,14 @@ use super::mask::{LayerMask, MaskKind};
 use super::warp::{LastWarp, LayerWarp, displaced_mask};
 use crate::document::memory_use::MemoryCount;
 use crate::raster::Plane;
-use crate::raster::warp::warped_plane;
+use crate::raster::warp::warp_plane;
 use std::sync::{Arc, Mutex, PoisonError};
 
 impl LayerMap {
     /// A layer of which this is the map, as it lies on the canvas: content and mask taken there, no
     /// transform, no attachment.
     pub fn layer_on_canvas(&self, layer: &Arc<Layer>) -> Arc<Layer> {
-        let seen = seen(layer, self);
+        let seen = apply_map(layer, self);
         Arc::new(Layer { transform: None, liquify: None, on: None, ..Layer::clone(&seen) })
     }
 }
@@ -22,11 +22,11 @@ impl LayerMap {
 /// A layer as it lies on the canvas: content and mask taken there. The layers of a group are taken
 /// one by one.
 pub(in crate::document) fn on_canvas(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
-    seen(layer, &map.within(layer))
+    apply_map(layer, &map.within(layer))
 }
 
 /// The same with the layer's own transform and attachment in the map.
-pub(in crate::document) fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
+pub(in crate::document) fn apply_map(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
     let layer = &without_ink(layer);
     let warp = LayerWarp::of(layer, map);
     if map.is_none() && warp.is_none() && !layer.content.has_attachments() {
@@ -114,7 +114,7 @@ impl CanvasCache {
     ) -> (Content, Option<LayerMask>) {
         let entries = self.lock().clone();
         if let Some(warp) = warp {
-            return self.warped(layer, map, warp, &entries);
+            return self.displace(layer, map, warp, &entries);
         }
         let entries: Vec<_> = entries.into_iter().filter(|entry| entry.warp.is_none()).collect();
         let mut alike = entries.iter().rev().filter(|entry| entry.map == *map);
@@ -146,7 +146,7 @@ impl CanvasCache {
 
     /// The same for a displaced layer: its paint and its mask are displaced here, all else when it
     /// is composed.
-    fn warped(
+    fn displace(
         &self,
         layer: &Layer,
         map: &LayerMap,
@@ -218,7 +218,7 @@ impl CanvasCache {
 
 fn mask_on_canvas(mask: &LayerMask, map: &LayerMap) -> LayerMask {
     let MaskKind::File { file, coverage } = &mask.kind else { return mask.clone() };
-    let coverage: Plane<u8> = warped_plane(coverage, map, map.filter);
+    let coverage: Plane<u8> = warp_plane(coverage, map, map.filter);
     LayerMask {
         kind: MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) },
         ..mask.clone()

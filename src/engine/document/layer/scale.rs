@@ -12,7 +12,7 @@ use crate::math::srgb::{quantize, quantize16};
 use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::{LayerEffect, Placement, Sample, Selection, Stroke, StrokeAttachment};
 use crate::raster::tile::sixteen_bit;
-use crate::raster::warp::{warped_plane_onto, warped_tile};
+use crate::raster::warp::{warp_plane_onto, warp_tile};
 use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
 use rayon::prelude::*;
@@ -220,7 +220,7 @@ impl CanvasScale {
     pub fn fill_tiles(&self, grid: &TileGrid, tiles: &[TileAt], next: &mut TileGrid) {
         let sampler = self.sampler();
         let tile = |&at: &TileAt| match &sampler {
-            Some(sampler) => warped_tile(grid, sampler, sampler.filter, at),
+            Some(sampler) => warp_tile(grid, sampler, sampler.filter, at),
             None => self.tile(grid, at).map(Arc::new),
         };
         let resampled: Vec<Option<Arc<Tile>>> = tiles.par_iter().map(tile).collect();
@@ -274,7 +274,7 @@ impl CanvasScale {
         );
         let to = if plane.size() == self.from { self.to } else { own };
         if let Some(sampler) = self.sampler() {
-            return warped_plane_onto(plane, &sampler, sampler.filter, to);
+            return warp_plane_onto(plane, &sampler, sampler.filter, to);
         }
         let columns: Vec<_> =
             (0..to.width as i32).map(|x| source_weights(x, self.per_axis.x)).collect();
@@ -284,7 +284,7 @@ impl CanvasScale {
             let of_row = |&(py, wy): &(i32, f32)| {
                 columns[x]
                     .iter()
-                    .map(|&(px, wx)| wx * wy * f32::from(plane.clamped(px, py)))
+                    .map(|&(px, wx)| wx * wy * f32::from(plane.at_clamped(px, py)))
                     .sum::<f32>()
             };
             quantize(rows[y].iter().map(of_row).sum::<f32>() / 255.0)

@@ -18,7 +18,7 @@ use super::transform::mesh::Mesh;
 use super::{Layer, LayerId};
 use crate::document::Document;
 use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2, vec2};
-use crate::raster::warp::{PixelMap, TileMap, TilePoints, warped_block, warped_tile};
+use crate::raster::warp::{PixelMap, TileMap, TilePoints, warp_block, warp_tile};
 use crate::raster::{Lattice, Plane, Resampling, TileAt, TileGrid};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -259,8 +259,8 @@ impl PixelLayer {
             }
         }
         let one = |at: &TileAt| match warp.tile_map(*at, &map.plane) {
-            Some(moved) => warped_tile(&self.tiles, &moved, warp.filter, *at),
-            None => warped_tile(&self.tiles, map, map.filter, *at),
+            Some(moved) => warp_tile(&self.tiles, &moved, warp.filter, *at),
+            None => warp_tile(&self.tiles, map, map.filter, *at),
         };
         let seen: Vec<_> = wanted.par_iter().map(one).collect();
         tiles.reserve(canvas);
@@ -290,8 +290,8 @@ pub(in crate::document) fn displaced_mask(
     let one = |at: &TileAt| {
         let rect = at.rect().intersect(canvas);
         match warp.tile_map(*at, &map.plane) {
-            Some(moved) => warped_block(coverage, &moved, warp.filter, rect),
-            None => warped_block(coverage, map, map.filter, rect),
+            Some(moved) => warp_block(coverage, &moved, warp.filter, rect),
+            None => warp_block(coverage, map, map.filter, rect),
         }
     };
     let values: Vec<Vec<(i32, i32, u8)>> = wanted.par_iter().map(one).collect();

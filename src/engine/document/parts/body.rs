@@ -21,7 +21,7 @@ pub struct SolvedOutline {
 }
 
 /// The fields that a profile needs over an outline; known ones are kept.
-pub fn inflated(
+pub fn inflate_outline(
     outline: Arc<Outline>,
     joined: Option<Arc<Plane<bool>>>,
     known: Option<&SolvedOutline>,
@@ -125,7 +125,7 @@ pub fn joined_rim(own: &Outline, met: &[PlacedOutline]) -> Option<Plane<bool>> {
     free.values().contains(&true).then_some(free)
 }
 
-pub fn formed(body: &SolvedOutline, inflation: Inflation) -> Form {
+pub fn solve_form(body: &SolvedOutline, inflation: Inflation) -> Form {
     let rim = OutlineRim::of(&body.outline, body.joined.as_deref());
     let round = Roundness { puff: inflation.puff, rim_deg: inflation.rim_deg };
     let form = |squares: &Plane<f32>| Form::of_squares(&body.outline, squares, &rim, round);
@@ -189,5 +189,5 @@ pub fn of_profiles(
         ShadedDrawing { gray, light: shading.light.normalize_or(Vec3::Z) }
     };
     let all: Vec<ShadedDrawing> = shadings.iter().map(profile).collect();
-    profiles::formed(&all, outline)?.transformed(still, most_px)
+    profiles::solve_form(&all, outline)?.transformed(still, most_px)
 }

@@ -34,7 +34,7 @@ impl Document {
             .collect();
         self.parts.forget_drawn();
         let drawn = match &drawing.content {
-            Content::Pixels(pixels) => self.map_of(layer).map(|map| pixels.taken_along(&map).tiles),
+            Content::Pixels(pixels) => self.map_of(layer).map(|map| pixels.transformed(&map).tiles),
             _ => None,
         };
         let drawn = drawn.filter(|tiles| !tiles.bounds().is_empty());

@@ -188,7 +188,7 @@ impl Document {
         }
         let free = free.unwrap_or_else(|| now.free_rim());
         let (body, plain) = self.plain_form(&now, known.as_ref(), free)?;
-        let (stages, resume, form) = self.modified_form(&now, known, &body, plain);
+        let (stages, resume, form) = self.derive_form(&now, known, &body, plain);
         let new = NewForm { body, stages, form: form.clone() };
         let mut made = MadePart {
             part: part.clone(),
@@ -249,7 +249,7 @@ impl Document {
     }
 
     /// A form with what lies on its part, in its place, and what is kept to make it again soon.
-    fn modified_form(
+    fn derive_form(
         &self,
         now: &PartInputs,
         known: Option<MadePart>,
@@ -275,7 +275,7 @@ impl Document {
     }
 
     /// The form of a part that was made before and not kept.
-    pub(super) fn remade(&self, made: &MadePart) -> Option<Arc<Form>> {
+    pub(super) fn derive_again(&self, made: &MadePart) -> Option<Arc<Form>> {
         let (part, (still, moved)) = (&made.part, split_whole_px(made.part.matrix));
         let own = made.outline.as_ref().filter(|_| has_rim(part));
         let free = own.and_then(|own| joined_rim(own, &made.met)).map(Arc::new);

@@ -151,7 +151,7 @@ pub fn without_background(tiles: &TileGrid, canvas: Size, background: Color) -> 
                 other = pixel;
             }
         }
-        if is_edge { unmixed(here, color, share_on_the_way(here, other, color)) } else { here }
+        if is_edge { unmix(here, color, share_on_the_way(here, other, color)) } else { here }
     };
     let (width, height) = (canvas.width as usize, canvas.height as usize);
     let rows: Plane<[u8; 4]> = Plane::from_fn(canvas, pixel);
@@ -165,7 +165,7 @@ fn squared_difference(a: [u8; 4], b: [u8; 4]) -> i32 {
 }
 
 /// A premultiplied pixel without a share (of 255) of another color.
-fn unmixed(pixel: [u8; 4], of: [u8; 4], share: u8) -> [u8; 4] {
+fn unmix(pixel: [u8; 4], of: [u8; 4], share: u8) -> [u8; 4] {
     let part = |c: usize| (f32::from(of[c]) * f32::from(share) / 255.0).round() as u8;
     let alpha = pixel[3].saturating_sub(part(3));
     std::array::from_fn(|c| pixel[c].saturating_sub(part(c)).min(alpha))

@@ -92,7 +92,7 @@ impl DrawnLayer {
     pub fn pixels(&self, document: &Document) -> Option<TileGrid> {
         let kept = &document.parts.cache.drawn;
         kept.get(self).or_else(|| {
-            let drawn = painted(self.draw(document)?);
+            let drawn = without_transparent_tiles(self.draw(document)?);
             kept.keep(self, &drawn);
             Some(drawn)
         })
@@ -100,10 +100,10 @@ impl DrawnLayer {
 
     fn draw(&self, document: &Document) -> Option<TileGrid> {
         if let Some(warped) = &self.warped {
-            return self.flattened(warped.alone.clone());
+            return self.flatten(warped.alone.clone());
         }
         let layer = match &self.layer.content {
-            Content::Pixels(pixels) => return Some(pixels.taken_along(&self.map).tiles),
+            Content::Pixels(pixels) => return Some(pixels.transformed(&self.map).tiles),
             Content::Group(_) => {
                 let transform =
                     LayerTransform::of_map(&self.map.plane, self.map.filter, document.size);
@@ -111,11 +111,11 @@ impl DrawnLayer {
             }
             _ => Layer::clone(&self.map.layer_on_canvas(&self.layer)),
         };
-        self.flattened(Document { layers: vec![Arc::new(layer)], ..Document::empty(document.size) })
+        self.flatten(Document { layers: vec![Arc::new(layer)], ..Document::empty(document.size) })
     }
 
     /// The layer as a document shows it that holds nothing else.
-    fn flattened(&self, alone: Document) -> Option<TileGrid> {
+    fn flatten(&self, alone: Document) -> Option<TileGrid> {
         let found = |selection: &Arc<Selection>| {
             let next = self.maps.as_ref().and_then(|maps| selection.found_on(maps));
             next.map_or_else(|| selection.clone(), Arc::new)
@@ -128,7 +128,7 @@ impl DrawnLayer {
 }
 
 /// Without tiles that are wholly transparent: files have none.
-fn painted(mut tiles: TileGrid) -> TileGrid {
+fn without_transparent_tiles(mut tiles: TileGrid) -> TileGrid {
     let is_blank = |tile: &Tile| !(0..TILE_AREA).any(|i| tile.is_painted(i));
     let blank: Vec<TileAt> =
         tiles.iter().filter(|(_, tile)| is_blank(tile)).map(|(at, _)| at).collect();

@@ -272,6 +272,6 @@ impl Document {
     /// The form of a part as it was made last; made again if it was not kept.
     pub fn form_of(&self, id: &str) -> Option<Arc<Form>> {
         let made = self.parts.cache.get(id)?;
-        made.form().or_else(|| self.remade(&made))
+        made.form().or_else(|| self.derive_again(&made))
     }
 }

@@ -85,7 +85,7 @@ pub fn parts_of_flats(
         PartFor::Place => places(&flats, rect),
         _ => {
             let of = flats.colors().into_iter().map(FlatColor::from).collect();
-            FlatAreas { of, labels: flats.mostly(), left_out: flats.left_out() }
+            FlatAreas { of, labels: flats.mostly(), left_out: flats.omitted_colors() }
         }
     };
     let order = farthest_first(&labels, of.len());
@@ -114,7 +114,7 @@ struct FlatAreas {
 /// The places of all colors, a color that has only one without its point.
 fn places(flats: &Flats, rect: Rect) -> FlatAreas {
     let corner = vec2(rect.x0 as f32, rect.y0 as f32);
-    let mut left_out = flats.left_out();
+    let mut left_out = flats.omitted_colors();
     let mut all = Vec::new();
     let mostly = flats.mostly();
     let mut labels = Plane::filled(mostly.size(), 0u32);

@@ -21,7 +21,7 @@ pub fn with_lines(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -
     let inked = Plane::from_fn(outline.size(), |x, y| {
         ink.coverage().get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0)
     });
-    lines::lined(form, outline, &inked, lines)
+    lines::add_lines(form, outline, &inked, lines)
 }
 
 /// How far the work on a form came.
@@ -69,7 +69,12 @@ pub fn with_modifier(
                 reach: touch.reach * length,
                 normal: turned(touch.normal, still),
             });
-            touches::touched(form, outline, &through.collect::<Vec<_>>(), resume.touching.as_mut())
+            touches::apply_touches(
+                form,
+                outline,
+                &through.collect::<Vec<_>>(),
+                resume.touching.as_mut(),
+            )
         }
         PartKind::Sculpt { strokes, .. } => {
             let length = still.matrix2.determinant().abs().sqrt();

@@ -46,7 +46,7 @@ pub struct FlatArea {
 
 impl FlatArea {
     /// The colors of all parts of the layer, in an order that is the same for each of them.
-    fn asked(&self) -> Vec<Color> {
+    fn part_colors(&self) -> Vec<Color> {
         let mut all: Vec<Color> =
             [&self.nearer[..], &self.farther[..], &[self.flat.color]].concat();
         all.sort_unstable_by_key(|color| [color.r, color.g, color.b, color.a]);
@@ -126,7 +126,8 @@ impl Document {
         let tiles = DrawnLayer::of(self, layer, part)?.pixels(self)?;
         let rect = tiles.bounds();
         let area = self.area_of(part, (*color).into());
-        Flats::of(&tiles, rect, &area.asked()).map(|flats| SplitPlaces::of(&flats, *color, rect))
+        Flats::of(&tiles, rect, &area.part_colors())
+            .map(|flats| SplitPlaces::of(&flats, *color, rect))
     }
 
     /// What the user is told when parts take another area than the one that was meant, which no
@@ -253,7 +254,7 @@ impl OutlineKey {
                     None => alpha(&tiles, rect),
                     Some(area) => {
                         let corner = vec2(rect.x0 as f32, rect.y0 as f32);
-                        let flats = document.parts.flats_of(&tiles, &area.asked())?;
+                        let flats = document.parts.flats_of(&tiles, &area.part_colors())?;
                         let (share, is_beside) = area.share(&flats, corner)?;
                         is_lost = is_beside;
                         share

@@ -1,6 +1,6 @@
 //! The form of one part, by its kind, without what lies on it. Floor 4.
 
-use super::body::{self, SolvedOutline, formed, inflated};
+use super::body::{self, SolvedOutline, inflate_outline, solve_form};
 use super::outlines::OutlineKey;
 use super::{Part, PartKind};
 use crate::document::Document;
@@ -30,8 +30,8 @@ impl Document {
         let silhouette = |puff: f32| Roundness { puff, rim_deg: 90.0 };
         let (body, form) = match &part.kind {
             PartKind::Inflate { inflation, .. } => {
-                let body = inflated(own?, joined, known.as_deref(), inflation.profile);
-                let form = formed(&body, *inflation);
+                let body = inflate_outline(own?, joined, known.as_deref(), inflation.profile);
+                let form = solve_form(&body, *inflation);
                 (body, form)
             }
             PartKind::Bevel { bevel, .. } => {
@@ -42,7 +42,7 @@ impl Document {
             PartKind::Lathe { axis, puff, .. } => {
                 let outline = own?;
                 let axis = axis.map(|axis| axis.map(|p| still.transform_point2(p)));
-                let squares = sweep::turned(&outline, axis);
+                let squares = sweep::turn_outline(&outline, axis);
                 let form = Form::of_squares(
                     &outline,
                     &squares,
@@ -57,7 +57,7 @@ impl Document {
                     at: still.transform_point2(b.at),
                     radius: b.radius * length,
                 });
-                let (outline, squares) = sweep::swept(&through.collect::<Vec<_>>(), most_px)?;
+                let (outline, squares) = sweep::sweep(&through.collect::<Vec<_>>(), most_px)?;
                 let form = Form::of_squares(
                     &outline,
                     &squares,

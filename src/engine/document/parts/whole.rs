@@ -48,7 +48,7 @@ impl<'d> Whole<'d> {
 
     fn put(&mut self, made: &MadePart, form: Option<Arc<Form>>) {
         let Some(relief) = &mut self.relief else { return };
-        let form = form.or_else(|| self.document.remade(made));
+        let form = form.or_else(|| self.document.derive_again(made));
         if let Some(form) = form {
             let id = relief.piece_of.len() as u32;
             relief.add(&form, made.part.combine, id);

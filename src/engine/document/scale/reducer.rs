@@ -128,7 +128,7 @@ impl DocumentReducer {
     /// layers are read from levels as much coarser, and selections by the surface are resampled and
     /// not found again.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
-        let Some(scale) = self.scale(document) else { return Ok(self.drafted(document)) };
+        let Some(scale) = self.scale(document) else { return Ok(self.draft(document)) };
         let of =
             if document.is_ahead() { document.maps_surface() } else { document.surface.as_ref() };
         let surface = of.map(|surface| self.surface(surface, &scale)).transpose()?;
@@ -139,8 +139,13 @@ impl DocumentReducer {
             &mut layers,
         );
         self.layers = layers;
-        let small = Document { size: scale.to, surface, layers: small, ..scale.selected(document) };
-        Ok(if document.is_ahead() { self.shaped(document, small, &scale) } else { small })
+        let small =
+            Document { size: scale.to, surface, layers: small, ..scale.scale_selections(document) };
+        Ok(if document.is_ahead() {
+            self.with_scaled_shape(document, small, &scale)
+        } else {
+            small
+        })
     }
 
     fn scaled(&self, layer: &Arc<Layer>, scale: &CanvasScale) -> Layer {
@@ -151,7 +156,7 @@ impl DocumentReducer {
 
     /// The document in its own size, its layers read as for a moment: all but those that are
     /// [kept](Self::keep).
-    fn drafted(&mut self, document: &Document) -> Document {
+    fn draft(&mut self, document: &Document) -> Document {
         let mut layers = HashMap::new();
         let drafted = |layer: &Arc<Layer>| {
             let transform = layer.transform.as_ref().map(LayerTransform::drafted);
@@ -188,7 +193,12 @@ impl DocumentReducer {
 
     /// A small document with the surface of its parts, which are themselves scaled down: the user
     /// drags them.
-    fn shaped(&mut self, document: &Document, small: Document, scale: &CanvasScale) -> Document {
+    fn with_scaled_shape(
+        &mut self,
+        document: &Document,
+        small: Document,
+        scale: &CanvasScale,
+    ) -> Document {
         let mut parts = HashMap::new();
         for part in &document.parts.list {
             let known =

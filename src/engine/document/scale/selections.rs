@@ -11,7 +11,7 @@ use std::sync::{Arc, PoisonError};
 
 impl CanvasScale {
     /// The document with its active and its kept selections scaled, and all else as it is.
-    pub(super) fn selected(&self, document: &Document) -> Document {
+    pub(super) fn scale_selections(&self, document: &Document) -> Document {
         let kept = |kept: &NamedSelection| NamedSelection {
             selection: self.selection(&kept.selection),
             ..kept.clone()

@@ -58,17 +58,21 @@ fn a_stroke_paints_in_its_selection_alone_and_takes_it_along() {
 #[test]
 fn selections_meet_by_every_rule() {
     let old = Document::empty(SIZE).with_selection(Some(square(40, 80)));
-    let covered =
-        |how| old.with_combined(square(60, 120), how).selected().map(CoverageGrid::covered_rect);
+    let covered = |how| {
+        old.with_combined(square(60, 120), how).active_coverage().map(CoverageGrid::covered_rect)
+    };
     let columns = |x0, x1| Some(Rect::new(x0, 20, x1, 90));
     assert_eq!(covered(SelectionMode::Replace), columns(60, 120));
     assert_eq!(covered(SelectionMode::Add), columns(40, 120));
     assert_eq!(covered(SelectionMode::TakeAway), columns(40, 60));
     assert_eq!(covered(SelectionMode::Intersect), columns(60, 80));
     let none = Document::empty(SIZE).with_combined(square(60, 120), SelectionMode::TakeAway);
-    assert_eq!(none.selected().map(CoverageGrid::area_px), Some(200.0 * 130.0 - 60.0 * 70.0));
+    assert_eq!(
+        none.active_coverage().map(CoverageGrid::area_px),
+        Some(200.0 * 130.0 - 60.0 * 70.0)
+    );
     assert!(
-        old.with_combined(square(40, 80), SelectionMode::TakeAway).selected().is_none(),
+        old.with_combined(square(40, 80), SelectionMode::TakeAway).active_coverage().is_none(),
         "nothing is none"
     );
 }
@@ -88,7 +92,10 @@ fn what_was_selected_by_the_surface_is_found_anew_when_the_surface_changes() {
     assert_eq!([50, 150].map(|x| alpha(&document, x, 50)), [255, 0]);
     let turned = Document { surface: Some(roof(true)), ..document.clone() }.with_selections_found();
     // The point faces the other way now, and so does all of its half.
-    assert_eq!(turned.selected().map(|grid| (grid.at(50, 50), grid.at(150, 50))), Some((255, 0)));
+    assert_eq!(
+        turned.active_coverage().map(|grid| (grid.at(50, 50), grid.at(150, 50))),
+        Some((255, 0))
+    );
     let flat = Document { surface: None, ..document }.with_selections_found();
     assert_eq!(
         [50, 150].map(|x| alpha(&flat, x, 50)),
@@ -123,7 +130,7 @@ fn a_mask_made_of_a_region_looks_like_the_selection() {
     let mask = document.selection_as_mask().unwrap();
     assert!(matches!(mask.kind, MaskKind::Derived(DerivedMask::Region(_))));
     let fill = Layer { mask: Some(mask), ..Layer::new("fill", Content::Fill(Color::BLACK)) };
-    assert!(document.mask_coverage(&fill).is_same(document.selected().unwrap()));
+    assert!(document.mask_coverage(&fill).is_same(document.active_coverage().unwrap()));
     let document = Document { layers: vec![Arc::new(fill)], ..document };
     assert_eq!([50, 99, 100, 150].map(|x| alpha(&document, x, 50)), [255, 255, 0, 0]);
 }

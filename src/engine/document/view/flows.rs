@@ -1,9 +1,9 @@
 //! Views of flows: hue is the direction in which a picture is compressed most, saturation the
 //! amount, and the lines run along the direction of least change (SF fig. 2, 3). Floor 4.
 
-use super::{ViewOptions, painted};
+use super::{ViewOptions, paint_pixels};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
-use crate::raster::line_integral::{LineStyle, smeared_noise};
+use crate::raster::line_integral::{LineStyle, smear_noise};
 use crate::raster::{Picture, Plane};
 use crate::surface::{Bend, FlowField, Surface, links};
 
@@ -61,11 +61,11 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
 fn draw_flows(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
     let covered = |x: usize, y: usize| surface.is_none_or(|s| s.coverage(x, y) > 0);
     let lines = marks.map(|mark| mark.line);
-    let gray = smeared_noise(&lines, LineStyle::for_size(marks.size()), |from, to| {
+    let gray = smear_noise(&lines, LineStyle::for_size(marks.size()), |from, to| {
         surface.is_none_or(|s| is_passable(s.links_plane(), from, to))
     });
     let full = strong(marks, covered);
-    painted(marks.size(), surface, |x, y| {
+    paint_pixels(marks.size(), surface, |x, y| {
         let mark = marks.at(x, y);
         let saturation = 1.0 - (-1.5 * mark.magnitude / full).exp();
         let light = 0.25 + 0.75 * gray.at(x, y);

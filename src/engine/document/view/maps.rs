@@ -1,28 +1,30 @@
 //! Views of the maps and of curvature: a color per pixel.
 //! Floor 4.
 
-use super::{ViewOptions, painted};
+use super::{ViewOptions, paint_pixels};
 use crate::math::{Vec3, srgb, vec3};
 use crate::raster::Picture;
 use crate::surface::Surface;
 
 pub(super) fn normals(surface: &Surface) -> Picture {
-    painted(surface.size(), Some(surface), |x, y| (surface.normal(x, y) * 0.5 + 0.5).to_array())
+    paint_pixels(surface.size(), Some(surface), |x, y| {
+        (surface.normal(x, y) * 0.5 + 0.5).to_array()
+    })
 }
 
 pub(super) fn depth(surface: &Surface) -> Picture {
-    painted(surface.size(), Some(surface), |x, y| [surface.depth(x, y); 3])
+    paint_pixels(surface.size(), Some(surface), |x, y| [surface.depth(x, y); 3])
 }
 
 pub(super) fn mask(surface: &Surface) -> Picture {
-    painted(surface.size(), None, |x, y| [f32::from(surface.coverage(x, y)) / 255.0; 3])
+    paint_pixels(surface.size(), None, |x, y| [f32::from(surface.coverage(x, y)) / 255.0; 3])
 }
 
 /// A color for each object, darker where it turns away.
 pub(super) fn objects(surface: &Surface) -> Picture {
     let objects = surface.objects();
     let labels = objects.labels();
-    painted(surface.size(), Some(surface), |x, y| {
+    paint_pixels(surface.size(), Some(surface), |x, y| {
         let color = super::anchor_color((labels.at(x, y) as usize).saturating_sub(1));
         (color * (0.35 + 0.65 * surface.normal(x, y).z.max(0.0))).to_array()
     })
@@ -35,7 +37,7 @@ pub(super) const CONCAVE: Vec3 = vec3(0.85, 0.08, 0.10);
 
 pub(super) fn curvature(surface: &Surface, options: &ViewOptions) -> Picture {
     let curvature = surface.curvature(options.blur_px);
-    painted(surface.size(), Some(surface), |x, y| {
+    paint_pixels(surface.size(), Some(surface), |x, y| {
         let kappa = curvature.kappa(x, y, options.curvature_scale_px);
         FLAT.lerp(if kappa > 0.0 { CONVEX } else { CONCAVE }, kappa.abs()).to_array()
     })
@@ -43,7 +45,7 @@ pub(super) fn curvature(surface: &Surface, options: &ViewOptions) -> Picture {
 
 pub(super) fn curvature_gray(surface: &Surface, options: &ViewOptions) -> Picture {
     let curvature = surface.curvature(options.blur_px);
-    painted(surface.size(), Some(surface), |x, y| {
+    paint_pixels(surface.size(), Some(surface), |x, y| {
         [0.5 + 0.5 * curvature.kappa(x, y, options.curvature_scale_px); 3]
     })
 }
@@ -63,7 +65,7 @@ fn shade(normal: Vec3) -> f32 {
 /// visible.
 const BACKDROP: f32 = 0.40;
 
-pub(super) fn lit(surface: &Surface) -> Picture {
+pub(super) fn render_lit(surface: &Surface) -> Picture {
     let size = surface.size();
     // In the lower right corner, small enough not to hide the surface.
     let radius = 0.07 * size.width.min(size.height) as f32;
@@ -73,7 +75,7 @@ pub(super) fn lit(surface: &Surface) -> Picture {
         let z2 = 1.0 - n[0] * n[0] - n[1] * n[1];
         (z2 >= 0.0).then(|| vec3(n[0], n[1], z2.sqrt()))
     };
-    painted(size, None, |x, y| {
+    paint_pixels(size, None, |x, y| {
         let covered = f32::from(surface.coverage(x, y)) / 255.0;
         let shade = match ball(x, y) {
             Some(normal) => shade(normal),
@@ -87,7 +89,7 @@ pub(super) fn lit(surface: &Surface) -> Picture {
 /// fully black; encoded.
 pub(super) fn clay(surface: &Surface) -> Picture {
     let (lamp, fill) = (LIGHT.normalize_or_zero(), vec3(0.7, -0.3, 0.5).normalize_or_zero());
-    painted(surface.size(), Some(surface), |x, y| {
+    paint_pixels(surface.size(), Some(surface), |x, y| {
         let n = surface.normal(x, y);
         let light = 0.10 + 0.70 * n.dot(lamp).max(0.0) + 0.10 * n.dot(fill).max(0.0);
         CLAY.map(|c| srgb::encode((light * c).min(1.0)))
@@ -104,13 +106,13 @@ const LINE_PX: [f32; 2] = [0.55, 1.1];
 
 pub(super) fn contours(surface: &Surface) -> Picture {
     let depth = surface.depth_plane();
-    painted(surface.size(), Some(surface), |x, y| {
+    paint_pixels(surface.size(), Some(surface), |x, y| {
         let (xi, yi) = (x as i32, y as i32);
         let here = depth.at(x, y) * LINES;
         // The steepest of the differences to both sides that are no jump: lines are equally wide on
         // every slope.
         let slope = |dx: i32, dy: i32| {
-            let side = |s: i32| (depth.clamped(xi + s * dx, yi + s * dy) * LINES - here).abs();
+            let side = |s: i32| (depth.at_clamped(xi + s * dx, yi + s * dy) * LINES - here).abs();
             side(1).min(side(-1))
         };
         let steep = slope(1, 0).hypot(slope(0, 1)).max(1e-4);

@@ -6,7 +6,7 @@ use crate::document::{
     Document, Highlights, Layer, Progress, flatten, flatten_layer, flatten_to_floats,
 };
 use crate::math::{Rect, Size, Vec2, srgb::quantize, vec2};
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::paint::Placement;
 use crate::raster::{Picture, TileGrid};
 use crate::surface::deformation::DeformedRect;
@@ -87,7 +87,7 @@ pub fn render_unwrapped(
         }
     };
     let (view, bend) = match (&layout, own) {
-        (None, Some(bend)) => (Some(laid_by(document, &bend)?), bend),
+        (None, Some(bend)) => (Some(lay_out_by(document, &bend)?), bend),
         (layout, _) => (None, layout.as_ref().map(|layout| layout.bend()).unwrap_or_default()),
     };
     let view = view
@@ -97,17 +97,17 @@ pub fn render_unwrapped(
     let painting =
         Painting::of(document, layer, options.floats, progress).ok_or(ViewUnavailable::NoMemory)?;
     let scale = options.scale.clamp(*UnwrapOptions::SCALE.start(), *UnwrapOptions::SCALE.end());
-    let (size, pixels) = pulled(&painting, view, scale);
+    let (size, pixels) = pull_painting(&painting, view, scale);
     Ok(UnwrappedPicture {
         size,
         pixels,
-        placement: placed_over(view.rect, size, document.size),
+        placement: place_over(view.rect, size, document.size),
         bend,
     })
 }
 
 /// The plane as an operator and anchors lay it.
-fn laid_by(document: &Document, bend: &Bend) -> Result<PlaneView, ViewUnavailable> {
+fn lay_out_by(document: &Document, bend: &Bend) -> Result<PlaneView, ViewUnavailable> {
     let surface = document.surface.as_deref().ok_or(ViewUnavailable::NoSurface)?;
     let mut deformed = DeformedRect::default();
     Deformation::new(Some(surface), document.size, bend).fill(document.size.rect(), &mut deformed);
@@ -115,7 +115,7 @@ fn laid_by(document: &Document, bend: &Bend) -> Result<PlaneView, ViewUnavailabl
 }
 
 /// The placement that shows a picture over a rectangle of the plane, equally wide.
-pub fn placed_over(rect: Rect, picture: Size, canvas: Size) -> Placement {
+pub fn place_over(rect: Rect, picture: Size, canvas: Size) -> Placement {
     let (w, h) = (picture.width.max(1) as f32, picture.height.max(1) as f32);
     let cover = (canvas.width as f32 / w).max(canvas.height as f32 / h);
     let px_per_texel = rect.width() as f32 / w;
@@ -177,11 +177,11 @@ impl Painting {
 }
 
 /// The painting at each pixel of a view of the plane, with so many pixels per pixel of the plane.
-fn pulled(painting: &Painting, view: &PlaneView, scale: u32) -> (Size, Vec<[f32; 4]>) {
+fn pull_painting(painting: &Painting, view: &PlaneView, scale: u32) -> (Size, Vec<[f32; 4]>) {
     let size = Size::new(view.rect.width() as u32 * scale, view.rect.height() as u32 * scale);
     let corner = vec2(view.rect.x0 as f32, view.rect.y0 as f32);
     let w = size.width as usize;
-    let mut pixels = filled_or_unwind(size.area(), [f32::NAN; 4]);
+    let mut pixels = fill_or_unwind(size.area(), [f32::NAN; 4]);
     pixels.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
         for (x, pixel) in row.iter_mut().enumerate() {
             let p = corner + (vec2(x as f32, y as f32) + 0.5) / scale as f32;

@@ -2,7 +2,7 @@
 //! (the insets of SF fig. 9).
 //! Floor 4.
 
-use super::painted;
+use super::paint_pixels;
 use crate::math::{Size, Vec3, srgb, vec3};
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
@@ -11,7 +11,7 @@ use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
 pub(super) fn weights(surface: Option<&Surface>, size: Size, bend: &Bend) -> Picture {
     let colors: Vec<Vec3> = (0..bend.anchors.len()).map(color_of).collect();
-    let shared = painted(size, surface, |x, y| {
+    let shared = paint_pixels(size, surface, |x, y| {
         let q = crate::math::vec2(x as f32, y as f32) + 0.5;
         let weights = bend.weights.at(&bend.anchors, q);
         let blended =

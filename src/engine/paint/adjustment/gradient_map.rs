@@ -1,7 +1,7 @@
 //! A color for each luminosity. Floor 3.
 
 use super::hsl;
-use super::parameters::{ParameterVisitor, Parameters, black_to_white, named};
+use super::parameters::{ParameterVisitor, Parameters, black_to_white, parameter_name};
 use crate::paint::{GradientStop, ramp::Ramp};
 
 /// The ramp's color at the luminosity of each pixel; where the ramp is transparent, the pixel as
@@ -45,8 +45,11 @@ impl GradientMap {
 
 impl Parameters for GradientMap {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        v.stops(named("stops", "Stops", "From the darkest to the brightest"), &mut self.stops);
+        v.stops(
+            parameter_name("stops", "Stops", "From the darkest to the brightest"),
+            &mut self.stops,
+        );
         let hint = "The first color is for the brightest";
-        v.flag(named("reverse", "Reverse", hint), false, &mut self.reverse);
+        v.flag(parameter_name("reverse", "Reverse", hint), false, &mut self.reverse);
     }
 }

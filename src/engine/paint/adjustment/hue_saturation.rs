@@ -2,7 +2,9 @@
 //! Floor 3.
 
 use super::hsl;
-use super::parameters::{NumberParameter, ParameterName, ParameterVisitor, Parameters, named};
+use super::parameters::{
+    NumberParameter, ParameterName, ParameterVisitor, Parameters, parameter_name,
+};
 
 /// What is added to hue, saturation and lightness.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,7 +19,8 @@ pub struct HslShift {
 
 impl Parameters for HslShift {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let number = |key, label, most| NumberParameter::around(named(key, label, ""), most);
+        let number =
+            |key, label, most| NumberParameter::around(parameter_name(key, label, ""), most);
         v.number(number("hue", "Hue", 180.0), &mut self.hue);
         v.number(number("saturation", "Saturation", 100.0), &mut self.saturation);
         v.number(number("lightness", "Lightness", 100.0), &mut self.lightness);
@@ -54,12 +57,12 @@ impl HueRange {
 
 /// The ranges, as in Photoshop.
 pub const HUE_RANGES: [(ParameterName, [f32; 4]); 6] = [
-    (named("reds", "Reds", ""), [315.0, 345.0, 15.0, 45.0]),
-    (named("yellows", "Yellows", ""), [15.0, 45.0, 75.0, 105.0]),
-    (named("greens", "Greens", ""), [75.0, 105.0, 135.0, 165.0]),
-    (named("cyans", "Cyans", ""), [135.0, 165.0, 195.0, 225.0]),
-    (named("blues", "Blues", ""), [195.0, 225.0, 255.0, 285.0]),
-    (named("magentas", "Magentas", ""), [255.0, 285.0, 315.0, 345.0]),
+    (parameter_name("reds", "Reds", ""), [315.0, 345.0, 15.0, 45.0]),
+    (parameter_name("yellows", "Yellows", ""), [15.0, 45.0, 75.0, 105.0]),
+    (parameter_name("greens", "Greens", ""), [75.0, 105.0, 135.0, 165.0]),
+    (parameter_name("cyans", "Cyans", ""), [135.0, 165.0, 195.0, 225.0]),
+    (parameter_name("blues", "Blues", ""), [195.0, 225.0, 255.0, 285.0]),
+    (parameter_name("magentas", "Magentas", ""), [255.0, 285.0, 315.0, 345.0]),
 ];
 
 /// Shifts of all colors, of six ranges of them, or one hue for all.
@@ -148,24 +151,26 @@ impl Parameters for HueSaturation {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         self.master.visit(v);
         let hint = "Give everything one hue";
-        v.flag(named("colorize", "Colorize", hint), false, &mut self.colorize);
+        v.flag(parameter_name("colorize", "Colorize", hint), false, &mut self.colorize);
         let hint = "The hue, saturation and lightness of what is colorized";
-        v.group(named(Self::TINT, "Colorized", hint), &mut |v| {
+        v.group(parameter_name(Self::TINT, "Colorized", hint), &mut |v| {
             let number = NumberParameter::whole;
-            v.number(number(named("hue", "Hue", ""), 0.0, 360.0, 0.0), &mut self.tint.hue);
-            let saturation = number(named("saturation", "Saturation", ""), 0.0, 100.0, 25.0);
+            v.number(number(parameter_name("hue", "Hue", ""), 0.0, 360.0, 0.0), &mut self.tint.hue);
+            let saturation =
+                number(parameter_name("saturation", "Saturation", ""), 0.0, 100.0, 25.0);
             v.number(saturation, &mut self.tint.saturation);
-            let lightness = NumberParameter::around(named("lightness", "Lightness", ""), 100.0);
+            let lightness =
+                NumberParameter::around(parameter_name("lightness", "Lightness", ""), 100.0);
             v.number(lightness, &mut self.tint.lightness);
         });
         for ((name, angles), range) in HUE_RANGES.into_iter().zip(&mut self.ranges) {
             v.group(name, &mut |v| {
                 range.shift.visit(v);
                 const ANGLES: [ParameterName; 4] = [
-                    named("fade_from", "Fades from", "Degrees of the color circle"),
-                    named("from", "From", "Degrees of the color circle"),
-                    named("to", "To", "Degrees of the color circle"),
-                    named("fade_to", "Fades to", "Degrees of the color circle"),
+                    parameter_name("fade_from", "Fades from", "Degrees of the color circle"),
+                    parameter_name("from", "From", "Degrees of the color circle"),
+                    parameter_name("to", "To", "Degrees of the color circle"),
+                    parameter_name("fade_to", "Fades to", "Degrees of the color circle"),
                 ];
                 for ((name, angle), default) in
                     ANGLES.into_iter().zip(&mut range.angles).zip(angles)

@@ -1,6 +1,6 @@
 //! The adjustment that looks colors up in a table. Floor 3.
 
-use super::parameters::{ParameterVisitor, Parameters, named};
+use super::parameters::{ParameterVisitor, Parameters, parameter_name};
 use super::table::ColorTable;
 
 /// A table that is applied.
@@ -12,6 +12,6 @@ pub struct ColorLookup {
 
 impl Parameters for ColorLookup {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        v.table(named("table", "Table", "A .cube file"), &mut self.table);
+        v.table(parameter_name("table", "Table", "A .cube file"), &mut self.table);
     }
 }

@@ -2,7 +2,9 @@
 //! channel mixer, black and white, selective color, threshold. Floor 3.
 
 use super::hsl;
-use super::parameters::{NumberParameter, ParameterName, ParameterVisitor, Parameters, named};
+use super::parameters::{
+    NumberParameter, ParameterName, ParameterVisitor, Parameters, parameter_name,
+};
 use super::tones::CHANNELS;
 use crate::math::srgb::Color;
 
@@ -59,14 +61,14 @@ impl ColorBalance {
 impl Parameters for ColorBalance {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         const RANGES: [ParameterName; 3] = [
-            named("shadows", "Shadows", ""),
-            named("midtones", "Mid-tones", ""),
-            named("highlights", "Highlights", ""),
+            parameter_name("shadows", "Shadows", ""),
+            parameter_name("midtones", "Mid-tones", ""),
+            parameter_name("highlights", "Highlights", ""),
         ];
         const AXES: [ParameterName; 3] = [
-            named("red", "Red", "Below 0 cyan"),
-            named("green", "Green", "Below 0 magenta"),
-            named("blue", "Blue", "Below 0 yellow"),
+            parameter_name("red", "Red", "Below 0 cyan"),
+            parameter_name("green", "Green", "Below 0 magenta"),
+            parameter_name("blue", "Blue", "Below 0 yellow"),
         ];
         // Most is done to mid-tones, so these are offered first.
         for i in [1, 0, 2] {
@@ -77,7 +79,7 @@ impl Parameters for ColorBalance {
                 }
             });
         }
-        let name = named("keep_luminosity", "Preserve luminosity", "The lightness stays");
+        let name = parameter_name("keep_luminosity", "Preserve luminosity", "The lightness stays");
         v.flag(name, true, &mut self.keep_luminosity);
     }
 }
@@ -111,8 +113,8 @@ impl Parameters for Vibrance {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         let hint = "Saturation, most for colors that have little of it";
         let number = |name| NumberParameter::around(name, 100.0);
-        v.number(number(named("vibrance", "Vibrance", hint)), &mut self.vibrance);
-        v.number(number(named("saturation", "Saturation", "")), &mut self.saturation);
+        v.number(number(parameter_name("vibrance", "Vibrance", hint)), &mut self.vibrance);
+        v.number(number(parameter_name("saturation", "Saturation", "")), &mut self.saturation);
     }
 }
 
@@ -156,11 +158,19 @@ impl PhotoFilter {
 
 impl Parameters for PhotoFilter {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        v.color(named("color", "Color", "Color of the filter"), Self::WARMING, &mut self.color);
-        let density =
-            NumberParameter::whole(named("density", "Density", "Percent"), 1.0, 100.0, 25.0);
+        v.color(
+            parameter_name("color", "Color", "Color of the filter"),
+            Self::WARMING,
+            &mut self.color,
+        );
+        let density = NumberParameter::whole(
+            parameter_name("density", "Density", "Percent"),
+            1.0,
+            100.0,
+            25.0,
+        );
         v.number(density, &mut self.density);
-        let name = named("keep_luminosity", "Preserve luminosity", "The luminosity stays");
+        let name = parameter_name("keep_luminosity", "Preserve luminosity", "The luminosity stays");
         v.flag(name, true, &mut self.keep_luminosity);
     }
 }
@@ -201,10 +211,10 @@ impl ChannelMixer {
 impl Parameters for ChannelMixer {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         const SHARES: [ParameterName; 4] = [
-            named("red", "Red", "Percent"),
-            named("green", "Green", "Percent"),
-            named("blue", "Blue", "Percent"),
-            named("constant", "Constant", "Percent of white that is added"),
+            parameter_name("red", "Red", "Percent"),
+            parameter_name("green", "Green", "Percent"),
+            parameter_name("blue", "Blue", "Percent"),
+            parameter_name("constant", "Constant", "Percent of white that is added"),
         ];
         let mut output = |name, defaults: [f32; 4], shares: &mut [f32; 4]| {
             v.group(name, &mut |v| {
@@ -218,8 +228,8 @@ impl Parameters for ChannelMixer {
         for ((name, shares), defaults) in CHANNELS.into_iter().zip(&mut self.outputs).zip(UNMIXED) {
             output(name, defaults, shares);
         }
-        output(named("gray", "Gray", "Used if it is monochrome"), GRAY, &mut self.gray);
-        v.flag(named("monochrome", "Monochrome", "Grays"), false, &mut self.monochrome);
+        output(parameter_name("gray", "Gray", "Used if it is monochrome"), GRAY, &mut self.gray);
+        v.flag(parameter_name("monochrome", "Monochrome", "Grays"), false, &mut self.monochrome);
     }
 }
 
@@ -288,8 +298,12 @@ impl Parameters for BlackWhite {
         {
             v.number(NumberParameter::whole(name, -200.0, 300.0, default), value);
         }
-        v.flag(named("tint", "Tint", "Give the grays a color"), false, &mut self.is_tinted);
-        v.color(named("color", "Color of the tint", ""), Self::TINT, &mut self.color);
+        v.flag(
+            parameter_name("tint", "Tint", "Give the grays a color"),
+            false,
+            &mut self.is_tinted,
+        );
+        v.color(parameter_name("color", "Color of the tint", ""), Self::TINT, &mut self.color);
     }
 }
 
@@ -346,15 +360,15 @@ impl SelectiveColor {
 impl Parameters for SelectiveColor {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         const NEUTRALS: [ParameterName; 3] = [
-            named("whites", "Whites", ""),
-            named("neutrals", "Neutrals", ""),
-            named("blacks", "Blacks", ""),
+            parameter_name("whites", "Whites", ""),
+            parameter_name("neutrals", "Neutrals", ""),
+            parameter_name("blacks", "Blacks", ""),
         ];
         const INKS: [ParameterName; 4] = [
-            named("cyan", "Cyan", "Percent"),
-            named("magenta", "Magenta", "Percent"),
-            named("yellow", "Yellow", "Percent"),
-            named("black", "Black", "Percent"),
+            parameter_name("cyan", "Cyan", "Percent"),
+            parameter_name("magenta", "Magenta", "Percent"),
+            parameter_name("yellow", "Yellow", "Percent"),
+            parameter_name("black", "Black", "Percent"),
         ];
         let hues = super::hue_saturation::HUE_RANGES.map(|(name, _)| name);
         for (name, inks) in hues.into_iter().chain(NEUTRALS).zip(&mut self.ranges) {
@@ -365,7 +379,7 @@ impl Parameters for SelectiveColor {
             });
         }
         let hint = "Percent of all ink, not of the color's own ink";
-        v.flag(named("absolute", "Absolute", hint), false, &mut self.absolute);
+        v.flag(parameter_name("absolute", "Absolute", hint), false, &mut self.absolute);
     }
 }
 
@@ -393,7 +407,7 @@ impl Threshold {
 
 impl Parameters for Threshold {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let name = named("level", "Level", "Luminosities from this become white");
+        let name = parameter_name("level", "Level", "Luminosities from this become white");
         v.number(NumberParameter::whole(name, 1.0, 255.0, 128.0), &mut self.level);
     }
 }

@@ -19,7 +19,7 @@ pub struct ParameterName {
 }
 
 /// The name of a parameter.
-pub(in crate::paint) const fn named(
+pub(in crate::paint) const fn parameter_name(
     key: &'static str,
     label: &'static str,
     hint: &'static str,

@@ -39,13 +39,13 @@ impl LiveAdjustment {
 
     /// Adjusts premultiplied pixels in place; alpha stays.
     pub fn apply(&self, pixels: &mut PlanarTile) {
-        let prepared = self.prepared();
+        let prepared = self.prepare();
         pixels.rows_mut().iter_mut().for_each(|row| prepared.adjust(row));
     }
 
     /// Computes now what many tiles would otherwise wait for.
     pub fn warm(&self) {
-        self.prepared();
+        self.prepare();
     }
 
     /// What is kept for speed, bytes.
@@ -68,7 +68,7 @@ impl LiveAdjustment {
         Arc::as_ptr(&self.prepared).cast::<()>() as usize
     }
 
-    fn prepared(&self) -> Arc<RowAdjuster> {
+    fn prepare(&self) -> Arc<RowAdjuster> {
         // Nothing in it is divided among threads.
         self.prepared.get_or_make(|| Arc::new(RowAdjuster::of(&self.params)))
     }

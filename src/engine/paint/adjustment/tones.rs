@@ -2,12 +2,17 @@
 //! exposure, inversion, posterizing. Floor 3. Values are straight and sRGB-encoded, in `[0, 1]`.
 
 use super::curve::{ToneCurve, ToneSpline};
-use super::parameters::{NumberParameter, ParameterName, ParameterVisitor, Parameters, named};
+use super::parameters::{
+    NumberParameter, ParameterName, ParameterVisitor, Parameters, parameter_name,
+};
 
 /// The three channels and all of them together.
-pub(super) const MASTER: ParameterName = named("master", "RGB", "All channels together");
-pub(super) const CHANNELS: [ParameterName; 3] =
-    [named("red", "Red", ""), named("green", "Green", ""), named("blue", "Blue", "")];
+pub(super) const MASTER: ParameterName = parameter_name("master", "RGB", "All channels together");
+pub(super) const CHANNELS: [ParameterName; 3] = [
+    parameter_name("red", "Red", ""),
+    parameter_name("green", "Green", ""),
+    parameter_name("blue", "Blue", ""),
+];
 
 /// Tones from black to white of one channel or all.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +48,7 @@ impl LevelsRange {
 impl Parameters for LevelsRange {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         let tone = |key, label, hint, least, most, default| {
-            NumberParameter::whole(named(key, label, hint), least, most, default)
+            NumberParameter::whole(parameter_name(key, label, hint), least, most, default)
         };
         let hint = "Tones up to this become the darkest";
         v.number(tone("black", "Shadows", hint, 0.0, 253.0, 0.0), &mut self.black);
@@ -180,11 +185,12 @@ fn legacy(brightness: f32, contrast: f32, x: f32) -> f32 {
 
 impl Parameters for BrightnessContrast {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let number = |key, label, most| NumberParameter::around(named(key, label, ""), most);
+        let number =
+            |key, label, most| NumberParameter::around(parameter_name(key, label, ""), most);
         v.number(number("brightness", "Brightness", 150.0), &mut self.brightness);
         v.number(number("contrast", "Contrast", 100.0), &mut self.contrast);
         let hint = "Shifts and stretches all tones alike and clips them";
-        v.flag(named("legacy", "Legacy", hint), false, &mut self.legacy);
+        v.flag(parameter_name("legacy", "Legacy", hint), false, &mut self.legacy);
     }
 }
 
@@ -217,7 +223,8 @@ impl Exposure {
 impl Parameters for Exposure {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         let number = |key, label, hint, least, most, default, decimals| {
-            NumberParameter::whole(named(key, label, hint), least, most, default).decimals(decimals)
+            NumberParameter::whole(parameter_name(key, label, hint), least, most, default)
+                .decimals(decimals)
         };
         let hint = "In stops: 1 doubles the light";
         v.number(number("exposure", "Exposure", hint, -20.0, 20.0, 0.0, 2), &mut self.exposure);
@@ -269,7 +276,7 @@ impl Posterize {
 
 impl Parameters for Posterize {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let name = named("levels", "Levels", "How many tones each channel has");
+        let name = parameter_name("levels", "Levels", "How many tones each channel has");
         v.number(NumberParameter::whole(name, 2.0, 255.0, 4.0), &mut self.levels);
     }
 }

@@ -2,7 +2,7 @@
 //! or grain can be applied to it. Floor 3. Not here: the plain round tip (`dab`), which adds its
 //! coverage directly.
 
-use super::round::{RoundTip, RowPaint, bent_row, flat_row};
+use super::round::{RoundTip, RowPaint, fill_bent_row, flat_row};
 use super::shape::{self, TipShape};
 use super::softened::SoftenedStamps;
 use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbors, TouchedBlocks};
@@ -45,7 +45,7 @@ impl PlacedDab<'_> {
         stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        let part = self.touched(at);
+        let part = self.touched_blocks(at);
         if part.area.is_empty() {
             return;
         }
@@ -93,7 +93,7 @@ impl PlacedDab<'_> {
         if let SoftenedStamps::One(stamp) = stamps {
             return self.add_stamp(stamp, at, stroke_tile, scratch);
         }
-        let part = self.touched(at);
+        let part = self.touched_blocks(at);
         if part.area.is_empty() {
             return;
         }
@@ -124,7 +124,7 @@ impl PlacedDab<'_> {
                 reach: &mut shares[part.range(span)],
             };
             match &field {
-                Some(field) => bent_row(field.around(span), &tip, row, out),
+                Some(field) => fill_bent_row(field.around(span), &tip, row, out),
                 None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, row, out),
             }
         }

@@ -5,7 +5,7 @@
 mod rows;
 
 pub use rows::slope;
-pub(super) use rows::{BentPart, BlockPixels, bent_row, bent_rows, flat_row, flat_rows};
+pub(super) use rows::{BentPart, BlockPixels, fill_bent_row, fill_bent_rows, flat_row, flat_rows};
 
 use crate::math::Vec2;
 use crate::paint::dab_walker::Dab;

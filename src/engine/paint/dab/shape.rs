@@ -151,10 +151,20 @@ impl TipShape {
                 square_row(d, &RoundProfile::new(hardness, softness), (rim, thin), out)
             }
             (TipShape::Ellipse { .. }, Falloff::Peaked) => {
-                peaked_ellipse_row(d, &PeakedProfile::new(hardness, softness), (rim, thin), out);
+                fill_peaked_ellipse_row(
+                    d,
+                    &PeakedProfile::new(hardness, softness),
+                    (rim, thin),
+                    out,
+                );
             }
             (TipShape::Square { .. }, Falloff::Peaked) => {
-                peaked_square_row(d, &PeakedProfile::new(hardness, softness), (rim, thin), out);
+                fill_peaked_square_row(
+                    d,
+                    &PeakedProfile::new(hardness, softness),
+                    (rim, thin),
+                    out,
+                );
             }
         }
     }
@@ -172,11 +182,11 @@ crate::widest! {
         for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
 
-    fn peaked_ellipse_row(d: TipSpanNeighbors, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
+    fn fill_peaked_ellipse_row(d: TipSpanNeighbors, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| ellipse(profile, rim.0, p, across, along));
     }
 
-    fn peaked_square_row(d: TipSpanNeighbors, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
+    fn fill_peaked_square_row(d: TipSpanNeighbors, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
         for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
 }

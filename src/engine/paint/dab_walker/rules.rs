@@ -197,7 +197,7 @@ impl DabRules {
             let slope = 1.0 - surface.facing(x, y).max(0.0).min(1.0);
             vec3(slope, kappa(x, y), surface.depth(x, y))
         };
-        let [slope, kappa, depth] = surface.blended(at, read).to_array();
+        let [slope, kappa, depth] = surface.interpolate(at, read).to_array();
         DabInputs { slope, curvature: 0.5 + 0.5 * kappa, depth: depth.max(0.0).min(1.0), ..inputs }
     }
 
@@ -256,14 +256,15 @@ impl DabRules {
     }
 
     /// The position of a dab that is due at a point.
-    fn strayed(&self, moment: &Moment, inputs: &DabInputs) -> Vec2 {
+    fn stray_position(&self, moment: &Moment, inputs: &DabInputs) -> Vec2 {
         let at = moment.place.at;
-        let away = self.scattered(inputs) + self.offset(moment, inputs) + self.lead(moment, inputs);
+        let away =
+            self.scatter_offset(inputs) + self.offset(moment, inputs) + self.lead(moment, inputs);
         // Comparisons that NaN fails.
         if away.length() > 0.0 && away.length() <= FAR_PX { at + away } else { at }
     }
 
-    fn scattered(&self, inputs: &DabInputs) -> Vec2 {
+    fn scatter_offset(&self, inputs: &DabInputs) -> Vec2 {
         let ratio = self.value(Property::Scatter, self.brush.scatter, inputs).max(0.0);
         if ratio.is_nan() || ratio <= 0.0 {
             return Vec2::ZERO;
@@ -330,7 +331,7 @@ impl DabRules {
 
     /// The dab of a moment; `None` if nothing would be visible.
     pub fn dab(&self, moment: &Moment, inputs: DabInputs) -> Option<Dab> {
-        let strayed = self.strayed(moment, &inputs);
+        let strayed = self.stray_position(moment, &inputs);
         let at = self.on_canvas(strayed);
         let inputs =
             if strayed == moment.place.at { inputs } else { self.over_surface(at, inputs) };

@@ -82,7 +82,7 @@ impl Speeds {
     }
 
     /// The hand has moved this far by then. Samples with the same time count together.
-    pub fn moved(&mut self, px: f32, secs: f32) {
+    pub fn advance(&mut self, px: f32, secs: f32) {
         self.since_px += px;
         let elapsed = secs - self.at_secs;
         if elapsed > 0.0 {
@@ -97,7 +97,7 @@ impl Speeds {
         }
     }
 
-    pub fn given_to(&self, place: CurvePoint) -> CurvePoint {
+    pub fn apply_to(&self, place: CurvePoint) -> CurvePoint {
         CurvePoint { px_per_sec: self.px_per_sec(), paces: self.paces, ..place }
     }
 }

@@ -299,7 +299,7 @@ proptest! {
 }
 
 fn added(points: &[(f32, f32)]) -> Curve {
-    Curve::added(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
+    Curve::additive(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
 }
 
 /// To the right, 100 px a second.

@@ -12,7 +12,7 @@ pub enum Curve {
     /// Straight lines between points, level beyond the first and the last; factors in `[0, 1]`.
     /// Only from [`Curve::through`].
     Points(Arc<[Vec2]>),
-    /// The same, added to the property before anything multiplies it. Only from [`Curve::added`].
+    /// The same, added to the property before anything multiplies it. Only from [`Curve::additive`].
     Added(Arc<[Vec2]>),
 }
 
@@ -30,7 +30,7 @@ impl Curve {
     }
 
     /// The same for outputs up to [`MOST_ADDED`] either way, which are added.
-    pub fn added(points: Vec<Vec2>) -> Option<Self> {
+    pub fn additive(points: Vec<Vec2>) -> Option<Self> {
         let is_inside = points.iter().all(|p| p.y.abs() <= MOST_ADDED);
         (is_inside && are_ordered(&points)).then(|| Curve::Added(points.into()))
     }
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn what_is_added_may_leave_the_square_but_not_every_bound() {
-        let added = |y: f32| Curve::added(vec![vec2(0.0, -y), vec2(1.0, y)]);
+        let added = |y: f32| Curve::additive(vec![vec2(0.0, -y), vec2(1.0, y)]);
         assert_eq!(added(40.0).unwrap().at(0.75), 20.0);
         assert!(added(1e4).is_none() && added(f32::NAN).is_none());
     }

@@ -124,18 +124,18 @@ impl LayerEffect {
             EffectFill::Gradient => {
                 let ramp = Ramp::new(&self.stops)?;
                 if matches!(self.kind, EffectKind::OuterGlow | EffectKind::InnerGlow) {
-                    return Some(painted(at, |i, _| ramp.at(1.0 - amounts.at(i))));
+                    return Some(paint_tile(at, |i, _| ramp.at(1.0 - amounts.at(i))));
                 }
                 let line = RampStyle::line(filled, s.angle, s.scale, vec2(s.offset_x, s.offset_y));
                 let way = |t: f32| if s.reverse { 1.0 - t } else { t };
-                Some(painted(at, |_, p| ramp.at(way(s.ramp.place(line, p).max(0.0).min(1.0)))))
+                Some(paint_tile(at, |_, p| ramp.at(way(s.ramp.place(line, p).max(0.0).min(1.0)))))
             }
             EffectFill::Pattern => {
                 let pattern = self.pattern.as_ref()?;
                 let corner = vec2(filled.x0 as f32, filled.y0 as f32);
                 let corner = if s.aligned { corner } else { Vec2::ZERO };
                 let begin = corner + vec2(s.phase_x, s.phase_y);
-                Some(painted(at, |_, p| pattern.color_at(p - begin, s.scale)))
+                Some(paint_tile(at, |_, p| pattern.color_at(p - begin, s.scale)))
             }
         }
     }
@@ -146,7 +146,7 @@ impl LayerEffect {
     }
 }
 
-fn painted(at: TileAt, color: impl Fn(usize, Vec2) -> [f32; 4]) -> EffectPaint {
+fn paint_tile(at: TileAt, color: impl Fn(usize, Vec2) -> [f32; 4]) -> EffectPaint {
     let rect = at.rect();
     let mut pixels = transparent_f32();
     for (i, pixel) in pixels.iter_mut().enumerate() {

@@ -134,7 +134,7 @@ impl LayerEffect {
     }
 
     /// The amount for each tone of a blur.
-    fn toned(&self) -> impl Fn(f32) -> f32 {
+    fn tone_curve(&self) -> impl Fn(f32) -> f32 {
         let spline = (!self.contour.is_straight()).then(|| self.contour.spline());
         let invert = self.kind == EffectKind::Satin && self.settings.invert;
         move |v: f32| {
@@ -145,7 +145,7 @@ impl LayerEffect {
     }
 
     /// What is covered, solid for a share of the size and blurred for the rest.
-    fn softened(&self, matte: Matte) -> Matte {
+    fn soften(&self, matte: Matte) -> Matte {
         let solid = self.settings.size * self.settings.spread;
         matte.dilated(solid).blurred(self.settings.size - solid)
     }
@@ -166,11 +166,11 @@ impl LayerEffect {
         let last = away * self.shadow_distance(light, depth_px);
         let moved = |by: Vec2| rect.moved(-by.x.round() as i32, -by.y.round() as i32);
         let window = moved(first).union(moved(last)).grown(self.settings.size.ceil() as i32 + 2);
-        let (matte, tone) = (cover(window), self.toned());
+        let (matte, tone) = (cover(window), self.tone_curve());
         if let Some(even) = even(&matte) {
             return Amounts::Even(tone(even));
         }
-        let soft = self.softened(matte);
+        let soft = self.soften(matte);
         let per_px = fall_per_px(own);
         let value = |x: i32, y: i32| {
             let fall = surface.map_or(0.0, |surface| depth_at(surface, x, y) * depth_px * per_px);
@@ -184,14 +184,14 @@ impl LayerEffect {
         let s = &self.settings;
         let matte = cover(rect.grown(s.size.ceil() as i32 + 2));
         let is_from_center = self.kind == EffectKind::InnerGlow && s.source == GlowSource::Center;
-        let tone = self.toned();
+        let tone = self.tone_curve();
         let tone = |v: f32| tone(if is_from_center { 1.0 - v.min(1.0) } else { v });
         if let Some(even) = even(&matte) {
             return Amounts::Even(tone(even));
         }
         let gain = 1.0 / s.range.max(0.01);
         if s.glow == GlowTechnique::Softer {
-            let soft = self.softened(matte);
+            let soft = self.soften(matte);
             return Amounts::of(rect, |x, y| tone(soft.at(x, y) * gain));
         }
         let near = matte.fading(s.size);
@@ -203,7 +203,7 @@ impl LayerEffect {
         let (sin, cos) = s.angle.to_radians().sin_cos();
         let by = vec2(cos, -sin) * s.distance;
         let (matte, tone) =
-            (cover(rect.grown((s.size + s.distance).ceil() as i32 + 2)), self.toned());
+            (cover(rect.grown((s.size + s.distance).ceil() as i32 + 2)), self.tone_curve());
         if even(&matte).is_some() {
             return Amounts::Even(tone(0.0));
         }
@@ -253,9 +253,9 @@ impl LayerEffect {
         let size = if half { s.size / 2.0 } else { s.size }.max(1.0);
         let height = match s.technique {
             BevelTechnique::Smooth => matte.clone().blurred(size),
-            BevelTechnique::Chisel => chiseled(&matte, size, s.bevel),
+            BevelTechnique::Chisel => chisel(&matte, size, s.bevel),
         };
-        let lit = self.lit(&height, size, self.light(light)).blurred(s.soften);
+        let lit = self.light_height(&height, size, self.light(light)).blurred(s.soften);
         let tone = |x: i32, y: i32| match s.bevel {
             BevelStyle::Outer => lit.at(x, y) * (1.0 - matte.at(x, y)),
             BevelStyle::Pillow => lit.at(x, y) * (2.0 * matte.at(x, y) - 1.0),
@@ -264,7 +264,7 @@ impl LayerEffect {
         Amounts::of(rect, tone)
     }
 
-    fn lit(&self, height: &Matte, size: f32, light: EffectLight) -> Matte {
+    fn light_height(&self, height: &Matte, size: f32, light: EffectLight) -> Matte {
         let (sin, cos) = light.angle.to_radians().sin_cos();
         let (up, flat) = light.altitude.to_radians().sin_cos();
         let toward = Vec3::new(flat * cos, -flat * sin, up);
@@ -326,7 +326,7 @@ fn depth_at(surface: &Surface, x: i32, y: i32) -> f32 {
 }
 
 /// A height that rises straight over a length from the edge.
-fn chiseled(matte: &Matte, size: f32, style: BevelStyle) -> Matte {
+fn chisel(matte: &Matte, size: f32, style: BevelStyle) -> Matte {
     let outer = || matte.clone().fading(size);
     let inner = || matte.clone().complement().fading(size).complement();
     match style {

@@ -20,7 +20,7 @@ pub(super) fn connected_area(
 ) -> Option<Flooded> {
     let like = color_at((x, y), part, &tile)?;
     let opened = |at: TileAt| OpenTile {
-        open: opened(at, tile(at).as_deref(), like, tolerance, canvas, part),
+        open: open_tile(at, tile(at).as_deref(), like, tolerance, canvas, part),
         links: None,
     };
     Some(Flooded::from((x, y), canvas, opened))
@@ -36,9 +36,9 @@ pub(super) fn alike(
 ) -> Option<CoverageGrid> {
     let like = color_at(start, part, &tile)?;
     let found = |at: TileAt| {
-        CoverageTile::of_bits(&opened(at, tile(at).as_deref(), like, tolerance, canvas, part))
+        CoverageTile::of_bits(&open_tile(at, tile(at).as_deref(), like, tolerance, canvas, part))
     };
-    Some(CoverageGrid::gathered(canvas.rect(), found))
+    Some(CoverageGrid::gather(canvas.rect(), found))
 }
 
 fn color_at(
@@ -60,7 +60,7 @@ fn pixel(tile: Option<&Tile>, (x, y): (usize, usize)) -> [u8; 4] {
 }
 
 /// The pixels of a tile that may be filled.
-fn opened(
+fn open_tile(
     at: TileAt,
     tile: Option<&Tile>,
     like: [u8; 4],

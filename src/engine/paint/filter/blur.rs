@@ -4,7 +4,9 @@
 use super::window::{FilterSource, FilterWindow, transposed};
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, Size};
-use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterVisitor, Parameters, parameter_name,
+};
 use crate::raster::blur;
 
 /// The same softness everywhere.
@@ -22,7 +24,9 @@ impl Default for GaussianBlur {
 
 /// The parameter that blurs share.
 pub(super) const fn radius(hint: &'static str, most: f32, default: f32) -> NumberParameter {
-    NumberParameter::whole(named("radius", "Radius", hint), 0.0, most, default).decimals(1).px()
+    NumberParameter::whole(parameter_name("radius", "Radius", hint), 0.0, most, default)
+        .decimals(1)
+        .px()
 }
 
 impl Parameters for GaussianBlur {
@@ -43,11 +47,11 @@ impl FilterKernel for GaussianBlur {
 
 /// How far a Gaussian reads, px.
 pub(super) fn gaussian_reach(sigma: f32) -> f32 {
-    if sigma > 0.0 { weighed(sigma) + 4.0 * (1 << coarseness(sigma)) as f32 } else { 0.0 }
+    if sigma > 0.0 { kernel_reach(sigma) + 4.0 * (1 << coarseness(sigma)) as f32 } else { 0.0 }
 }
 
 /// How far its weights reach, px: 6e-5 of them lie beyond four standard deviations.
-fn weighed(sigma: f32) -> f32 {
+fn kernel_reach(sigma: f32) -> f32 {
     4.0 * sigma
 }
 
@@ -71,7 +75,8 @@ pub(super) fn gaussian(source: &dyn FilterSource, out: Rect, sigma: f32) -> Vec<
     // What is blurred repeats its border, as the picture does: of coarse pixels, one that lies
     // beyond the picture.
     let known = source.bounds().grown(if level > 0 { 2 << level } else { 0 });
-    let reads = out.grown((weighed(sigma) + 2.0 * step).ceil() as i32).intersect(known).union(out);
+    let reads =
+        out.grown((kernel_reach(sigma) + 2.0 * step).ceil() as i32).intersect(known).union(out);
     if level == 0 {
         let window = source.window(reads);
         let blurred = blur::gaussian_pixels(window.size(), window.pixels(), sigma);
@@ -371,9 +376,9 @@ impl Default for MotionBlur {
 
 impl Parameters for MotionBlur {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let angle = named("angle", "Angle", "Degrees counter-clockwise from the right");
+        let angle = parameter_name("angle", "Angle", "Degrees counter-clockwise from the right");
         v.number(NumberParameter::around(angle, 180.0).decimals(1), &mut self.angle);
-        let length = named("length", "Length", "How far it moves");
+        let length = parameter_name("length", "Length", "How far it moves");
         let length = NumberParameter::whole(length, 0.0, 1000.0, 20.0).decimals(1).px();
         v.number(length, &mut self.length);
     }
@@ -426,7 +431,7 @@ fn means_along(window: &FilterWindow, out: Rect, slope: f64, extent: f64) -> Vec
         read.extend((from - margin..to + margin).map(|x| {
             let y = f64::from(t) + f64::from(x) * slope;
             let part = (y - y.floor()) as f32;
-            mixed(window.at(x, y.floor() as i32), window.at(x, y.floor() as i32 + 1), part)
+            mix(window.at(x, y.floor() as i32), window.at(x, y.floor() as i32 + 1), part)
         }));
         line.means(&read, &mut means[(from - out.x0) as usize..(to - out.x0) as usize]);
     }
@@ -437,7 +442,7 @@ fn means_along(window: &FilterWindow, out: Rect, slope: f64, extent: f64) -> Vec
             let (whole, column) = (t.floor(), (x - out.x0) as usize);
             let above = (whole as i32 - first) as usize * width + column;
             let beneath = (above + width).min(lines.len() - 1);
-            all.push(mixed(lines[above], lines[beneath], (t - whole) as f32));
+            all.push(mix(lines[above], lines[beneath], (t - whole) as f32));
         }
     }
     all
@@ -458,6 +463,6 @@ fn columns_met(out: Rect, slope: f64, t: i32) -> Option<(i32, i32)> {
 
 /// A share of the way from one pixel to another.
 #[inline(always)]
-pub(super) fn mixed(a: [f32; 4], b: [f32; 4], share: f32) -> [f32; 4] {
+pub(super) fn mix(a: [f32; 4], b: [f32; 4], share: f32) -> [f32; 4] {
     std::array::from_fn(|k| a[k] + share * (b[k] - a[k]))
 }

@@ -2,11 +2,13 @@
 //! picture shifted. Floor 3. On premultiplied encoded pixels.
 
 use super::blur::radius;
-use super::sharpen::{amount, straight, under};
+use super::sharpen::{amount, color_under_alpha, straight};
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, srgb::quantize};
-use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterVisitor, Parameters, parameter_name,
+};
 
 /// The middle value of the pixels around, which removes specks and keeps edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +107,7 @@ impl Default for Pixelate {
 
 impl Parameters for Pixelate {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let size = named("size", "Size", "The side of a square");
+        let size = parameter_name("size", "Size", "The side of a square");
         v.number(NumberParameter::whole(size, 1.0, 1000.0, 8.0).px(), &mut self.size);
     }
 }
@@ -183,9 +185,13 @@ impl Default for EdgeFilter {
 impl Parameters for EdgeFilter {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         v.number(amount("How bright edges are, percent", 500.0, 100.0), &mut self.amount);
-        let colored = named("colored", "Colored", "Edges of each channel by itself");
+        let colored = parameter_name("colored", "Colored", "Edges of each channel by itself");
         v.flag(colored, true, &mut self.colored);
-        v.flag(named("inverted", "Dark lines", "Dark on light"), false, &mut self.inverted);
+        v.flag(
+            parameter_name("inverted", "Dark lines", "Dark on light"),
+            false,
+            &mut self.inverted,
+        );
     }
 }
 
@@ -215,7 +221,7 @@ impl FilterKernel for EdgeFilter {
                 let found = ((across * across + down * down).sqrt() * share).min(1.0);
                 if self.inverted { 1.0 - found } else { found }
             };
-            under([edge(0), edge(1), edge(2)], rows[1][1][3])
+            color_under_alpha([edge(0), edge(1), edge(2)], rows[1][1][3])
         })
     }
 }
@@ -242,9 +248,9 @@ impl Parameters for WrappedOffset {
             default: 50.0,
             ..NumberParameter::around(name, 100.0).decimals(2)
         };
-        let right = named("right", "Right", "Percent of the width");
+        let right = parameter_name("right", "Right", "Percent of the width");
         v.number(number(right), &mut self.right);
-        v.number(number(named("down", "Down", "Percent of the height")), &mut self.down);
+        v.number(number(parameter_name("down", "Down", "Percent of the height")), &mut self.down);
     }
 }
 

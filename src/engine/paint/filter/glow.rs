@@ -5,7 +5,9 @@ use super::sharpen::{amount, straight};
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::Rect;
-use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterVisitor, Parameters, parameter_name,
+};
 
 /// What is bright, blurred, and laid over the picture as light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,14 +30,14 @@ impl Parameters for BrightGlow {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         v.number(amount("How strong the light is, percent", 200.0, 60.0), &mut self.amount);
         v.number(radius("How far it shines", 250.0, 12.0), &mut self.radius);
-        let threshold = named("threshold", "Threshold", "What is darker does not glow");
+        let threshold = parameter_name("threshold", "Threshold", "What is darker does not glow");
         v.number(NumberParameter::whole(threshold, 0.0, 255.0, 128.0), &mut self.threshold);
     }
 }
 
 impl BrightGlow {
     /// What of a pixel glows: from the threshold on, all of it at white.
-    fn lit(&self, pixel: [f32; 4]) -> [f32; 4] {
+    fn glow_of(&self, pixel: [f32; 4]) -> [f32; 4] {
         let [r, g, b] = straight(pixel);
         let luma = 0.3 * r + 0.59 * g + 0.11 * b;
         let dark = (self.threshold / 255.0).min(0.999);
@@ -57,7 +59,7 @@ impl FilterSource for LitSource<'_> {
 
     fn window(&self, rect: Rect) -> FilterWindow {
         let mut window = self.source.window(rect);
-        window.pixels_mut().iter_mut().for_each(|pixel| *pixel = self.glow.lit(*pixel));
+        window.pixels_mut().iter_mut().for_each(|pixel| *pixel = self.glow.glow_of(*pixel));
         window
     }
 }

@@ -10,7 +10,9 @@ use super::sharpen::straight;
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, srgb};
-use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterVisitor, Parameters, parameter_name,
+};
 
 /// The blur of a lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,19 +46,20 @@ impl Default for LensBlur {
 
 impl Parameters for LensBlur {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let radius = named("radius", "Aperture", "Radius of the largest disk");
+        let radius = parameter_name("radius", "Aperture", "Radius of the largest disk");
         let radius = NumberParameter::whole(radius, 0.0, 200.0, 12.0).decimals(1).px();
         v.number(radius, &mut self.radius);
         let hint = "As large as the depth of the surface says; without it all is out of focus";
-        v.flag(named("by_depth", "By depth", hint), true, &mut self.by_depth);
+        v.flag(parameter_name("by_depth", "By depth", hint), true, &mut self.by_depth);
         let percent = |name, default| NumberParameter::whole(name, 0.0, 100.0, default).decimals(1);
-        let focus = named("focus", "Focus", "The depth that is sharp: 0 near, 100 far");
+        let focus = parameter_name("focus", "Focus", "The depth that is sharp: 0 near, 100 far");
         v.number(percent(focus, 0.0), &mut self.focus);
-        let range = named("range", "Range", "How much of the depth is sharp");
+        let range = parameter_name("range", "Range", "How much of the depth is sharp");
         v.number(percent(range, 10.0), &mut self.range);
-        let bright = named("highlights", "Highlights", "How bright the disks of lights are");
+        let bright =
+            parameter_name("highlights", "Highlights", "How bright the disks of lights are");
         v.number(NumberParameter::whole(bright, 0.0, 1000.0, 0.0), &mut self.highlights);
-        let threshold = named("threshold", "Threshold", "What counts as a light");
+        let threshold = parameter_name("threshold", "Threshold", "What counts as a light");
         v.number(NumberParameter::whole(threshold, 0.0, 255.0, 230.0), &mut self.threshold);
     }
 }
@@ -75,13 +78,13 @@ impl LensBlur {
         let Some(surface) = place.scene.surface.as_deref() else { return 1.0 };
         // Off the surface all is as far as can be.
         match surface.coverage_plane().get(x, y) {
-            Some(coverage) if coverage > 0 => surface.depth_plane().clamped(x, y),
+            Some(coverage) if coverage > 0 => surface.depth_plane().at_clamped(x, y),
             _ => 1.0,
         }
     }
 
     /// A pixel in linear light, lights brighter.
-    fn lit(&self, pixel: [f32; 4]) -> [f32; 4] {
+    fn brighten(&self, pixel: [f32; 4]) -> [f32; 4] {
         let color = straight(pixel);
         let luma = 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2];
         let dark = (self.threshold / 255.0).min(0.999);
@@ -93,7 +96,7 @@ impl LensBlur {
 }
 
 /// Encoded again; light beyond white stays.
-fn encoded(pixel: [f32; 4]) -> [f32; 4] {
+fn encode_pixel(pixel: [f32; 4]) -> [f32; 4] {
     let [r, g, b] = straight(pixel).map(|v| srgb::encode(v.max(0.0)) * pixel[3]);
     [r, g, b, pixel[3]]
 }
@@ -111,11 +114,11 @@ impl FilterKernel for LensBlur {
         }
         let reach = self.reach(out, out).ceil() as i32;
         let mut window = source.window(out.grown(reach));
-        window.pixels_mut().iter_mut().for_each(|pixel| *pixel = self.lit(*pixel));
+        window.pixels_mut().iter_mut().for_each(|pixel| *pixel = self.brighten(*pixel));
         let is_flat = !self.by_depth || place.scene.surface.is_none();
         if is_flat {
             let blurred = blurred(&window, out, self.radius);
-            return blurred.into_iter().map(encoded).collect();
+            return blurred.into_iter().map(encode_pixel).collect();
         }
         let bounds = source.bounds();
         let disks: Vec<f32> = (window.rect().y0..window.rect().y1)
@@ -126,7 +129,7 @@ impl FilterKernel for LensBlur {
                 self.disk(self.depth_of(place, inside.0, inside.1))
             })
             .collect();
-        layered(&window, &disks, self.radius, out).into_iter().map(encoded).collect()
+        blur_layers(&window, &disks, self.radius, out).into_iter().map(encode_pixel).collect()
     }
 }
 
@@ -144,7 +147,7 @@ fn radii(most: f32) -> Vec<f32> {
 }
 
 /// Layers blurred by their own disks, over each other.
-fn layered(window: &FilterWindow, disks: &[f32], most: f32, out: Rect) -> Vec<[f32; 4]> {
+fn blur_layers(window: &FilterWindow, disks: &[f32], most: f32, out: Rect) -> Vec<[f32; 4]> {
     let radii = radii(most);
     let mut sums = vec![[0.0f32; 4]; out.width() * out.height()];
     let mut covered = vec![0.0f32; sums.len()];

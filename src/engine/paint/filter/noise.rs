@@ -1,21 +1,25 @@
 //! Noise and grain. Floor 3. A pure function of the place in the document and a seed: the same on
 //! every machine and run. On straight encoded colors; alpha stays.
 
-use super::sharpen::{amount, straight, under};
+use super::sharpen::{amount, color_under_alpha, straight};
 use super::window::FilterSource;
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, Vec2, hash, noise, vec2};
 use crate::paint::adjustment::parameters::{
-    NumberParameter, ParameterName, ParameterVisitor, Parameters, named,
+    NumberParameter, ParameterName, ParameterVisitor, Parameters, parameter_name,
 };
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::{Scene, unwrap::Unwrapping};
 use std::sync::Arc;
 
-const SEED: NumberParameter =
-    NumberParameter::whole(named("seed", "Seed", "Other seeds give other noise"), 0.0, 9999.0, 0.0);
+const SEED: NumberParameter = NumberParameter::whole(
+    parameter_name("seed", "Seed", "Other seeds give other noise"),
+    0.0,
+    9999.0,
+    0.0,
+);
 const MONOCHROME: ParameterName =
-    named("monochrome", "Monochrome", "The same for red, green and blue");
+    parameter_name("monochrome", "Monochrome", "The same for red, green and blue");
 
 /// Random steps of each pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,9 +45,10 @@ impl Default for PixelNoise {
 impl Parameters for PixelNoise {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         v.number(amount("How large the steps are, percent", 100.0, 10.0), &mut self.amount);
-        let size = named("size", "Size", "The side of what has one value");
+        let size = parameter_name("size", "Size", "The side of what has one value");
         v.number(NumberParameter::whole(size, 1.0, 64.0, 1.0).decimals(1).px(), &mut self.size);
-        let gaussian = named("gaussian", "Gaussian", "Small steps are more likely than large ones");
+        let gaussian =
+            parameter_name("gaussian", "Gaussian", "Small steps are more likely than large ones");
         v.flag(gaussian, false, &mut self.gaussian);
         v.flag(MONOCHROME, false, &mut self.monochrome);
         v.number(SEED, &mut self.seed);
@@ -79,16 +84,16 @@ impl FilterKernel for PixelNoise {
                 true => [self.step(0, i, j); 3],
                 false => [0, 1, 2].map(|channel| self.step(channel, i, j)),
             };
-            stepped(window.at(x, y), steps.map(|step| share * step))
+            shift_color(window.at(x, y), steps.map(|step| share * step))
         })
     }
 }
 
 /// A pixel whose straight color is moved, within black and white.
-fn stepped(pixel: [f32; 4], by: [f32; 3]) -> [f32; 4] {
+fn shift_color(pixel: [f32; 4], by: [f32; 3]) -> [f32; 4] {
     let color = straight(pixel);
     // Light beyond white stays beyond it.
-    under(std::array::from_fn(|k| (color[k] + by[k]).min(color[k].max(1.0))), pixel[3])
+    color_under_alpha(std::array::from_fn(|k| (color[k] + by[k]).min(color[k].max(1.0))), pixel[3])
 }
 
 /// The grain of film or paper: soft, strongest in mid-tones.
@@ -124,13 +129,13 @@ impl Default for FilmGrain {
 impl Parameters for FilmGrain {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         v.number(amount("How much lighter and darker, percent", 100.0, 25.0), &mut self.amount);
-        let size = named("size", "Size", "Of the grains");
+        let size = parameter_name("size", "Size", "Of the grains");
         v.number(NumberParameter::whole(size, 1.0, 500.0, 4.0).decimals(1).px(), &mut self.size);
-        let rough = named("roughness", "Roughness", "How much finer grains show, percent");
+        let rough = parameter_name("roughness", "Roughness", "How much finer grains show, percent");
         v.number(NumberParameter::whole(rough, 0.0, 100.0, 50.0), &mut self.roughness);
         v.flag(MONOCHROME, true, &mut self.monochrome);
         let hint = "The grain lies on the shape and is bent and foreshortened with it";
-        v.flag(named("on_surface", "On the surface", hint), false, &mut self.on_surface);
+        v.flag(parameter_name("on_surface", "On the surface", hint), false, &mut self.on_surface);
         v.number(SEED, &mut self.seed);
     }
 }
@@ -187,7 +192,7 @@ impl FilterKernel for FilmGrain {
             let luma = (0.3 * r + 0.59 * g + 0.11 * b).max(0.0).min(1.0);
             // Half as strong in black and white as in mid-gray.
             let strength = share * (0.5 + 2.0 * luma * (1.0 - luma));
-            stepped(pixel, grain.map(|v| v * strength))
+            shift_color(pixel, grain.map(|v| v * strength))
         })
     }
 }

@@ -3,11 +3,13 @@
 //! A part of the picture is read on circles and rays around the point, a pixel apart; the means
 //! along them are differences of running sums, and a pixel is read between two of them.
 
-use super::blur::mixed;
+use super::blur::mix;
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, Vec2, fast, vec2};
-use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterVisitor, Parameters, parameter_name,
+};
 use std::f32::consts::{PI, TAU};
 
 /// A point of a picture, percent of its width and height.
@@ -28,9 +30,9 @@ impl Default for BlurCenter {
 impl BlurCenter {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         let number = |name| NumberParameter::whole(name, -100.0, 200.0, 50.0).decimals(1);
-        let x = named("x", "Center across", "Percent of the width, from the left");
+        let x = parameter_name("x", "Center across", "Percent of the width, from the left");
         v.number(number(x), &mut self.x);
-        let y = named("y", "Center down", "Percent of the height, from the top");
+        let y = parameter_name("y", "Center down", "Percent of the height, from the top");
         v.number(number(y), &mut self.y);
     }
 
@@ -59,7 +61,7 @@ impl Default for SpinBlur {
 
 impl Parameters for SpinBlur {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let angle = named("angle", "Angle", "How far it turns, degrees");
+        let angle = parameter_name("angle", "Angle", "How far it turns, degrees");
         let angle = NumberParameter::whole(angle, 0.0, 360.0, 10.0).decimals(1);
         v.number(angle, &mut self.angle);
         self.center.visit(v);
@@ -86,7 +88,7 @@ impl FilterKernel for SpinBlur {
             let (r, u) = rays.place(x, y);
             let mean = |i: usize| circles[i.min(circles.len() - 1)].mean(u, width);
             let (whole, ring) = (r.floor(), (r.floor() as i32 - from).max(0) as usize);
-            mixed(mean(ring), mean(ring + 1), r - whole)
+            mix(mean(ring), mean(ring + 1), r - whole)
         })
     }
 }
@@ -109,7 +111,8 @@ impl Default for ZoomBlur {
 impl Parameters for ZoomBlur {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         let hint = "Length of the way, percent of the distance from the center";
-        let amount = NumberParameter::whole(named("amount", "Amount", hint), 0.0, 100.0, 20.0);
+        let amount =
+            NumberParameter::whole(parameter_name("amount", "Amount", hint), 0.0, 100.0, 20.0);
         v.number(amount, &mut self.amount);
         self.center.visit(v);
     }
@@ -137,7 +140,7 @@ impl FilterKernel for ZoomBlur {
             let along = r - rays.rings.0 as f32;
             let mean = |j: usize| lines[j.min(lines.len() - 1)].mean(along, width);
             let whole = u.floor().max(0.0);
-            mixed(mean(whole as usize), mean(whole as usize + 1), u - whole)
+            mix(mean(whole as usize), mean(whole as usize + 1), u - whole)
         })
     }
 }
@@ -184,9 +187,10 @@ impl PolarPart {
         let middle = (corners[0] + corners[3]).to_angle();
         let span = match near < 2.0 {
             true => PI,
-            false => {
-                corners.iter().map(|c| turned_from(c.to_angle(), middle).abs()).fold(0.0, f32::max)
-            }
+            false => corners
+                .iter()
+                .map(|c| angle_between(c.to_angle(), middle).abs())
+                .fold(0.0, f32::max),
         };
         let half = span + 0.5 * turn + 2.0 * step;
         let first = ((middle - half) / step).floor() * step;
@@ -235,13 +239,13 @@ impl PolarPart {
     fn place(&self, x: i32, y: i32) -> (f32, f32) {
         let away = vec2(x as f32 + 0.5, y as f32 + 0.5) - self.center;
         let angle = fast::atan2(away.y, away.x);
-        let angle = self.middle + turned_from(angle, self.middle);
+        let angle = self.middle + angle_between(angle, self.middle);
         (away.length(), (angle - self.first) / self.step)
     }
 }
 
 /// From one angle to another, within half a turn.
-fn turned_from(angle: f32, from: f32) -> f32 {
+fn angle_between(angle: f32, from: f32) -> f32 {
     let turn = angle - from;
     turn - TAU * (turn / TAU).round()
 }
@@ -264,7 +268,7 @@ impl RunningSums {
     fn up_to(&self, at: f32) -> [f32; 4] {
         let at = (at + 0.5).max(0.0).min((self.0.len() - 1) as f32);
         let whole = (at as usize).min(self.0.len() - 2);
-        mixed(self.0[whole], self.0[whole + 1], at - whole as f32)
+        mix(self.0[whole], self.0[whole + 1], at - whole as f32)
     }
 
     /// The mean of some readings around a place.

@@ -7,11 +7,13 @@ use super::surface::blurred_on_surface;
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::Rect;
-use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterVisitor, Parameters, parameter_name,
+};
 
 /// The parameter that strengths share: percent.
 pub(super) const fn amount(hint: &'static str, most: f32, default: f32) -> NumberParameter {
-    NumberParameter::whole(named("amount", "Amount", hint), 0.0, most, default)
+    NumberParameter::whole(parameter_name("amount", "Amount", hint), 0.0, most, default)
 }
 
 /// A color without its alpha; nothing is black.
@@ -23,7 +25,7 @@ pub(super) fn straight(p: [f32; 4]) -> [f32; 3] {
 
 /// A straight color under an alpha; not below black.
 #[inline(always)]
-pub(super) fn under(color: [f32; 3], a: f32) -> [f32; 4] {
+pub(super) fn color_under_alpha(color: [f32; 3], a: f32) -> [f32; 4] {
     let [r, g, b] = color.map(|v| v.max(0.0) * a);
     [r, g, b, a]
 }
@@ -65,20 +67,20 @@ impl FilterKernel for Sharpen {
                     (0..4).for_each(|k| sum[k] += weight * near[k]);
                 }
             }
-            sharpened(window.at(x, y), sum, share, 0.0)
+            sharpen(window.at(x, y), sum, share, 0.0)
         })
     }
 }
 
 /// x + a (x − m) where these differ by a threshold. `mean` may have any weight.
 #[inline(always)]
-fn sharpened(pixel: [f32; 4], mean: [f32; 4], share: f32, threshold: f32) -> [f32; 4] {
+fn sharpen(pixel: [f32; 4], mean: [f32; 4], share: f32, threshold: f32) -> [f32; 4] {
     let (own, mean) = (straight(pixel), straight(mean));
     let color = std::array::from_fn(|k| {
         let more = own[k] - mean[k];
         own[k] + if more.abs() < threshold { 0.0 } else { share * more }
     });
-    under(color, pixel[3])
+    color_under_alpha(color, pixel[3])
 }
 
 /// Sharpening by what a Gaussian blur takes away.
@@ -105,10 +107,10 @@ impl Parameters for UnsharpMask {
         v.number(amount("How crisp edges become, percent", 500.0, 100.0), &mut self.amount);
         v.number(radius("How wide the edges are that become crisp", 250.0, 2.0), &mut self.radius);
         let hint = "Smaller differences, such as noise, stay: levels of 255";
-        let threshold = named("threshold", "Threshold", hint);
+        let threshold = parameter_name("threshold", "Threshold", hint);
         v.number(NumberParameter::whole(threshold, 0.0, 255.0, 0.0), &mut self.threshold);
         let hint = "Contours of the surface get no light or dark rims";
-        let stop = named("stop_at_contours", "Stop at contours", hint);
+        let stop = parameter_name("stop_at_contours", "Stop at contours", hint);
         v.flag(stop, false, &mut self.stop_at_contours);
     }
 }
@@ -119,13 +121,13 @@ impl FilterKernel for UnsharpMask {
     }
 
     fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
-        let (own, mut blurred) = own_and_blurred(place, source, self.radius);
+        let (own, mut blurred) = read_and_blur(place, source, self.radius);
         if self.stop_at_contours && place.scene.surface.is_some() {
             blurred = blurred_on_surface(place, source, self.radius);
         }
         let (share, threshold) = (self.amount / 100.0, self.threshold / 255.0);
         let pairs = own.into_iter().zip(blurred);
-        pairs.map(|(own, mean)| sharpened(own, mean, share, threshold)).collect()
+        pairs.map(|(own, mean)| sharpen(own, mean, share, threshold)).collect()
     }
 }
 
@@ -154,17 +156,17 @@ impl FilterKernel for HighPass {
     }
 
     fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
-        let (own, blurred) = own_and_blurred(place, source, self.radius);
+        let (own, blurred) = read_and_blur(place, source, self.radius);
         let passed = |(own, mean): ([f32; 4], [f32; 4])| {
             let (color, mean) = (straight(own), straight(mean));
-            under(std::array::from_fn(|k| (0.5 + color[k] - mean[k]).min(1.0)), own[3])
+            color_under_alpha(std::array::from_fn(|k| (0.5 + color[k] - mean[k]).min(1.0)), own[3])
         };
         own.into_iter().zip(blurred).map(passed).collect()
     }
 }
 
 /// The pixels themselves, and blurred.
-pub(super) fn own_and_blurred(
+pub(super) fn read_and_blur(
     place: &FilterPlace,
     source: &dyn FilterSource,
     radius: f32,

@@ -5,7 +5,9 @@ use super::blur::{gaussian, gaussian_reach, radius};
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, Vec2, fast, vec2};
-use crate::paint::adjustment::parameters::{NumberParameter, ParameterVisitor, Parameters, named};
+use crate::paint::adjustment::parameters::{
+    NumberParameter, ParameterVisitor, Parameters, parameter_name,
+};
 use crate::surface::{Curvature, Scene, Surface, links};
 
 /// Soft by the distance on the surface: what is seen steeply is blurred less, as if the paint itself
@@ -80,13 +82,13 @@ impl SurfaceSteps {
             if !size.contains(x, y) || !size.contains(i, j) {
                 return 1.0;
             }
-            if coverage.clamped(x, y) == 0 && coverage.clamped(i, j) == 0 {
+            if coverage.at_clamped(x, y) == 0 && coverage.at_clamped(i, j) == 0 {
                 return 1.0;
             }
-            if linked.clamped(x, y) & bit == 0 {
+            if linked.at_clamped(x, y) & bit == 0 {
                 return f32::INFINITY;
             }
-            let deeper = (depth.clamped(x, y) - depth.clamped(i, j)) * range;
+            let deeper = (depth.at_clamped(x, y) - depth.at_clamped(i, j)) * range;
             (1.0 + deeper * deeper).sqrt()
         };
         let places = || (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
@@ -165,13 +167,14 @@ impl Default for FlowBlur {
 
 impl Parameters for FlowBlur {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let length = named("length", "Length", "How far paint is smeared");
+        let length = parameter_name("length", "Length", "How far paint is smeared");
         let length = NumberParameter::whole(length, 0.0, 200.0, 24.0).decimals(1).px();
         v.number(length, &mut self.length);
-        let smooth = named("smooth", "Smoothness", "How much small bumps are left out of the flow");
+        let smooth =
+            parameter_name("smooth", "Smoothness", "How much small bumps are left out of the flow");
         let smooth = NumberParameter::whole(smooth, 0.0, 100.0, 4.0).decimals(1).px();
         v.number(smooth, &mut self.smooth);
-        let across = named("across", "Across", "Around the form and not along it");
+        let across = parameter_name("across", "Across", "Around the form and not along it");
         v.flag(across, false, &mut self.across);
     }
 }
@@ -217,7 +220,7 @@ impl<'a> FlowLines<'a> {
     fn of(surface: &'a Surface, curvature: &Curvature, across: bool, rect: Rect) -> Self {
         let (size, coverage) = (surface.size().rect(), surface.coverage_plane());
         let direction = |(x, y): (i32, i32)| {
-            if !size.contains(x, y) || coverage.clamped(x, y) == 0 {
+            if !size.contains(x, y) || coverage.at_clamped(x, y) == 0 {
                 return Vec2::ZERO;
             }
             let (most, least, along) = curvature.principal(x as usize, y as usize);

@@ -28,7 +28,7 @@ impl FilterWindow {
     /// Gathers a rectangle from a picture, whose border is repeated beyond it.
     ///
     /// * `copy_row`: copies pixels of the picture, from a column and a row on.
-    pub fn gathered(
+    pub fn gather(
         rect: Rect,
         bounds: Rect,
         mut copy_row: impl FnMut(i32, i32, &mut [[f32; 4]]),
@@ -167,7 +167,7 @@ impl FilterSource for FilterWindow {
     }
 
     fn window(&self, rect: Rect) -> FilterWindow {
-        FilterWindow::gathered(rect, self.rect, |x, y, row| {
+        FilterWindow::gather(rect, self.rect, |x, y, row| {
             let start = (x - self.rect.x0) as usize;
             row.copy_from_slice(&self.row(y)[start..start + row.len()]);
         })

@@ -51,7 +51,7 @@ impl PlacedImage {
         let (texture, width) = (self.source.float_texture(), area.width());
         let mut positions = DeformedRect::default();
         let ImageLookup { margin, texels_from_canvas } =
-            self.placed(scene, area, texture.size(), &mut positions);
+            self.place_texture(scene, area, texture.size(), &mut positions);
         let (mut pixels, mut patches, mut antialias) =
             (transparent_f32(), Patches::default(), Antialias::default());
         for y in scene.rows(area) {

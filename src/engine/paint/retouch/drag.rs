@@ -29,7 +29,7 @@ const FARTHEST_STEPS: f32 = 3.0;
 ///
 /// * `length`: the share of the color that is left after a drag of one radius, `[0, 1]`, however
 ///   many dabs it took.
-pub(super) fn smudged(
+pub(super) fn smudge_colors(
     touch: &TileDab,
     dab: &Dab,
     before: &Dab,
@@ -65,7 +65,7 @@ pub(super) fn smudged(
 /// Pixel q takes the color at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab
 /// like its footprint. Where a pixel covers several of the picture, it is the mean of a grid of
 /// points in the patch under it.
-pub(super) fn cloned(
+pub(super) fn clone_colors(
     touch: &TileDab,
     dab: &Dab,
     offset: Vec2,

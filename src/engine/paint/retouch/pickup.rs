@@ -28,7 +28,7 @@ pub(super) type PickedUpPaint = Option<[f32; 4]>;
 ///
 /// With the paint there, c, and the length l: h ← l h + (1 − l) c, at the first dab h ← c. With the
 /// amount a and the brush's own color b: a h + (1 − a) b.
-pub(super) fn mixed(
+pub(super) fn mix_color(
     brush: &Brush,
     own: Color,
     dab: &Dab,
@@ -43,7 +43,7 @@ pub(super) fn mixed(
         let length = value(Property::PickupLength, brush.pickup.length);
         let length = if held.is_none() { 0.0 } else { length };
         if length < 1.0
-            && let Some(there) = taken_up(brush, dab, retouched, scene)
+            && let Some(there) = pick_up(brush, dab, retouched, scene)
         {
             let before = held.unwrap_or_default();
             *held = Some(std::array::from_fn(|c| there[c] + (before[c] - there[c]) * length));
@@ -53,11 +53,11 @@ pub(super) fn mixed(
     let own = [r, g, b, 1.0];
     let held = held.unwrap_or(own);
     let mixed: [f32; 4] = std::array::from_fn(|c| own[c] + (held[c] - own[c]) * amount);
-    if tint::has_varied_color(brush) { tinted(brush, mixed, dab) } else { mixed }
+    if tint::has_varied_color(brush) { vary_color(brush, mixed, dab) } else { mixed }
 }
 
 /// The mixed color, varied as the brush varies a dab's.
-fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
+fn vary_color(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
     let alpha = mixed[3];
     let straight =
         |v: f32| if alpha > 0.0 { (255.0 * (v / alpha).max(0.0).min(1.0) + 0.5) as u8 } else { 0 };
@@ -67,12 +67,7 @@ fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
 }
 
 /// The mean of what lies under a dab; `None` if it is off the canvas.
-fn taken_up(
-    brush: &Brush,
-    dab: &Dab,
-    retouched: &RetouchPixels,
-    scene: &Scene,
-) -> Option<[f32; 4]> {
+fn pick_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) -> Option<[f32; 4]> {
     let radius = (dab.radius * brush.pickup.radius).max(1.0);
     let plain = Dab { hardness: SOFT, softness: 0.0, thin: 1.0, rim: Rim::SOFT, ..*dab };
     let dab = Dab { radius, ratio: 1.0, flow: 1.0, ceiling: 1.0, ..plain };

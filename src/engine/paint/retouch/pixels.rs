@@ -31,7 +31,7 @@ impl RetouchPixels {
     }
 
     /// A tile as the layer stores it.
-    pub fn stored(&self, at: TileAt) -> Option<Arc<Tile>> {
+    pub fn stored_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         match self.tiles.get(&at) {
             Some(tile) => tile.to_tile_over(self.base.tile(at).map(|tile| &**tile)).map(Arc::new),
             None => self.base.tile(at).cloned(),

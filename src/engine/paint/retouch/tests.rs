@@ -117,9 +117,15 @@ fn what_a_smudge_drags_lies_at_the_same_place_of_the_image_plane_under_both_dabs
     let scene = waves();
     let (before, now) = (dab(vec2(80.5, 70.5)), dab(vec2(84.5, 72.5)));
     let area = Rect::new(70, 64, 100, 84);
-    let colors =
-        drag::smudged(&touch(area), &now, &before, 1.0, &RetouchPixels::new(places()), &scene)
-            .unwrap();
+    let colors = drag::smudge_colors(
+        &touch(area),
+        &now,
+        &before,
+        1.0,
+        &RetouchPixels::new(places()),
+        &scene,
+    )
+    .unwrap();
     let mut farthest: f32 = 0.0;
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
@@ -150,7 +156,7 @@ fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surfa
     assert_eq!(flat.pixel(130, 110), base.pixel(130, 110));
     let (scene, center, offset) = (waves(), dab(vec2(84.5, 72.5)), vec2(60.0, 10.0));
     let area = Rect::new(70, 64, 100, 84);
-    let colors = drag::cloned(&touch(area), &center, offset, &base, &scene);
+    let colors = drag::clone_colors(&touch(area), &center, offset, &base, &scene);
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
         let expected = bent(q, center.at) + offset;

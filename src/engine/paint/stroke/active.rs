@@ -124,7 +124,7 @@ impl ActiveStroke {
 
     /// The stroke tile to be shown: with the tail. Settled dabs are added to `stroke_tile` for
     /// good.
-    fn shown(
+    fn compose_shown(
         &self,
         fresh: &NewDabs,
         at: TileAt,
@@ -175,7 +175,7 @@ impl ActiveStroke {
     }
 
     /// The finished stroke, its dabs known already.
-    fn finished(mut self, scene: &Scene) -> Stroke {
+    fn finish(mut self, scene: &Scene) -> Stroke {
         self.stroke_dabs.lay(&self.walker.tail(), scene);
         let mut found = StrokeCache::default();
         found.keep(&Arc::new(self.stroke_dabs));
@@ -229,7 +229,7 @@ impl ActiveStrokes {
                 if matches!(selected, Some(None)) {
                     continue;
                 }
-                if let Some(mut shown) = stroke.shown(fresh, *at, cached, scratch) {
+                if let Some(mut shown) = stroke.compose_shown(fresh, *at, cached, scratch) {
                     shown.limit_to(&stroke.part(scene), *at);
                     if let Some(selected) = selected.flatten() {
                         shown.select(&selected);
@@ -256,7 +256,7 @@ impl ActiveStrokes {
     /// The finished strokes. Their dabs are known.
     pub fn finish(self) -> Vec<Stroke> {
         let Self { scene, strokes, .. } = self;
-        strokes.into_iter().map(|stroke| stroke.finished(&scene)).collect()
+        strokes.into_iter().map(|stroke| stroke.finish(&scene)).collect()
     }
 }
 
@@ -266,7 +266,7 @@ impl Backdrop {
     fn to_tile(&self, at: TileAt, pixels: &PlanarTile) -> Option<Tile> {
         match self {
             Backdrop::Pixels(grid) => pixels.to_tile_over(grid.tile(at).map(|tile| &**tile)),
-            Backdrop::Strokes(_) => pixels.quantized(),
+            Backdrop::Strokes(_) => pixels.quantize(),
         }
     }
 

@@ -52,7 +52,7 @@ pub fn render_tiles(
     done: impl Fn(TileAt, Option<Tile>) + Sync,
 ) -> Option<()> {
     render_many(strokes, scene, tiles, is_wanted, |at, pixels| {
-        done(at, pixels.and_then(|pixels| pixels.quantized()))
+        done(at, pixels.and_then(|pixels| pixels.quantize()))
     })
 }
 

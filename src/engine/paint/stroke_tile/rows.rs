@@ -25,7 +25,7 @@ pub fn raise(coverage: &mut f32, reach: &mut f32, g: f32, share: f32, ceiling: f
 
 /// Adds coverage of weight f up to a ceiling; coverage above the ceiling does not change.
 #[inline(always)]
-fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
+fn raise_to_ceiling(coverage: f32, f: f32, ceiling: f32) -> f32 {
     let room = ceiling - coverage;
     coverage + f * if room > 0.0 { room } else { 0.0 }
 }
@@ -33,10 +33,10 @@ fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
 /// One premultiplied pixel with a color over it that covers g of it, k of what is there; up to a
 /// ceiling: colors mix as in source over, coverage rises no higher than the ceiling.
 #[inline(always)]
-fn mixed(p: [f32; 4], (g, k): (f32, f32), source: [f32; 3], ceiling: f32) -> [f32; 4] {
+fn mix_pixel(p: [f32; 4], (g, k): (f32, f32), source: [f32; 3], ceiling: f32) -> [f32; 4] {
     let over = |c: usize| p[c] * (1.0 - k) + source[c];
     let a_over = p[3] * (1.0 - k) + g;
-    let a = raised(p[3], k, ceiling);
+    let a = raise_to_ceiling(p[3], k, ceiling);
     let (part, whole) =
         if ceiling < 1.0 && a_over > 0.0 && a < a_over { (a, a_over) } else { (1.0, 1.0) };
     // Multiplied first: a channel equal to the coverage stays equal to the bit, however often dabs
@@ -59,7 +59,7 @@ crate::widest! {
 
     pub(super) fn add_alpha(stamped: &[[u8; 4]], flow: f32, ceiling: f32, coverage: &mut [f32]) {
         for (a, s) in coverage.iter_mut().zip(stamped) {
-            *a = raised(*a, flow * f32::from(s[3]), ceiling);
+            *a = raise_to_ceiling(*a, flow * f32::from(s[3]), ceiling);
         }
     }
 
@@ -70,7 +70,7 @@ crate::widest! {
         for (i, s) in stamped.iter().enumerate().take(a.len()) {
             let source = [0, 1, 2].map(|c| flow * f32::from(s[c]));
             let f = flow * f32::from(s[3]);
-            [r[i], g[i], b[i], a[i]] = mixed([r[i], g[i], b[i], a[i]], (f, f), source, ceiling);
+            [r[i], g[i], b[i], a[i]] = mix_pixel([r[i], g[i], b[i], a[i]], (f, f), source, ceiling);
         }
     }
 
@@ -118,6 +118,6 @@ pub(super) fn add_colors(
         let color = color.map(|c| c * f);
         // The ceiling applies to what is reached; 1 stays 1, which caps nothing.
         let ceiling = if ceiling < 1.0 { ceiling * *reach } else { 1.0 };
-        [r[x + i], g[x + i], b[x + i], a[x + i]] = mixed(p, (f, part), color, ceiling);
+        [r[x + i], g[x + i], b[x + i], a[x + i]] = mix_pixel(p, (f, part), color, ceiling);
     }
 }

@@ -113,7 +113,7 @@ blend_modes!(declare);
 /// One premultiplied pixel over another by the formula of a mode, which the fast rows are tested
 /// against.
 pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
-    mode.function().composited(backdrop, source)
+    mode.function().composite(backdrop, source)
 }
 
 impl BlendMode {

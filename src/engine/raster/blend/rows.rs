@@ -204,7 +204,7 @@ fn blend_row(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
 #[inline(always)]
 fn dissolve(source: &mut PixelRow, [x, y]: [i32; 2]) {
     for i in 0..TILE {
-        let kept = spec::dissolved(source.pixel(i), [x + i as i32, y]);
+        let kept = spec::dissolve(source.pixel(i), [x + i as i32, y]);
         let [r, g, b] = &mut source.rgb;
         [r[i], g[i], b[i], source.a[i]] = kept;
     }

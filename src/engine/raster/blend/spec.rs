@@ -24,7 +24,7 @@ impl BlendFunction {
     ///
     /// Total: every component is brought into `[0, 1]` first, colors to at most their alpha, NaN
     /// to 0.
-    pub fn composited(self, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
+    pub fn composite(self, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
         let (backdrop, source) = (sane(backdrop), sane(source));
         let (ab, as_) = (backdrop[3], source[3]);
         let straight = |p: [f32; 4]| [0, 1, 2].map(|c| if p[3] > 0.0 { p[c] / p[3] } else { 0.0 });
@@ -49,7 +49,7 @@ pub const FULL: f32 = 1.0 - 0.5 / 255.0;
 /// What dissolving leaves of a premultiplied pixel at a point of the canvas: all of it, with its
 /// alpha as the probability, or nothing.
 #[inline(always)]
-pub fn dissolved(source: [f32; 4], [x, y]: [i32; 2]) -> [f32; 4] {
+pub fn dissolve(source: [f32; 4], [x, y]: [i32; 2]) -> [f32; 4] {
     let alpha = source[3];
     if hash::unit(DISSOLVE_SEED, x as u32, y as u32) < alpha {
         source.map(|v| (v / alpha).min(1.0))

@@ -139,7 +139,7 @@ fn the_fast_rows_agree_with_the_specification_in_every_mode() {
                             [cs * as_, VALUES[(j + 2) % 9] * as_, VALUES[(j + 5) % 9] * as_, as_];
                         // `fast` reads this pixel of the tile.
                         let left = if mode == BlendMode::Dissolve {
-                            spec::dissolved(source, [23, 17])
+                            spec::dissolve(source, [23, 17])
                         } else {
                             source
                         };
@@ -248,7 +248,7 @@ fn linear_light_mixes_black_and_white_to_the_gray_that_emits_half() {
 fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let color = [0.5, 0.25, 0.0, 0.5];
     let tile = PlanarTile::from_pixels(&one_pixel(color));
-    let bytes = tile.quantized().unwrap();
+    let bytes = tile.quantize().unwrap();
     let quantized = tile.to_tile_over(None).unwrap();
     let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
     for paint in [

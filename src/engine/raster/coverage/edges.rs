@@ -19,8 +19,8 @@ pub const SOFTNESS_PX: Range = 0.0..=500.0;
 /// * `antialias`: else pixels are covered wholly or not at all.
 pub fn moved(marked: &Plane<u8>, grow_px: f32, antialias: bool) -> Plane<u8> {
     let limit = grow_px.abs().ceil() as u16 + 1;
-    let to_inside = distance::squared(marked, limit);
-    let to_outside = distance::squared(&marked.map(|p| u8::from(p == 0)), limit);
+    let to_inside = distance::squared_distances(marked, limit);
+    let to_outside = distance::squared_distances(&marked.map(|p| u8::from(p == 0)), limit);
     let share = |beyond: f32| {
         let share = 0.5 + grow_px - beyond;
         let share =
@@ -63,7 +63,7 @@ pub fn feathered(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGr
 /// Its corners rounded: blurred by a Gaussian of this standard deviation σ, and made as steep as an
 /// edge again. A straight edge rises by 1 / (σ √2π) a px under the blur, so that times σ √2π it
 /// rises within one px.
-pub fn smoothed(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGrid {
+pub fn smooth(grid: &CoverageGrid, sigma_px: f32, canvas: Rect) -> CoverageGrid {
     let sigma_px = sigma_px.max(0.0).min(*SOFTNESS_PX.end());
     let steep = (sigma_px * std::f32::consts::TAU.sqrt()).max(1.0);
     blurred(grid, sigma_px, canvas, |share| 0.5 + (share - 0.5) * steep)
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn smoothing_rounds_corners_and_leaves_straight_edges() {
         let square = shapes::rectangle(vec2(40.0, 40.0), vec2(120.0, 120.0), CANVAS);
-        let round = smoothed(&square, 6.0, CANVAS);
+        let round = smooth(&square, 6.0, CANVAS);
         assert_eq!((round.at(40, 80), round.at(39, 80)), (255, 0));
         assert_eq!(round.at(40, 40), 0, "the corner is gone");
         assert_eq!(round.at(48, 48), 255);
@@ -157,7 +157,7 @@ mod tests {
     fn all_of_the_canvas_has_no_edge() {
         let all = CoverageGrid::filled(CANVAS);
         for changed in
-            [grown(&all, -9.0, CANVAS), feathered(&all, 9.0, CANVAS), smoothed(&all, 9.0, CANVAS)]
+            [grown(&all, -9.0, CANVAS), feathered(&all, 9.0, CANVAS), smooth(&all, 9.0, CANVAS)]
         {
             assert!(changed.is_same(&all));
         }

@@ -25,7 +25,7 @@ pub fn rectangle(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
         high.y.floor() as i32,
     );
     let whole = inner.intersect(within);
-    CoverageGrid::gathered(area, |at| {
+    CoverageGrid::gather(area, |at| {
         let tile = at.rect();
         if tile.intersect(whole) == tile {
             return Some(CoverageTile::whole());

@@ -8,7 +8,7 @@ use super::Resampling;
 use super::linear::LinearRow;
 use super::points::PointRow;
 use super::weights::{
-    SideKind, TileRow, WarpPatchRow, cubic_weights, extents, sides, steps, turned_about, weigh,
+    SideKind, TileRow, WarpPatchRow, cubic_weights, extents, invert_sides, sides, steps, weigh,
 };
 use super::window::{LEAST_LINEAR_TENT, MOST_READ_ALONG, SourceWindow};
 use crate::raster::TILE;
@@ -250,7 +250,7 @@ impl WarpScratch {
     /// along each axis.
     fn patches_of(&mut self, points: &PointRow, n: usize, filter: Resampling) -> [usize; 2] {
         let Self { sides: [right, down], patches, weights, .. } = self;
-        turned_about([&right.x[..n], &right.y[..n], &down.x[..n], &down.y[..n]], patches);
+        invert_sides([&right.x[..n], &right.y[..n], &down.x[..n], &down.y[..n]], patches);
         for (axis, p) in [&points.x, &points.y].into_iter().enumerate() {
             let of = |side: &SideRow| if axis == 0 { side.x } else { side.y };
             let (a, b) = (of(right), of(down));

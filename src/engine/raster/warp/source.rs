@@ -7,7 +7,7 @@ use crate::raster::{Plane, TILE, TileAt, TileGrid};
 /// Where pixels come from: premultiplied, in `[0, 1]`.
 pub(super) trait PixelSource: Sync {
     /// The part of a rectangle that must be read.
-    fn held(&self, rect: Rect) -> Rect;
+    fn rect_to_read(&self, rect: Rect) -> Rect;
     /// Whether the border is repeated beyond what is held; else there is nothing.
     fn has_continued_border(&self) -> bool;
     /// The pixels of a rectangle, row by row.
@@ -32,7 +32,7 @@ impl PixelSource for GridSource<'_> {
         self.continues
     }
 
-    fn held(&self, rect: Rect) -> Rect {
+    fn rect_to_read(&self, rect: Rect) -> Rect {
         if self.continues && !self.bounds.is_empty() {
             nearest(rect, self.bounds)
         } else {
@@ -86,7 +86,7 @@ impl PixelSource for PlaneSource<'_> {
         true
     }
 
-    fn held(&self, rect: Rect) -> Rect {
+    fn rect_to_read(&self, rect: Rect) -> Rect {
         nearest(rect, self.plane.size().rect())
     }
 

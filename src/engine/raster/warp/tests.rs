@@ -39,7 +39,7 @@ fn noise() -> TileGrid {
 }
 
 fn seen(grid: &TileGrid, map: PlaneMap, filter: Resampling) -> TileGrid {
-    warped(grid, &Through(map, CANVAS), filter, &tiles())
+    warp_tiles(grid, &Through(map, CANVAS), filter, &tiles())
 }
 
 fn affine(c: [f64; 6]) -> PlaneMap {
@@ -136,7 +136,7 @@ fn a_horizon_and_a_speck_of_a_picture_are_shown_without_stalling() {
 fn a_mask_moves_with_its_border_going_on() {
     let mask = Plane::from_fn(CANVAS, |x, _| if x < 100 { 255u8 } else { 0 });
     let map = Through(PlaneMap::translation(vec2(20.5, 0.0)), CANVAS);
-    let moved = warped_plane(&mask, &map, Resampling::Smooth);
+    let moved = warp_plane(&mask, &map, Resampling::Smooth);
     assert_eq!((moved.at(0, 9), moved.at(110, 9), moved.at(130, 9)), (255, 255, 0));
     assert!((100..155).contains(&moved.at(120, 9)), "half of both, not {}", moved.at(120, 9));
 }
@@ -178,7 +178,7 @@ fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
     {
         for continues in [false, true] {
             let source = GridSource { grid: &grid, bounds: Rect::new(0, 0, 200, 256), continues };
-            let wanted = source.held(map.source_rect(rect));
+            let wanted = source.rect_to_read(map.source_rect(rect));
             let window =
                 window::SourceWindow { rect: wanted, pixels: source.read(wanted), continues };
             let (mut points, mut scratch) = (PointRow::default(), rows::WarpScratch::default());

@@ -104,7 +104,7 @@ crate::widest! {
     }
 
     /// The inverses of two sides.
-    pub fn turned_about(sides: [&[f32]; 4], out: &mut WarpPatchRow) {
+    pub fn invert_sides(sides: [&[f32]; 4], out: &mut WarpPatchRow) {
         let n = sides[0].len();
         let [a, b, c, d] = sides.map(|row| &row[..n]);
         let WarpPatchRow { to_sides: [p, q, r, s], determinant, .. } = out;

@@ -26,7 +26,7 @@ impl Spot {
     /// `place` in `[0, 1]²`: columns wrap around, and beyond a pole the rows come back on the other
     /// side.
     #[inline(always)]
-    pub fn wrapped(place: Vec2, columns: i32, rows: i32) -> Self {
+    pub fn wrap(place: Vec2, columns: i32, rows: i32) -> Self {
         let (x, y) = (place.x * columns as f32 - 0.5, place.y * rows as f32 - 0.5);
         let (left, above) = (x.floor(), y.floor());
         let (tx, ty) = (x - left, y - above);
@@ -83,7 +83,7 @@ impl SphereLevel {
     /// The same at a place in `[0, 1]²`.
     #[inline(always)]
     pub fn at_place(&self, place: Vec2) -> Vec3A {
-        let spot = Spot::wrapped(place, self.columns() as i32, self.rows as i32);
+        let spot = Spot::wrap(place, self.columns() as i32, self.rows as i32);
         spot.mean(|i| self.texels[i])
     }
 

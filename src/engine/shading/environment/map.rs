@@ -225,7 +225,7 @@ impl EnvironmentMap {
     #[inline(always)]
     fn at_place(&self, place: Vec2) -> Vec3A {
         let Size { width, height } = self.picture.size;
-        Spot::wrapped(place, width as i32, height as i32).mean(|i| self.picture_texel(i))
+        Spot::wrap(place, width as i32, height as i32).mean(|i| self.picture_texel(i))
     }
 
     /// A texel of the picture by its number.

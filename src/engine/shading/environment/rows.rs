@@ -173,7 +173,7 @@ impl SpotRow {
             let is_picture = self.layer[k] < 0;
             let columns = if is_picture { picture.width as i32 } else { 2 * rows };
             let rows = if is_picture { picture.height as i32 } else { rows };
-            let spot = Spot::wrapped(vec2(u[k], v[k]), columns, rows);
+            let spot = Spot::wrap(vec2(u[k], v[k]), columns, rows);
             for i in 0..4 {
                 self.index[i][k] = spot.index[i];
                 self.weight[i][k] = spot.weight[i];

@@ -142,12 +142,12 @@ fn mirrored_color(shading: &Shading) -> [f32; 3] {
 /// Shirley 2000, eq. 5).
 #[inline(always)]
 pub fn matt(n_l: f32, n_e: f32) -> f32 {
-    lit(n_l) * matt_share(fast::max(n_e, 0.0))
+    light_share(n_l) * matt_share(fast::max(n_e, 0.0))
 }
 
 /// The share of [`matt`] that depends on the light.
 #[inline(always)]
-fn lit(n_l: f32) -> f32 {
+fn light_share(n_l: f32) -> f32 {
     let n_l = fast::max(n_l, 0.0);
     28.0 / 23.0 * matt_share(n_l) * n_l
 }
@@ -269,7 +269,7 @@ fn add_lit_by(
             for i in 0..CHUNK {
                 let x = first + i;
                 let n_l = normal[0][x] * l.x + normal[1][x] * l.y + normal[2][x] * l.z;
-                let rho = lit(n_l) * sigma(x, n_l);
+                let rho = light_share(n_l) * sigma(x, n_l);
                 r[i] += radiance[0] * rho;
                 g[i] += radiance[1] * rho;
                 b[i] += radiance[2] * rho;

@@ -31,7 +31,7 @@ pub fn shade(
         // A painted sphere has no single direction of light, so κ is isotropic.
         relief.turn(surface_row, LightDirection::VIEWER);
     }
-    let shown = looked_up(surface_row, places, [Some(convex), concave], relief.kappa());
+    let shown = look_up_row(surface_row, places, [Some(convex), concave], relief.kappa());
     let brightest = concave.map_or(0.0, SphereLight::brightest).max(convex.brightest());
     let delta = reflectances(&shown, 1.0 / shading.reference.resolve(brightest));
     let mut sigma = [1.0; TILE];
@@ -62,7 +62,7 @@ pub fn warm_caches(shading: &Shading) {
     lights(shading);
 }
 
-fn looked_up(
+fn look_up_row(
     surface_row: &SurfaceRow,
     places: Option<&BallPlaces>,
     [convex, concave]: [Option<&SphereLight>; 2],

@@ -88,7 +88,7 @@ impl<'s> SecondLook<'s> {
         let mut leaving = SurfaceRay { at, nearness, direction: ray.direction, inward };
         let mut changes = ray.changes;
         // What a pixel shows of the surface, along the view.
-        let pixel = side_px * self.map.spanned(nearness);
+        let pixel = side_px * self.map.px_per_pixel(nearness);
         let mut moved = [vec3(pixel, 0.0, 0.0), vec3(0.0, -pixel, 0.0)]
             .map(|step| onto_plane(step, normal, view, GRAZING));
         for _ in 0..self.bounces {

@@ -94,9 +94,9 @@ fn flat_ground_keeps_its_bytes() {
         *p = [v.min(a), (v / 3).min(a), 0, a].map(|byte| byte as f32 / 255.0);
     }
     let mut tile = PlanarTile::from_pixels(&pixels);
-    let before = tile.quantized().unwrap();
+    let before = tile.quantize().unwrap();
     RadianceScaling::default().apply_tile(&scene, TileAt::new(0, 0), BENEATH, &mut tile);
-    assert!(before.bytes() == tile.quantized().unwrap().bytes());
+    assert!(before.bytes() == tile.quantize().unwrap().bytes());
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn what_is_beyond_the_surface_or_transparent_stays() {
     assert_ne!(tile.rows()[3].pixel(10), [0.5, 0.5, 0.5, 1.0]);
     let mut clear = PlanarTile::transparent();
     RadianceScaling::default().apply_tile(&scene(), TileAt::new(0, 0), BENEATH, &mut clear);
-    assert!(clear.quantized().is_none());
+    assert!(clear.quantize().is_none());
     let mut alone = flat(0.5, 0.5, 0.5, 1.0);
     let nothing = Scene { size: SIZE, surface: None };
     RadianceScaling::default().apply_tile(&nothing, TileAt::new(0, 0), BENEATH, &mut alone);

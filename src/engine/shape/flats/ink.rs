@@ -112,8 +112,10 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
 fn thin_pixels(of: &Plane<u16>, color: u16, half: usize, least: usize) -> Plane<bool> {
     let reach = half.min(usize::from(distance::FARTHEST) - 1);
     let within = (reach * reach + reach) as u16;
-    let outside = distance::squared(&of.map(|of| u8::from(of != color)), reach as u16 + 1);
-    let core = distance::squared(&outside.map(|away| u8::from(away > within)), reach as u16 + 1);
+    let outside =
+        distance::squared_distances(&of.map(|of| u8::from(of != color)), reach as u16 + 1);
+    let core =
+        distance::squared_distances(&outside.map(|away| u8::from(away > within)), reach as u16 + 1);
     let is_thick = |x: usize, y: usize| of.at(x, y) == color && core.at(x, y) <= within;
     let mut thick = Plane::from_fn(of.size(), is_thick);
     let mut thin = Plane::from_fn(of.size(), |x, y| of.at(x, y) == color && !is_thick(x, y));

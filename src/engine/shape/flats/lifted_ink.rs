@@ -139,7 +139,8 @@ impl<'a> Lifting<'a> {
         let WithoutLines { picture, lines, .. } = read;
         // In pixel art no line has a soft border.
         let reach = if picture.is_pixel_art { 0 } else { REACH as u16 };
-        let away = distance::squared(&lines.map(|line| u8::from(line != NONE)), reach + 1);
+        let away =
+            distance::squared_distances(&lines.map(|line| u8::from(line != NONE)), reach + 1);
         let is_near = away.map(|away| away <= reach * reach);
         let mut tone = lines.map(|line| if line == NONE { 0 } else { u32::from(line) + 1 });
         spread(&mut tone, |x, y| is_near.at(x, y));

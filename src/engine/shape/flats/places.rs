@@ -110,7 +110,7 @@ impl ColorPlaces {
             self.labels.get(x as i32 + around.x0, y as i32 + around.y0) == Some(place)
         };
         let rim = Plane::from_fn(size, |x, y| u8::from(!is_own(x, y)));
-        let deep = distance::squared(&rim, distance::FARTHEST);
+        let deep = distance::squared_distances(&rim, distance::FARTHEST);
         let own = || {
             (0..size.area())
                 .map(|i| (i % rim.width(), i / rim.width()))

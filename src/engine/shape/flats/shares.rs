@@ -123,7 +123,7 @@ impl Flats {
     }
 
     /// How many colors are seen that are too small, or too many, to be parts.
-    pub fn left_out(&self) -> usize {
+    pub fn omitted_colors(&self) -> usize {
         self.left_out
     }
 

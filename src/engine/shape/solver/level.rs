@@ -1,7 +1,7 @@
 //! One grid of the solver: its couplings, and what is done row by row with planes over it.
 //! Floor 3.
 
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use rayon::prelude::*;
 
 /// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: the
@@ -34,8 +34,8 @@ pub(super) struct Level {
 
 impl Level {
     pub(super) fn new(w: usize, h: usize, right: Vec<f32>, down: Vec<f32>, held: Vec<f32>) -> Self {
-        let mut diagonal = filled_or_unwind(w * h, 0.0);
-        let mut inverse = filled_or_unwind(w * h, 0.0);
+        let mut diagonal = fill_or_unwind(w * h, 0.0);
+        let mut inverse = fill_or_unwind(w * h, 0.0);
         diagonal.par_chunks_mut(w).zip(inverse.par_chunks_mut(w)).enumerate().for_each(
             |(y, (diagonal, inverse))| {
                 if y == 0 || y + 1 == h {
@@ -58,7 +58,7 @@ impl Level {
     pub(super) fn coarser(&self) -> Self {
         let (w, h) = ((self.w - 1) / 2 + 2, (self.h - 1) / 2 + 2);
         let blocks = |value: &(dyn Fn(usize, usize) -> f32 + Sync)| {
-            let mut out = filled_or_unwind(w * h, 0.0);
+            let mut out = fill_or_unwind(w * h, 0.0);
             out.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
                 for (x, v) in row.iter_mut().enumerate() {
                     *v = value(x, y);
@@ -146,7 +146,7 @@ impl Level {
     /// One damped sweep of Jacobi from `v` into `out`.
     pub(super) fn relax(&self, v: &[f32], b: &[f32], step: f32, out: &mut [f32]) {
         self.fill(out, |y, out| {
-            relaxed(self.couplings(y), self.rows_around(v, y), self.row(b, y), step, out)
+            relax_row(self.couplings(y), self.rows_around(v, y), self.row(b, y), step, out)
         });
     }
 }
@@ -171,7 +171,7 @@ pub(super) struct Couplings<'a> {
 
 crate::widest! {
     /// v + step (D⁻¹ (b + pull) − v).
-    pub(super) fn relaxed(couplings: Couplings, v: [&[f32]; 3], b: &[f32], step: f32, out: &mut [f32]) {
+    pub(super) fn relax_row(couplings: Couplings, v: [&[f32]; 3], b: &[f32], step: f32, out: &mut [f32]) {
         let n = out.len();
         let Couplings { right, up, down, inverse, .. } = couplings;
         let [above, here, below] = v;

@@ -85,7 +85,7 @@ impl PlaceTile {
                 self.each_open(|x, y| maps.chunk_place(level, x, y));
             }
         }
-        self.each_open(|x, y| Some((maps.looked_up(x, y), LOOKED_UP)));
+        self.each_open(|x, y| Some((maps.look_up(x, y), LOOKED_UP)));
     }
 
     /// The places of a row, as they are stored.
@@ -95,7 +95,7 @@ impl PlaceTile {
             let i = first + x;
             *out = match self.chunk[i] {
                 0 => BallPlace::default(),
-                chunk => settings.stored(vec2(self.at[0][i], self.at[1][i]), chunk),
+                chunk => settings.store_place(vec2(self.at[0][i], self.at[1][i]), chunk),
             };
         }
     }
@@ -217,7 +217,7 @@ impl CellBlock {
 
     /// The pixels of lanes that are of its part, and reach the seeds that they found.
     #[inline(always)]
-    fn reached(
+    fn reaching_lanes(
         &self,
         maps: &ChunkMaps,
         (x, y): (usize, usize),
@@ -287,7 +287,7 @@ crate::widest! {
                 taken[lane] = (below > 0.0) & (apart < super::NEAR) & (open[lane] > 0) & (lane < count);
             }
             if !block.is_whole {
-                block.reached(maps, (left as usize, row as usize), &best, &mut taken);
+                block.reaching_lanes(maps, (left as usize, row as usize), &best, &mut taken);
             }
             let (at_x, rest) = tile.at.split_at_mut(1);
             let at = [&mut at_x[0], &mut rest[0]].map(|at| at[first..].first_chunk_mut::<LANES>());

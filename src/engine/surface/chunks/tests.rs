@@ -62,7 +62,7 @@ fn places_suit_the_normal_or_are_the_look_up() {
                 let place = maps.place_at(x, y);
                 let at = vec2(place.at[0].into(), place.at[1].into()) / settings.steps();
                 let (nbar, nz) = (maps.nbar(x, y), maps.seen[2].at(x, y));
-                let is_look_up = (at - settings.looked_up(nbar)).length() < 2.0 / settings.steps();
+                let is_look_up = (at - settings.look_up(nbar)).length() < 2.0 / settings.steps();
                 // Stored places are rounded to the nearest step.
                 let is_near = [vec2(-0.5, -0.5), vec2(0.5, -0.5), vec2(-0.5, 0.5), vec2(0.5, 0.5)]
                     .iter()
@@ -141,7 +141,7 @@ fn a_bent_chunk_follows_the_surface_and_keeps_within_its_limit() {
         let maps = ChunkMaps::of(&surface, ChunkSettings { follow, ..PLAIN });
         let away = |x: usize| {
             let place = maps.place_at(x, 128).at.map(|v| f32::from(v) / maps.settings.steps());
-            (Vec2::from(place) - maps.looked_up(x, 128)).length()
+            (Vec2::from(place) - maps.look_up(x, 128)).length()
         };
         (64..192).map(away).sum::<f32>() / 128.0
     };

@@ -48,7 +48,7 @@ impl Continued {
 /// pixel's other side sees, px.
 pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_center: Vec2) -> f32 {
     let ridge = if pixel.others.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
-    let fitted = LeastSquaresPlane::weighted(bits(pixel.others), ridge, |i| {
+    let fitted = LeastSquaresPlane::fit_weighted(bits(pixel.others), ridge, |i| {
         let (dx, dy) = steps_of(i);
         (CONTINUED_WEIGHTS.at(i), map((pixel.x + dx) as usize, (pixel.y + dy) as usize))
     });

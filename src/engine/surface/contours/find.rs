@@ -170,7 +170,7 @@ impl Examined {
             return if mask.is_soft { Self::default() } else { Self::outside(&window, (x, y)) };
         }
         if coverage < 255 {
-            return Self::shaded(maps, mask, &window, (x, y));
+            return Self::examine_shaded(maps, mask, &window, (x, y));
         }
         let linked = maps.links.at(x as usize, y as usize);
         if linked == 0
@@ -179,14 +179,18 @@ impl Examined {
             return between;
         }
         let Some(across) = across(&window, linked, mask.is_soft) else { return Self::default() };
-        let contour =
-            contour_pixel(&window, shared(&window, across), (x, y), (across.own, across.other));
-        Self { contour, amended: unmixed(&window, across) }
+        let contour = contour_pixel(
+            &window,
+            share_pixel(&window, across),
+            (x, y),
+            (across.own, across.other),
+        );
+        Self { contour, amended: unmix_reading(&window, across) }
     }
 
     /// A pixel that the mask covers in part: its own side sees the surface in the middle of
     /// that part.
-    fn shaded(
+    fn examine_shaded(
         maps: &ContourMaps,
         mask: MaskReading,
         window: &PixelWindow,
@@ -231,7 +235,7 @@ impl Examined {
         }
         let across = Across { own: window.nothing(), other, is_near: false, is_crease: false };
         Self {
-            contour: contour_pixel(window, shared(window, across), (x, y), (0, other)),
+            contour: contour_pixel(window, share_pixel(window, across), (x, y), (0, other)),
             amended: None,
         }
     }
@@ -264,7 +268,7 @@ impl Examined {
         let by_depth = Shared { own: by_depth.max(1.0 - by_depth), other_at: Vec2::ZERO };
         let shared = line.map_or(by_depth, |line| Shared::by(line, own_is_near));
         let contour = contour_pixel(window, Some(shared), (x, y), (own, others));
-        Some(Self { contour, amended: continued(window, own) })
+        Some(Self { contour, amended: continue_reading(window, own) })
     }
 }
 
@@ -314,7 +318,7 @@ fn contour_pixel(
 }
 
 /// How the middle pixel is shared; `None` where no single edge passes.
-fn shared(window: &PixelWindow, across: Across) -> Option<Shared> {
+fn share_pixel(window: &PixelWindow, across: Across) -> Option<Shared> {
     if across.is_crease {
         // Noise and detail turn like a crease here and there; an edge of the surface is straight
         // for some pixels.
@@ -345,7 +349,7 @@ fn by_slopes(window: &PixelWindow, Across { own, other, .. }: Across) -> Option<
 }
 
 /// The middle pixel's own reading, where its normal is mixed of both sides'.
-fn unmixed(
+fn unmix_reading(
     window: &PixelWindow,
     Across { own, other, is_crease, .. }: Across,
 ) -> Option<AmendedReading> {
@@ -379,7 +383,7 @@ impl Continued {
     }
 }
 
-fn continued(window: &PixelWindow, members: u64) -> Option<AmendedReading> {
+fn continue_reading(window: &PixelWindow, members: u64) -> Option<AmendedReading> {
     Continued::from(window, members).map(|continued| continued.reading(Vec2::ZERO))
 }
 

@@ -140,7 +140,7 @@ impl ContourLine {
         let fit = |members: u64| {
             let is_plane = members.count_ones() >= LEAST_FOR_A_LINE;
             let depth = |i: u32| (CONTINUED_WEIGHTS.at(i), window.depth(i));
-            is_plane.then(|| LeastSquaresPlane::weighted(bits(members), 1e-9, depth)).flatten()
+            is_plane.then(|| LeastSquaresPlane::fit_weighted(bits(members), 1e-9, depth)).flatten()
         };
         let (own_fit, other_fit) = (fit(own)?, fit(other)?);
         let (here, slope) = (own_fit.here - other_fit.here, own_fit.slope - other_fit.slope);

@@ -16,7 +16,7 @@ pub struct LeastSquaresPlane {
 impl LeastSquaresPlane {
     /// `ridge`: added to both slopes' weights, so that few pixels give a flat plane. `None` without
     /// any weight.
-    pub fn weighted(
+    pub fn fit_weighted(
         members: impl Iterator<Item = u32>,
         ridge: f32,
         weight_and_value: impl Fn(u32) -> (f32, f32),
@@ -80,16 +80,16 @@ mod tests {
     #[test]
     fn a_plane_is_fitted_exactly() {
         let value = |i: u32| (1.0, 3.0 + vec2(0.5, -0.25).dot(offset_of(i)));
-        let fit = LeastSquaresPlane::weighted(bits(0b1011 << 14), 0.0, value);
+        let fit = LeastSquaresPlane::fit_weighted(bits(0b1011 << 14), 0.0, value);
         assert!(
             fit.is_some_and(|fit| fit.slope.y == 0.0),
             "one row tells nothing about y: {fit:?}"
         );
-        let fit = LeastSquaresPlane::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
+        let fit = LeastSquaresPlane::fit_weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
         assert!(
             (fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5,
             "{fit:?}"
         );
-        assert!(LeastSquaresPlane::weighted(bits(0), 1.0, value).is_none());
+        assert!(LeastSquaresPlane::fit_weighted(bits(0), 1.0, value).is_none());
     }
 }

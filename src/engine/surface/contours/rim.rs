@@ -45,7 +45,7 @@ impl ContourLine {
         known: u64,
         guess: ContourLine,
     ) -> Option<Self> {
-        let normals = PieceNormals::turned_from(window, near, guess);
+        let normals = PieceNormals::fit_normals(window, near, guess);
         if normals.count < LEAST_PIXELS {
             return None;
         }
@@ -99,7 +99,7 @@ struct PiecePixel {
 
 impl PieceNormals {
     /// `near`: the pixels of the piece. `line`: one near the rim.
-    fn turned_from(window: &PixelWindow, near: u64, line: ContourLine) -> Self {
+    fn fit_normals(window: &PixelWindow, near: u64, line: ContourLine) -> Self {
         let mut normals = Self { pixels: [PiecePixel::default(); PIXELS], count: 0 };
         for i in bits(near).filter(|&i| window.nbar(i).dot(line.toward_near) <= 0.0) {
             let nz_squared = window.nz_squared(i);

@@ -110,7 +110,7 @@ impl<'m> PixelWindow<'m> {
     }
 
     /// A set and the neighbors that continue it.
-    fn grown(&self, set: u64) -> u64 {
+    fn continue_set(&self, set: u64) -> u64 {
         let along = (set & self.rightward) << 1 | (set >> 1) & self.rightward;
         let across = (set & self.downward) << SIDE | (set >> SIDE) & self.downward;
         set | along | across
@@ -120,8 +120,8 @@ impl<'m> PixelWindow<'m> {
     /// other: where they are continued by each other further on, each takes what it reaches first.
     pub fn pieces(&self, mut first: u64, mut second: u64) -> (u64, u64) {
         loop {
-            let next = self.grown(first) & !second;
-            let other = self.grown(second) & !next;
+            let next = self.continue_set(first) & !second;
+            let other = self.continue_set(second) & !next;
             if (next, other) == (first, second) {
                 return (first, second);
             }

@@ -66,13 +66,13 @@ fn slope_at(surface: &Surface, at: (usize, usize), taps: &[f32]) -> (f32, f32) {
 pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     match rims::members(surface, x as i32, y as i32) {
         Some(members) if members != 0 => [0, 1, 2].map(|i| {
-            mean_of(members, (x as i32, y as i32), |x, y| differenced(surface, x, y, blur_px)[i])
+            mean_of(members, (x as i32, y as i32), |x, y| differentiate(surface, x, y, blur_px)[i])
         }),
-        _ => differenced(surface, x, y, blur_px),
+        _ => differentiate(surface, x, y, blur_px),
     }
 }
 
-fn differenced(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
+fn differentiate(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     let taps = half_kernel(blur_px);
     // Central where both neighbors continue the surface, one-sided where one does, none where
     // neither.

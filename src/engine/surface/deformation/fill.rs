@@ -15,8 +15,9 @@ use crate::surface::anchor::{Weights, segment_slope};
 use crate::surface::operator::{Operator, first_order, reflection, second_order};
 use kernels::{
     DepthKernel, KernelSpan, MirrorKernel, NormalKernel, add_mean, coverage_gain, depth_add,
-    depth_one, inverse_powers, inverse_squares, laid_row, mirror_add, mirror_one, mirror_row,
-    nearer, normal_add, normal_one, pulled_row, segment_weights, shifted_row, still_add, still_one,
+    depth_one, fill_laid_row, fill_pulled_row, fill_shifted_row, inverse_powers, inverse_squares,
+    mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, segment_weights, still_add,
+    still_one,
 };
 use std::ops::Range;
 
@@ -80,7 +81,7 @@ pub(super) fn fill(
                 plan.span(maps, &mut scratch, out_x, out_y);
             }
             if let Some(((planes, surface), maps)) = unwrapped.zip(maps).filter(|_| !is_laid) {
-                laid_over(planes, surface, maps, out_x, out_y);
+                fill_laid(planes, surface, maps, out_x, out_y);
             }
             x += n as i32;
         }
@@ -107,15 +108,15 @@ fn try_laid_span(
         Some(fit) => match fit.pulled.zip(planes.displacement.as_ref()) {
             Some((pulled, displacement)) => {
                 let by = displacement.planes().map(|plane| at.of(plane));
-                pulled_row([u, v], by, (fit.linear, fit.shift, pulled), out_x, out_y);
+                fill_pulled_row([u, v], by, (fit.linear, fit.shift, pulled), out_x, out_y);
             }
-            None => laid_row(u, v, fit.linear, fit.shift, out_x, out_y),
+            None => fill_laid_row(u, v, fit.linear, fit.shift, out_x, out_y),
         },
         None if one && planes.fits().iter().all(|fit| fit.object != objects[0]) => {
             let away = planes.elsewhere_px();
-            shifted_row(u, v, away, out_x, out_y);
+            fill_shifted_row(u, v, away, out_x, out_y);
         }
-        None => laid_over(planes, surface, at, out_x, out_y),
+        None => fill_laid(planes, surface, at, out_x, out_y),
     }
     true
 }
@@ -131,7 +132,7 @@ fn prefetch_laid(planes: &LaidPlanes, span: MapSpan) {
 
 /// D_s at the pixels of a span that the surface covers, one by one: where objects meet, and at
 /// edges.
-fn laid_over(
+fn fill_laid(
     planes: &LaidPlanes,
     surface: &Surface,
     at: MapSpan,
@@ -242,7 +243,7 @@ impl Kernel {
         }
     }
 
-    fn pinned(self, &Pin { anchor, map_values }: &Pin) -> FastPin {
+    fn pin(self, &Pin { anchor, map_values }: &Pin) -> FastPin {
         let [a, b] = match self {
             Kernel::Still => [0.0; 2],
             Kernel::Depth(_) => [map_values.depth, 0.0],
@@ -259,7 +260,7 @@ impl<'d> FillPlan<'d> {
         let kernel = Kernel::of(deformation);
         Self {
             deformation,
-            pins: deformation.pins.iter().map(|pin| kernel.pinned(pin)).collect(),
+            pins: deformation.pins.iter().map(|pin| kernel.pin(pin)).collect(),
             kernel,
             slope: match deformation.weights {
                 Weights::Segment => segment_slope(&deformation.anchors()).to_array(),

@@ -71,7 +71,7 @@ impl LaidPlanes {
     /// met exactly, and the ramp runs evenly over the surface between them.
     ///
     /// Then the picture is turned, moved and scaled on the bend's pieces.
-    pub fn pinned(surface: &Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
+    pub fn pin_anchors(surface: &Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
         let unwrapping = surface.unwrapping(settings);
         // Anchors are on the surface in front, also for a far side.
         let front = surface.front();
@@ -133,10 +133,10 @@ impl LaidPlanes {
             }
         };
         let displaced = displacement.map_or(Vec2::ZERO, |displacement| {
-            surface.blended(piece.at, |x, y| displacement.at(x, y))
+            surface.interpolate(piece.at, |x, y| displacement.at(x, y))
         });
         let shown = fit.at(at, displaced);
-        let Affine2 { matrix2, .. } = fit.looked_up(piece.picture_from_plane(shown));
+        let Affine2 { matrix2, .. } = fit.look_up(piece.picture_from_plane(shown));
         fit.pulled = fit.pulled.map(|pulled| matrix2 * pulled);
     }
 
@@ -256,7 +256,7 @@ impl PlaneFit {
     }
 
     /// Looks a picture up where `look` leads what was looked up before; returns it.
-    fn looked_up(&mut self, look: Affine2) -> Affine2 {
+    fn look_up(&mut self, look: Affine2) -> Affine2 {
         (self.linear, self.shift) = (look.matrix2 * self.linear, look.transform_point2(self.shift));
         look
     }

@@ -55,7 +55,7 @@ impl FormCurves<'_> {
         lines
     }
 
-    fn linked(&self, x: usize, y: usize) -> u8 {
+    fn links_at(&self, x: usize, y: usize) -> u8 {
         self.surface.links_plane().at(x, y)
     }
 
@@ -67,12 +67,12 @@ impl FormCurves<'_> {
             g / g.length().max(1e-6)
         };
         let slope = Plane::from_fn(nz.size(), |x, y| {
-            gradient_of(nz, self.linked(x, y), x, y).dot(way(x, y))
+            gradient_of(nz, self.links_at(x, y), x, y).dot(way(x, y))
         });
         let scale = SUGGESTIVE_SCALE * self.normals.smooth_px * self.normals.smooth_px;
         let at = |(x, y): (usize, usize)| {
             let tilt = self.normals.nbar(x, y).length();
-            let second = gradient_of(&slope, self.linked(x, y), x, y).dot(way(x, y));
+            let second = gradient_of(&slope, self.links_at(x, y), x, y).dot(way(x, y));
             if tilt > LEAST_TILT { second * scale } else { -1.0 }
         };
         let crossing = |a: (usize, usize), b: (usize, usize)| {
@@ -122,7 +122,7 @@ impl FormCurves<'_> {
     }
 
     fn is_hollow(&self, (x, y): (usize, usize), way: Vec2) -> bool {
-        let linked = self.linked(x, y);
+        let linked = self.links_at(x, y);
         let [dx, dy] = [0, 1].map(|i| gradient_of(&self.normals.planes[i], linked, x, y));
         way.x * dx.dot(way) + way.y * dy.dot(way) < 0.0
     }
@@ -131,7 +131,7 @@ impl FormCurves<'_> {
         let size = self.surface.size();
         // q, t_x, t_y.
         let all = Plane::from_fn(size, |x, y| {
-            let linked = self.linked(x, y);
+            let linked = self.links_at(x, y);
             if linked == 0 {
                 return [0.0; 3];
             }
@@ -147,7 +147,7 @@ impl FormCurves<'_> {
         });
         let [most, x, y] = [0, 1, 2].map(|i| all.map(move |v| v[i]));
         let growth = Plane::from_fn(size, |px, py| {
-            gradient_of(&most, self.linked(px, py), px, py).dot(vec2(x.at(px, py), y.at(px, py)))
+            gradient_of(&most, self.links_at(px, py), px, py).dot(vec2(x.at(px, py), y.at(px, py)))
         });
         Turns { most, way: [x, y], growth }
     }
@@ -172,7 +172,7 @@ impl FormCurves<'_> {
         let own = plane.at(middle.0, middle.1);
         let value = |dx: i32, dy: i32| {
             let linked = objects.get(x + dx, y + dy).unwrap_or(0);
-            if linked == 0 { own } else { plane.clamped(x + dx, y + dy) }
+            if linked == 0 { own } else { plane.at_clamped(x + dx, y + dy) }
         };
         let row = |dy: i32| value(0, dy) + fx * (value(1, dy) - value(0, dy));
         row(0) + fy * (row(1) - row(0))

@@ -30,7 +30,7 @@ pub fn measure_room(
         let apart = levels[usize::from(level)].apart * settings.spacing;
         let density = &densities[usize::from(level)];
         let point = |at: Vec2| {
-            let per_px = density.clamped(cell(at.x), cell(at.y)).max(1.0 / (4.0 * apart));
+            let per_px = density.at_clamped(cell(at.x), cell(at.y)).max(1.0 / (4.0 * apart));
             HatchPoint { at, room_px: 1.0 / per_px }
         };
         HatchLine { level, points: points.into_iter().map(point).collect() }

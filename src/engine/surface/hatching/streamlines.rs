@@ -57,7 +57,7 @@ impl<'f> Streamlines<'f> {
     }
 
     /// The lines, each with its level.
-    pub fn done(self) -> Vec<(u8, Vec<Vec2>)> {
+    pub fn into_lines(self) -> Vec<(u8, Vec<Vec2>)> {
         self.lines
     }
 

@@ -85,7 +85,7 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
 
 /// The open part averaged over five pixels each way, never across a depth jump: the remaining
 /// artifacts of depth steps and few directions are finer than that.
-pub(super) fn smoothed(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
+pub(super) fn smooth(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
     let across = along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
     along_links(surface, &across, (links::UP, links::DOWN), (0, 1))
 }

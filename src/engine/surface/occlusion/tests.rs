@@ -166,7 +166,7 @@ fn smoothing_evens_steps_out_but_stops_at_a_depth_jump() {
     let surface = relief(|x, _| Some(if x < 0.0 { 0.0 } else { 60.0 }));
     let stripes =
         Plane::from_fn(SIZE, |x, y| if x < 80 { 0.2 } else { 0.8 + 0.1 * (y % 2) as f32 });
-    let even = rows::smoothed(&surface, &stripes);
+    let even = rows::smooth(&surface, &stripes);
     assert!((even.at(79, 80) - 0.2).abs() < 1e-6, "{}", even.at(79, 80));
     assert!((even.at(80, 80) - 0.85).abs() < 1e-6, "{}", even.at(80, 80));
 }

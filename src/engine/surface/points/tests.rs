@@ -119,7 +119,8 @@ fn a_surface_of_another_size_reads_points_as_the_document_does() {
             let apart = here.nbar.distance(there.nbar) + (here.depth - there.depth).abs();
             assert!(apart < 1e-4, "{q} times {factor}: {here:?} {there:?}");
         }
-        let own = scaled.blended_at(vec2(12.5, 10.5) * factor).nbar.distance(surface.nbar(12, 10));
+        let own =
+            scaled.interpolate_maps(vec2(12.5, 10.5) * factor).nbar.distance(surface.nbar(12, 10));
         assert!(
             factor == 3.0 || own > 1e-3,
             "times {factor} it would read something else on itself: {own}"

@@ -5,7 +5,7 @@
 use super::PoissonGrid;
 use super::merge::{children, couplings_at, in_series, is_strong, number_rows, number_trees};
 use crate::math::union_find;
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use rayon::prelude::*;
 
 /// No unknown of a coarser level.
@@ -42,10 +42,10 @@ impl PoissonGraph {
     /// it.
     pub fn of_grid(grid: &PoissonGrid) -> (Vec<u32>, Self) {
         let (w, h) = (grid.width(), grid.height());
-        let mut parent = filled_or_unwind(w * h, NONE);
+        let mut parent = fill_or_unwind(w * h, NONE);
         let mut blocks: Vec<[u32; 2]> = Vec::new();
         if w == 0 || h == 0 {
-            return (parent, Self::joined(blocks, |_, _| {}));
+            return (parent, Self::from_blocks(blocks, |_, _| {}));
         }
         // Each two rows number their unknowns from 0; what precedes them is added afterwards.
         let counts: Vec<Vec<u32>> = parent
@@ -67,7 +67,7 @@ impl PoissonGraph {
                 .into_iter()
                 .filter(|&(x, y)| x < w && y < h)
         };
-        let graph = Self::joined(blocks.clone(), |unknown, add| {
+        let graph = Self::from_blocks(blocks.clone(), |unknown, add| {
             for (x, y) in
                 of_block(blocks[unknown]).filter(|&(x, y)| parent[y * w + x] == unknown as u32)
             {
@@ -83,7 +83,7 @@ impl PoissonGraph {
 
     /// A graph of unknowns in given blocks; `couplings` gives each unknown's finer couplings with the
     /// unknown at their end.
-    fn joined(
+    fn from_blocks(
         blocks: Vec<[u32; 2]>,
         couplings: impl Fn(usize, &mut dyn FnMut(u32, f32)) + Sync,
     ) -> Self {
@@ -166,14 +166,14 @@ impl PoissonGraph {
 
     /// The next level; `None` where nothing is left to merge: this one is the last.
     pub fn coarser(&mut self) -> Option<Self> {
-        let coarser = if self.len() <= 16 { None } else { self.merged() };
+        let coarser = if self.len() <= 16 { None } else { self.merge() };
         if coarser.is_none() {
-            self.pieces = self.found_pieces();
+            self.pieces = self.find_pieces();
         }
         coarser
     }
 
-    fn merged(&mut self) -> Option<Self> {
+    fn merge(&mut self) -> Option<Self> {
         let stiffest: Vec<f32> =
             (0..self.len()).map(|i| self.couplings(i).fold(0.0, |m: f32, s| m.max(s.1))).collect();
         let block = |i: usize| self.blocks[i].map(|v| v / 2);
@@ -193,7 +193,7 @@ impl PoissonGraph {
         }
         let children = children(&parent, roots.len());
         let blocks = roots.iter().map(|&root| block(root as usize)).collect();
-        let graph = Self::joined(blocks, |unknown, add| {
+        let graph = Self::from_blocks(blocks, |unknown, add| {
             for &child in children.of(unknown) {
                 self.couplings(child as usize).for_each(|(end, s)| add(parent[end as usize], s));
             }
@@ -208,7 +208,7 @@ impl PoissonGraph {
         &self.pieces
     }
 
-    fn found_pieces(&self) -> (Vec<u32>, usize) {
+    fn find_pieces(&self) -> (Vec<u32>, usize) {
         let mut first: Vec<u32> = (0..self.len() as u32).collect();
         for i in 0..self.len() {
             self.couplings(i).for_each(|(j, _)| {

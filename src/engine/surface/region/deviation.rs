@@ -36,7 +36,7 @@ pub fn of(surface: &Surface, kind: RegionKind, at: Vec2) -> Plane<f32> {
         RegionKind::Curvature => {
             let curvature = surface.curvature(KAPPA_BLUR * longer);
             let kappa = |x: usize, y: usize| curvature.kappa(x, y, KAPPA_SCALE * longer);
-            let k0 = surface.blended(at, kappa);
+            let k0 = surface.interpolate(at, kappa);
             on_surface(&|x, y| (kappa(x, y) - k0).abs())
         }
         RegionKind::Object => {
@@ -58,7 +58,7 @@ pub fn of(surface: &Surface, kind: RegionKind, at: Vec2) -> Plane<f32> {
                 // Where the normals turn equally in all directions there is no line.
                 (eigen.larger > 1.05 * eigen.smaller.max(0.0) + 1e-12).then_some(eigen.direction)
             };
-            let Some(u0) = along(surface.blended(at, tensor)) else {
+            let Some(u0) = along(surface.interpolate(at, tensor)) else {
                 return on_surface(&|_, _| f32::INFINITY);
             };
             on_surface(&|x, y| {

@@ -3,7 +3,7 @@
 
 use super::ShareMap;
 use super::heights::turned;
-use super::seen;
+use super::seen_share;
 use crate::math::{Size, fast};
 use crate::raster::Plane;
 use rayon::prelude::*;
@@ -68,7 +68,7 @@ crate::widest! {
     fn see_row(row: &mut [u16], per_count: f32) {
         for v in row {
             let hidden = fast::min(f32::from(*v) * per_count, 1.0);
-            *v = fast::whole(seen(hidden) * 65535.0) as u16;
+            *v = fast::whole(seen_share(hidden) * 65535.0) as u16;
         }
     }
 }

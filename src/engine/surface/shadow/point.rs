@@ -7,7 +7,7 @@
 
 use super::counts::{HiddenCounts, WHOLE};
 use super::heights::HeightMaps;
-use super::{Aim, LampRay, RISE, fade, hidden};
+use super::{Aim, LampRay, RISE, fade, hidden_share};
 use crate::math::{Vec3, fast, vec3};
 use crate::raster::Plane;
 
@@ -139,7 +139,7 @@ impl Quarter<'_> {
                     }
                     let above = (highest.height[i] - own) * away;
                     let distance = (turn as f32 - highest.row[i]) * lengths[i];
-                    (hidden(above, distance, rise, self.ray.spread), distance)
+                    (hidden_share(above, distance, rise, self.ray.spread), distance)
                 });
                 fast::max(near.0, far.0 * fade(far.1, 0.5 * self.ray.reach_px, self.ray.reach_px))
             };

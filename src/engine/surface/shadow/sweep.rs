@@ -11,7 +11,7 @@
 use super::counts::WHOLE;
 use super::heights::BlockSlopes;
 use super::sliding::{Keys, LANES, LIMIT, MOST_ROWS, ROW_BITS, SlidingKeys, higher, key};
-use super::{BUMP_REACH_PX, fade, hidden, width_at};
+use super::{BUMP_REACH_PX, fade, hidden_share, width_at};
 use crate::math::{Vec2, fast, simd::prefetch};
 use crate::raster::Plane;
 
@@ -226,7 +226,7 @@ impl Sweep<'_> {
 
     /// What rises less steeply on all of the way hides nothing, px a px.
     pub fn least_slope(&self) -> f32 {
-        // Of `hidden`: what stands above a ray, and half of the ray's width less, exceeds the bias.
+        // Of `hidden_share`: what stands above a ray, and half of the ray's width less, exceeds the bias.
         let widened = self.spread * (1.0 + self.rise * self.rise);
         self.rise - widened - 0.5 / BUMP_REACH_PX - 0.01
     }
@@ -442,11 +442,11 @@ impl ParallelLines<'_> {
             for (side, shares) in shares.iter_mut().enumerate() {
                 let at = first + side;
                 for i in 0..GROUP {
-                    shares[i] = self.hidden(near[at + i], own[i], row.turn).0;
+                    shares[i] = self.hidden_share(near[at + i], own[i], row.turn).0;
                 }
                 if FAR {
                     for i in 0..GROUP {
-                        let (hidden, distance) = self.hidden(far[at + i], own[i], row.turn);
+                        let (hidden, distance) = self.hidden_share(far[at + i], own[i], row.turn);
                         shares[i] = fast::max(shares[i], hidden * fade(distance, from, to));
                     }
                 }
@@ -462,11 +462,11 @@ impl ParallelLines<'_> {
 
     /// How much of a pixel's ray what stands highest hides, and how far away that is.
     #[inline(always)]
-    fn hidden(&self, highest: i32, own: i32, turn: usize) -> (f32, f32) {
+    fn hidden_share(&self, highest: i32, own: i32, turn: usize) -> (f32, f32) {
         let above = (highest.wrapping_sub(own) >> ROW_BITS) as f32 * self.px_per_step;
         let rows = (turn as i32).wrapping_sub(highest) & MOST_ROWS as i32;
         let distance = rows as f32 * self.length;
-        (hidden(above, distance, self.rise, self.spread), distance)
+        (hidden_share(above, distance, self.rise, self.spread), distance)
     }
 }
 

@@ -70,7 +70,7 @@ fn hidden_beyond(heights: &HeightMaps, q: Vec2, lamp: LampPlace, ray: &LampRay, 
     let split = 0.5 * ray.reach_px;
     let [near, far] = [(from, split), (split, ray.reach_px)].map(|window| {
         let (above, t, rise) = highest(heights, q, lamp, ray, window);
-        hidden(above, t, rise, ray.spread) * fade(t, split, ray.reach_px)
+        hidden_share(above, t, rise, ray.spread) * fade(t, split, ray.reach_px)
     });
     near.max(far)
 }
@@ -82,16 +82,16 @@ fn seen_from(heights: &HeightMaps, (x, y): (usize, usize), lamp: &ShadowLamp) ->
         let rays = lamp.rays(heights.highest);
         let hidden: f32 =
             rays.iter().map(|ray| hidden_beyond(heights, q, lamp.place, ray, 0.0)).sum();
-        return seen(hidden / lamp.rays as f32);
+        return seen_share(hidden / lamp.rays as f32);
     }
     let rays = parallel::RayGroups::of(lamp, heights.highest);
     let of_group = |group: &parallel::RayGroup| {
         let (above, t, rise) = highest(heights, q, lamp.place, &group.near, (0.0, rays.near_px));
-        let near = hidden(above, t, rise, group.near.spread) * group.far.len() as f32;
+        let near = hidden_share(above, t, rise, group.near.spread) * group.far.len() as f32;
         let beyond = |ray| hidden_beyond(heights, q, lamp.place, ray, rays.near_px);
         near.max(group.far.iter().map(beyond).sum())
     };
-    seen(rays.groups.iter().map(of_group).sum::<f32>() / rays.count as f32)
+    seen_share(rays.groups.iter().map(of_group).sum::<f32>() / rays.count as f32)
 }
 
 /// The mean difference between the fast way and the equation, and the share of pixels where it is

@@ -38,7 +38,7 @@ impl<'p, const N: usize> BlockRanges<'p, N> {
 }
 
 /// The blocks of a tile that may be touched.
-pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
+pub(super) fn judge_blocks(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
     let corner =
         vec2((at.col * TILE as i32) as f32, (at.row * TILE as i32) as f32) + 0.5 - support.at;
     let (mut touched, mut pixel) = ([0; BLOCKS], [1.0; BLOCKS]);
@@ -48,7 +48,7 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
         OperatorBounds::Still => still(corner, extent, &mut touched),
         OperatorBounds::Depth { pyramid, z, rate } => {
             let bend = ScaledBlocks { z: *z, rate: *rate };
-            scaled(
+            reach_of_scaled(
                 BlockRanges::of(at, cover, pyramid),
                 corner,
                 extent,
@@ -59,7 +59,7 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
         }
         OperatorBounds::Turn { pyramid, turn, stretch } => {
             let bend = TurnedBlocks { turn: *turn, stretch: *stretch };
-            turned(
+            reach_of_turned(
                 BlockRanges::of(at, cover, pyramid),
                 corner,
                 extent,
@@ -70,7 +70,14 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> JudgedBlocks {
         }
         OperatorBounds::Unwrapped { surface, unwrapping, at: anchor } => {
             let ranges = BlockRanges::of(at, cover, unwrapping.bounds(surface));
-            unwrapped(ranges, corner, extent, LaidBlocks { at: *anchor }, &mut touched, &mut pixel);
+            reach_of_unwrapped(
+                ranges,
+                corner,
+                extent,
+                LaidBlocks { at: *anchor },
+                &mut touched,
+                &mut pixel,
+            );
         }
     }
     let there = support.on_canvas(at);
@@ -146,7 +153,10 @@ impl BlockBend<5> for LaidBlocks {
         _: (Vec2, Vec2),
         _: BlockImage,
     ) -> BlockImage {
-        BlockImage::unwrapped(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.at)
+        BlockImage::from_unwrapping(
+            TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope },
+            self.at,
+        )
     }
 }
 
@@ -185,7 +195,7 @@ crate::widest! {
         }
     }
 
-    fn scaled(
+    fn reach_of_scaled(
         ranges: BlockRanges<3>,
         corner: Vec2,
         extent: DabExtent,
@@ -196,7 +206,7 @@ crate::widest! {
         each(ranges, corner, extent, bend, touched, pixel);
     }
 
-    fn turned(
+    fn reach_of_turned(
         ranges: BlockRanges<5>,
         corner: Vec2,
         extent: DabExtent,
@@ -207,7 +217,7 @@ crate::widest! {
         each(ranges, corner, extent, bend, touched, pixel);
     }
 
-    fn unwrapped(
+    fn reach_of_unwrapped(
         ranges: BlockRanges<5>,
         corner: Vec2,
         extent: DabExtent,

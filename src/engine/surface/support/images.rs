@@ -110,7 +110,7 @@ impl OperatorBounds<'_> {
                 .map_or(ANYWHERE, |span| stretch.image(span.spread(spread), *turn, (low, high))),
             OperatorBounds::Unwrapped { surface, unwrapping, at } => {
                 let span = unwrapping.bounds(surface).at(block);
-                span.map_or(ANYWHERE, |span| BlockImage::unwrapped(span.spread(spread), *at))
+                span.map_or(ANYWHERE, |span| BlockImage::from_unwrapping(span.spread(spread), *at))
             }
         }
     }
@@ -130,7 +130,7 @@ impl BlockImage {
     /// What D_s makes of a block whose points of the unwrapped plane span so much: it turns them
     /// about the anchor's.
     #[inline(always)]
-    pub fn unwrapped(span: TurnSpan, at: Vec2) -> Self {
+    pub fn from_unwrapping(span: TurnSpan, at: Vec2) -> Self {
         Self { pixel: span.slope, ..Self::flat(span.low - at, span.high - at) }
     }
 
@@ -189,7 +189,11 @@ impl<'s> OperatorBounds<'s> {
             Operator::Reflection { alpha, detail } => {
                 let stretch = RadialOffset { alpha_px: alpha * unit_px, softness: None, detail };
                 let turn = reflection::mirrored(nbar, nz);
-                OperatorBounds::Turn { pyramid: surface.bounds().mirrored(surface), turn, stretch }
+                OperatorBounds::Turn {
+                    pyramid: surface.bounds().reflections(surface),
+                    turn,
+                    stretch,
+                }
             }
             Operator::Surface { .. } => match operator.unwrapping() {
                 Some(settings) => {

@@ -76,7 +76,7 @@ proptest! {
         support.for_each_tile(|tile| tiles.push(tile));
         let d = Deformation::of_dab(Some(&surface), SIZE, operator, at);
         for tile in TileAt::covering(SIZE.rect()) {
-            let judged = support.judged(tile);
+            let judged = support.judge_blocks(tile);
             let blocks = support.blocks(tile);
             let Rect { x0, y0, x1, y1 } = tile.rect().intersect(SIZE.rect());
             for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {

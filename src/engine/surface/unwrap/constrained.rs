@@ -4,7 +4,7 @@
 
 use super::{UnwrapSettings, couplings, covered_rect, place::nearest_covered, smooth};
 use crate::math::{Rect, Vec2};
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::raster::Plane;
 use crate::surface::cache::HeapSize;
 use crate::surface::poisson::{Effort, PoissonSolver, SolveScratch};
@@ -64,7 +64,7 @@ impl PlaneDisplacement {
         self.planes.each_ref()
     }
 
-    fn solved(surface: &Surface, solver: &PlaneSolver, constraints: &[PlaneConstraint]) -> Self {
+    fn solve(surface: &Surface, solver: &PlaneSolver, constraints: &[PlaneConstraint]) -> Self {
         let (size, PlaneSolver { rect, solver }) = (surface.size(), solver);
         let (w, n) = (rect.width(), rect.width() * rect.height());
         let discs = discs(surface, *rect, constraints);
@@ -72,9 +72,9 @@ impl PlaneDisplacement {
         let held = solver.constraints(pixels.iter().map(|held| (held.0, held.1)).collect());
         let mut scratch = SolveScratch::default();
         let planes = [0, 1].map(|axis| {
-            let mut pull = filled_or_unwind(n, 0.0f32);
+            let mut pull = fill_or_unwind(n, 0.0f32);
             pixels.iter().for_each(|&(i, _, pulled)| pull[i as usize] = pulled[axis]);
-            let mut moved = filled_or_unwind(n, 0.0f32);
+            let mut moved = fill_or_unwind(n, 0.0f32);
             if pull.iter().any(|v| *v != 0.0) {
                 solver.solve_constrained(&held, &pull, &mut moved, EFFORT, &mut scratch);
             }
@@ -234,8 +234,8 @@ impl Surface {
         let keep = self.kept_unwrappings().min(4);
         self.derived.plane_displacements.get_or_compute(key, keep, |_| {
             let solved = || {
-                let solver = self.plane_solver(settings, self.pulled_rect(constraints));
-                PlaneDisplacement::solved(self, &solver, constraints)
+                let solver = self.plane_solver(settings, self.find_pulled_rect(constraints));
+                PlaneDisplacement::solve(self, &solver, constraints)
             };
             self.on_either_side(solved, |far, front| {
                 let whole = front.map(|front| front.plane_displacement(settings, constraints));
@@ -250,7 +250,7 @@ impl Surface {
     }
 
     /// Around all that constraints can move. Parts may be linked beyond what shows each of them.
-    fn pulled_rect(&self, constraints: &[PlaneConstraint]) -> Rect {
+    fn find_pulled_rect(&self, constraints: &[PlaneConstraint]) -> Rect {
         if self.parts_plane().is_some() {
             return covered_rect(self);
         }

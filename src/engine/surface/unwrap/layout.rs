@@ -69,7 +69,7 @@ impl PlaneLayout {
             let shift = shifts.get(labels.values()[i] as usize).copied().unwrap_or(Vec2::NAN);
             unwrapping.at(i % w, i / w) + shift
         };
-        let sheet = PlaneView::rastered(surface, size.rect(), at);
+        let sheet = PlaneView::rasterize(surface, size.rect(), at);
         Some(Self { settings, unwrapping, pieces, sheet })
     }
 

@@ -26,9 +26,9 @@ impl Unwrapping {
         let object = surface.objects().labels().at(x, y);
         let from = |x: usize, y: usize| q - (vec2(x as f32, y as f32) + 0.5);
         if from(x, y).abs().max_element() <= 0.5 {
-            let jacobian = surface.blended(q, |x, y| self.jacobian(surface, x, y));
+            let jacobian = surface.interpolate(q, |x, y| self.jacobian(surface, x, y));
             let at = surface
-                .blended(q, |x, y| self.at(x, y) + self.jacobian(surface, x, y) * from(x, y));
+                .interpolate(q, |x, y| self.at(x, y) + self.jacobian(surface, x, y) * from(x, y));
             return PlanePlace { object, at, turn: turn_of(jacobian) };
         }
         let turn = turn_of(self.jacobian(surface, x, y));
@@ -38,7 +38,7 @@ impl Unwrapping {
     /// ∂D/∂q at a pixel, differenced within its piece; where a pixel has no neighbor along an
     /// axis, 1.
     pub fn jacobian(&self, surface: &Surface, x: usize, y: usize) -> Mat2 {
-        let near = DifferencePairs::linked(surface, x, y);
+        let near = DifferencePairs::between_links(surface, x, y);
         let rows = [near.slope(|x, y| self.at(x, y).x), near.slope(|x, y| self.at(x, y).y)];
         let mut jacobian = Mat2::from_cols(rows[0], rows[1]).transpose();
         if jacobian.x_axis == Vec2::ZERO {

@@ -2,7 +2,7 @@
 //! Floor 2. The inverse of D over a whole canvas, for pictures of the plane (`document::view`).
 
 use crate::math::{Rect, Vec2, vec2};
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::surface::deformed_rect::DeformedRect;
 use crate::surface::{Surface, links};
 
@@ -40,18 +40,18 @@ impl PlaneView {
         if rect.is_empty() {
             return None;
         }
-        Some(Self::rastered(surface, rect, at))
+        Some(Self::rasterize(surface, rect, at))
     }
 
     /// The part `rect` of the plane in which `at` lays the pixels of the canvas, counted row by
     /// row.
-    pub(super) fn rastered(surface: &Surface, rect: Rect, at: impl Fn(usize) -> Vec2) -> Self {
+    pub(super) fn rasterize(surface: &Surface, rect: Rect, at: impl Fn(usize) -> Vec2) -> Self {
         let canvas = surface.size().rect();
         let (w, area) = (canvas.width(), rect.width() * rect.height());
         let mut seen = PlaneRaster {
             rect,
-            points: filled_or_unwind(area, Vec2::NAN),
-            depths: filled_or_unwind(area, f32::INFINITY),
+            points: fill_or_unwind(area, Vec2::NAN),
+            depths: fill_or_unwind(area, f32::INFINITY),
         };
         for y in 0..canvas.height() - 1 {
             for x in 0..w - 1 {

@@ -2,7 +2,7 @@
 //! Floor 2. The blur crosses neither the mask's edge nor a depth jump.
 
 use crate::math::Rect;
-use crate::memory::filled_or_unwind;
+use crate::memory::fill_or_unwind;
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
 
@@ -20,7 +20,7 @@ const PASSES: i32 = 3;
 /// cost does not depend on the width, and a broken link ends it like the border of a picture.
 pub(super) fn normals(surface: &Surface, rect: Rect, blur_px: f32) -> Normals {
     let mut planes = surface.normal_planes().map(|plane| {
-        let mut out = filled_or_unwind(rect.width() * rect.height(), 0.0f32);
+        let mut out = fill_or_unwind(rect.width() * rect.height(), 0.0f32);
         out.par_chunks_mut(rect.width()).enumerate().for_each(|(y, row)| {
             row.copy_from_slice(
                 &plane.row(y + rect.y0 as usize)[rect.x0 as usize..rect.x1 as usize],

@@ -39,13 +39,13 @@ pub(super) fn sources(
         let (mut above, mut here, mut below) = (empty.clone(), empty.clone(), empty);
         let first = band * BAND;
         if first > 0 {
-            turned(grid, metric, moved, first - 1, &mut above);
+            solve_local_steps(grid, metric, moved, first - 1, &mut above);
         }
-        turned(grid, metric, moved, first, &mut here);
+        solve_local_steps(grid, metric, moved, first, &mut here);
         let rows = out_x.chunks_mut(w).zip(out_y.chunks_mut(w));
         for (y, (out_x, out_y)) in (first..).zip(rows) {
             if (y + 1) * w < grid.couplings()[0].len() {
-                turned(grid, metric, moved, y + 1, &mut below);
+                solve_local_steps(grid, metric, moved, y + 1, &mut below);
             }
             let couplings = CouplingRows::of(grid, y);
             let [xx, xy, yx, yy] = &here.0;
@@ -75,7 +75,7 @@ impl<'g> CouplingRows<'g> {
     }
 }
 
-fn turned(
+fn solve_local_steps(
     grid: &PoissonGrid,
     metric: &Metric,
     moved: Option<[&[f32]; 2]>,
@@ -99,14 +99,18 @@ fn turned(
     let none = vec![0.0; if y == 0 { w } else { 0 }];
     let couplings = CouplingRows::of(grid, y);
     let couplings = CouplingRows { up: if y == 0 { &none } else { couplings.up }, ..couplings };
-    turned_row(couplings, s, rows, [xx, xy, yx, yy]);
+    fill_local_steps(couplings, s, rows, [xx, xy, yx, yy]);
 }
 
 /// The local step at one pixel: R S − 1.
 ///
 /// * `s`: S − 1; `dx`, `dy`: ∂δ/∂x and ∂δ/∂y, each with whether the pixel has a neighbor that way.
 #[inline(always)]
-fn turned_at([a, b, c]: [f32; 3], (dx, has_x): (Vec2, f32), (dy, has_y): (Vec2, f32)) -> [f32; 4] {
+fn local_step_at(
+    [a, b, c]: [f32; 3],
+    (dx, has_x): (Vec2, f32),
+    (dy, has_y): (Vec2, f32),
+) -> [f32; 4] {
     // J, rows of it; M = J S⁻¹ up to a positive factor, which its angle does not see.
     let (jxx, jyx, jxy, jyy) = (dx.x + has_x, dx.y, dy.x, dy.y + has_y);
     let cos = jxx * (1.0 + c) - jxy * b - jyx * b + jyy * (1.0 + a);
@@ -124,7 +128,7 @@ fn turned_at([a, b, c]: [f32; 3], (dx, has_x): (Vec2, f32), (dy, has_y): (Vec2, 
 
 crate::widest! {
     /// The local step over a row; δ as rows above, here and below, x and y.
-    fn turned_row(couplings: CouplingRows, s: [&[f32]; 3], moved: [[&[f32]; 3]; 2], out: [&mut [f32]; 4]) {
+    fn fill_local_steps(couplings: CouplingRows, s: [&[f32]; 3], moved: [[&[f32]; 3]; 2], out: [&mut [f32]; 4]) {
         let n = s[0].len();
         let [a, b, c] = s.map(|s| &s[..n]);
         let (right, up, down) = (&couplings.right[..n], &couplings.up[..n], &couplings.down[..n]);
@@ -139,7 +143,7 @@ crate::widest! {
             let fall = |a: &[f32], v: &[f32], b: &[f32]| (d * (b[i] - v[i]) + u * (v[i] - a[i])) * half(u + d);
             let dx = (Vec2::new(slope(x), slope(y)), l.max(r));
             let dy = (Vec2::new(fall(above_x, x, below_x), fall(above_y, y, below_y)), u.max(d));
-            [xx[i], xy[i], yx[i], yy[i]] = turned_at([a[i], b[i], c[i]], dx, dy);
+            [xx[i], xy[i], yx[i], yy[i]] = local_step_at([a[i], b[i], c[i]], dx, dy);
         };
         if n > 0 {
             one(0, 0, 1.min(n - 1), 0.0);

@@ -34,7 +34,7 @@ pub fn readable(
     let becomes = match compression {
         ZSTD | OLD_ZSTD => PLAIN,
         FAX3 if options & 1 == 1 => {
-            return Err(Error::unsupported(
+            return Err(Error::unsupported_file(
                 file,
                 "two-dimensional group 3 fax in a TIFF; save it as group 4 or LZW",
             ));

@@ -151,7 +151,7 @@ impl AbrConversion<'_> {
                 self.drive(
                     Property::Rotation,
                     Input::Random,
-                    Curve::added(vec![vec2(0.0, -half), vec2(1.0, half)]),
+                    Curve::additive(vec![vec2(0.0, -half), vec2(1.0, half)]),
                 );
             }
         }
@@ -181,7 +181,7 @@ impl AbrConversion<'_> {
                 let x = i as f32 / (POINTS - 1) as f32;
                 vec2(x, long / (1.0 - taken * (1.0 - x)) - long)
             };
-            self.drive(Property::Elongation, input, Curve::added((0..POINTS).map(at).collect()));
+            self.drive(Property::Elongation, input, Curve::additive((0..POINTS).map(at).collect()));
         }
     }
 
@@ -225,7 +225,12 @@ impl AbrConversion<'_> {
     }
 
     /// The texture that it takes paint away by; its pattern is in the collection.
-    pub fn textured(&mut self, file: &Path, patterns: &[PatternResource], tips: &mut TipNames) {
+    pub fn convert_texture(
+        &mut self,
+        file: &Path,
+        patterns: &[PatternResource],
+        tips: &mut TipNames,
+    ) {
         if !self.preset.is_set("useTexture") {
             return;
         }

@@ -80,7 +80,7 @@ impl AbrPreset<'_> {
             self.name
         };
         let mut carried = with_dynamics(self.description, brush, notes);
-        carried.textured(pictures.file, pictures.patterns, pictures.tips);
+        carried.convert_texture(pictures.file, pictures.patterns, pictures.tips);
         ImportedBrush { name, brush: carried.brush, notes: carried.notes }
     }
 }

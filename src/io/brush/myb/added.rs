@@ -1,7 +1,7 @@
 //! A setting of MyPaint's: a number, and what inputs of ours add to it.
 //! Floor 5.
 
-use super::curves::{STEPS, level, straightened, summed};
+use super::curves::{STEPS, add_curves, level, straightened};
 use crate::math::{Vec2, vec2};
 use crate::paint::dynamics::{Curve, Input, MOST_ADDED};
 
@@ -23,7 +23,7 @@ pub struct AddedInput {
 impl Added {
     pub fn add(&mut self, row: AddedInput) {
         match self.rows.iter_mut().find(|known| known.input == row.input) {
-            Some(known) => known.points = summed(&known.points, &row.points),
+            Some(known) => known.points = add_curves(&known.points, &row.points),
             None => self.rows.push(row),
         }
     }
@@ -96,7 +96,7 @@ impl AddedInput {
     /// As a curve that adds; `None` if it adds nothing measurable.
     pub fn curve(&self) -> Option<Curve> {
         let points = self.points.iter().map(|p| vec2(p.x, p.y.max(-MOST_ADDED).min(MOST_ADDED)));
-        Curve::added(straightened(&points.collect::<Vec<_>>()))
+        Curve::additive(straightened(&points.collect::<Vec<_>>()))
     }
 
     /// As a curve of factors; `value`: what a place makes of the whole, `[0, 1]`.

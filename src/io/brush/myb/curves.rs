@@ -173,7 +173,7 @@ pub fn level(points: &[Vec2], x: f32) -> f32 {
 }
 
 /// A curve of theirs over an input of ours.
-pub fn sampled(pieces: &[CurvePiece], points: &[Vec2]) -> Vec<Vec2> {
+pub fn sample_curve(pieces: &[CurvePiece], points: &[Vec2]) -> Vec<Vec2> {
     let of_piece = |piece: &CurvePiece| {
         let [from, to] = piece.t;
         let shares = piece.shares(points);
@@ -186,7 +186,7 @@ pub fn sampled(pieces: &[CurvePiece], points: &[Vec2]) -> Vec<Vec2> {
 }
 
 /// Two curves added.
-pub fn summed(a: &[Vec2], b: &[Vec2]) -> Vec<Vec2> {
+pub fn add_curves(a: &[Vec2], b: &[Vec2]) -> Vec<Vec2> {
     let mut places: Vec<f32> = a.iter().chain(b).map(|p| p.x).collect();
     places.sort_by(f32::total_cmp);
     places.dedup();

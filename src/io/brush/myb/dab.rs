@@ -17,9 +17,9 @@ pub fn shape(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let brush = Brush { hardness: hardness.base, falloff: Falloff::Peaked, ..brush };
     let brush = with(brush, Property::Hardness, &hardness);
     let elongation =
-        settings.added("elliptical_dab_ratio", 1.0).within(1.0, 1.0 / *Tip::RATIO.start());
+        settings.take_added("elliptical_dab_ratio", 1.0).within(1.0, 1.0 / *Tip::RATIO.start());
     // Theirs turns clockwise.
-    let angle = settings.added("elliptical_dab_angle", 90.0).times(-1.0);
+    let angle = settings.take_added("elliptical_dab_angle", 90.0).times(-1.0);
     if elongation.base <= ROUND && elongation.rows.is_empty() {
         return brush;
     }
@@ -34,12 +34,12 @@ pub fn shape(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
 
 /// As it becomes here, of a brush of this radius.
 pub fn hardness(settings: &mut MyPaintSettings, radius: f32) -> Added {
-    let rim_px = settings.added("anti_aliasing", 1.0).base;
-    softened(settings.added("hardness", 0.8), rim_px, radius).within(0.0, 1.0)
+    let rim_px = settings.take_added("anti_aliasing", 1.0).base;
+    soften(settings.take_added("hardness", 0.8), rim_px, radius).within(0.0, 1.0)
 }
 
 /// A hardness for a rim wider than it would have; the radius of half coverage stays.
-fn softened(hardness: Added, rim_px: f32, radius: f32) -> Added {
+fn soften(hardness: Added, rim_px: f32, radius: f32) -> Added {
     let h = hardness.base.max(0.0).min(1.0);
     if rim_px <= RIM_PX || radius * (1.0 - h) >= rim_px {
         return hardness;
@@ -58,7 +58,7 @@ pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
             + settings.base("dabs_per_basic_radius", 0.0));
     let overlap = (1.0 + linear * (per_diameter.max(1.0) - 1.0)).max(1.0).min(100.0);
     let brush = Brush { overlap, ..brush };
-    let opaque = settings.added("opaque", 1.0);
+    let opaque = settings.take_added("opaque", 1.0);
     let times = settings.opaque_multiply();
     // The inputs of the one that has more add up; the other multiplies.
     let (sum, factor) =
@@ -98,7 +98,7 @@ pub fn paint(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
         ("change_color_hsl_s", Property::Saturation, 1.0),
     ];
     for (name, property, factor) in changes {
-        let change = settings.added(name, 0.0).times(factor);
+        let change = settings.take_added(name, 0.0).times(factor);
         if change.rows.is_empty() {
             brush = with_constant(brush, property, change.base);
         } else {
@@ -107,12 +107,12 @@ pub fn paint(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     }
     for name in ["colorize", "posterize"] {
         settings.plain(name, 0.0);
-        settings.lost(name, 0.0);
+        settings.report_unused(name, 0.0);
     }
     if settings.base("posterize", 0.0) == 0.0 {
         settings.of_no_use(&["posterize_num"]);
     }
-    let erases = settings.added("eraser", 0.0);
+    let erases = settings.take_added("eraser", 0.0);
     if erases.rows.iter().any(|_| true) || (erases.base > 0.0 && erases.base < 1.0) {
         settings.note("It erases wholly or not at all");
     }
@@ -133,15 +133,15 @@ fn pickup(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
         "smudge_transparency",
         "smudge",
     ];
-    let amount = settings.added("smudge", 0.0).within(0.0, 1.0);
+    let amount = settings.take_added("smudge", 0.0).within(0.0, 1.0);
     settings.of_no_use(&DETAILS);
     if amount.base == 0.0 && amount.rows.is_empty() {
         return brush;
     }
-    let length = settings.added("smudge_length", 0.5).within(0.0, 1.0);
+    let length = settings.take_added("smudge_length", 0.5).within(0.0, 1.0);
     let radius = settings.plain("smudge_radius_log", 0.0).exp().max(0.05).min(20.0);
     for name in ["smudge_length_log", "smudge_bucket", "smudge_transparency"] {
-        settings.lost(name, 0.0);
+        settings.report_unused(name, 0.0);
     }
     let brush =
         Brush { pickup: Pickup { amount: amount.base, length: length.base, radius }, ..brush };
@@ -153,14 +153,14 @@ impl MyPaintSettings<'_> {
     /// What `opaque` is multiplied by: the pressure, if the file does not say.
     fn opaque_multiply(&mut self) -> Added {
         if self.has_setting("opaque_multiply") {
-            self.added("opaque_multiply", 0.0)
+            self.take_added("opaque_multiply", 0.0)
         } else {
             self.pressure()
         }
     }
 
     /// A setting with no effect here; reported if it has one in MyPaint.
-    fn lost(&mut self, name: &'static str, idle: f32) {
+    fn report_unused(&mut self, name: &'static str, idle: f32) {
         if self.is_driven(name) || self.base(name, idle) != idle {
             self.note(&format!("“{name}” has no counterpart"));
         }

@@ -46,7 +46,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Map<String, Va
         .find(|(name, _)| *name == "version")
         .map_or("1", |(_, version)| version.trim());
     if !["1", "2"].contains(&version) {
-        return Err(Error::unsupported(
+        return Err(Error::unsupported_file(
             file,
             format!("version {version} of MyPaint's brushes as text"),
         ));

@@ -2,7 +2,7 @@
 //! Floor 5. Not here: what they make of a brush (`dab`, `stylus`), how curves run (`curves`).
 
 use super::added::{Added, AddedInput};
-use super::curves::{InputMapping, Scales, at, curve_of, number, sampled};
+use super::curves::{InputMapping, Scales, at, curve_of, number, sample_curve};
 use crate::math::vec2;
 use crate::paint::dynamics::Input;
 use serde_json::{Map, Value};
@@ -72,7 +72,7 @@ impl<'a> MyPaintSettings<'a> {
 
     /// A setting that nothing can drive here, with its inputs halfway; a drive is reported.
     pub fn plain(&mut self, name: &'static str, default: f32) -> f32 {
-        let added = self.added(name, default);
+        let added = self.take_added(name, default);
         if !added.rows.is_empty() {
             self.note(&format!("“{name}” follows nothing here"));
         }
@@ -80,7 +80,7 @@ impl<'a> MyPaintSettings<'a> {
     }
 
     /// A setting with all that adds to it. Inputs that never change are part of its base.
-    pub fn added(&mut self, name: &'static str, default: f32) -> Added {
+    pub fn take_added(&mut self, name: &'static str, default: f32) -> Added {
         let mut added = Added { base: self.base(name, default), rows: Vec::new() };
         let value = self.all.get(name);
         let inputs = value.and_then(|value| value.get("inputs")?.as_object());
@@ -89,7 +89,7 @@ impl<'a> MyPaintSettings<'a> {
             match self.scales.way(input) {
                 Some(InputMapping::Still(x)) => added.base += at(&points, x),
                 Some(InputMapping::Runs(input, pieces)) => {
-                    added.add(AddedInput { input, points: sampled(&pieces, &points) })
+                    added.add(AddedInput { input, points: sample_curve(&pieces, &points) })
                 }
                 None => {
                     let input: String =
@@ -113,7 +113,7 @@ impl<'a> MyPaintSettings<'a> {
         if !self.is_driven("custom_input") {
             return Added { base: self.base("custom_input", 0.0), rows: Vec::new() };
         }
-        let custom = self.added("custom_input", 0.0);
+        let custom = self.take_added("custom_input", 0.0);
         let [least, most] = custom.range();
         if most > least {
             self.scales.custom = [least, most];
@@ -152,7 +152,7 @@ mod tests {
 
     fn added(text: &str, name: &'static str) -> Added {
         let value = settings(text);
-        MyPaintSettings::new(value.as_object().unwrap()).added(name, 0.0)
+        MyPaintSettings::new(value.as_object().unwrap()).take_added(name, 0.0)
     }
 
     #[test]
@@ -196,7 +196,7 @@ mod tests {
                  "a": { "base_value": 1, "inputs": { "gridmap_x": [[0, 0], [1, 1]] } } }"#,
         );
         let mut settings = MyPaintSettings::new(value.as_object().unwrap());
-        settings.added("a", 0.0);
+        settings.take_added("a", 0.0);
         assert_eq!(
             settings.into_notes(),
             ["“a” does not follow “gridmap_x”", "“gloss” has no counterpart"]
@@ -225,7 +225,7 @@ mod tests {
         let mut settings = MyPaintSettings::new(value.as_object().unwrap());
         let custom = settings.custom();
         assert_eq!(custom.range(), [0.0, 1.0]);
-        let curve = settings.added("a", 0.0).rows[0].curve().unwrap();
+        let curve = settings.take_added("a", 0.0).rows[0].curve().unwrap();
         assert_eq!([0.0, 0.5, 1.0].map(|t| curve.at(t)), [-10.0, 10.0, 30.0]);
     }
 }

@@ -35,7 +35,7 @@ impl DabSmoothing {
     pub fn new(settings: &mut MyPaintSettings, here: f32) -> Self {
         let most = 1.0 / *Tip::RATIO.start();
         let snaps = settings.reads("snap_to_pixel") > 0.5;
-        let mut halfway = |name, default| settings.added(name, default).halfway();
+        let mut halfway = |name, default| settings.take_added(name, default).halfway();
         Self {
             hardness: halfway("hardness", 0.8).max(0.0).min(1.0),
             here: here.max(0.02).min(1.0),

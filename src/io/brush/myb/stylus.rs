@@ -14,7 +14,7 @@ const SPACINGS: [f32; 2] = [0.01, 100.0];
 
 /// Dabs a radius of the dab, a radius of the brush, and a second.
 pub fn spacing(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Brush {
-    let actual = settings.added("dabs_per_actual_radius", 2.0);
+    let actual = settings.take_added("dabs_per_actual_radius", 2.0);
     let basic = settings.plain("dabs_per_basic_radius", 0.0);
     let per_sec = settings.plain("dabs_per_second", 0.0);
     let [least, most] = SPACINGS;
@@ -46,14 +46,16 @@ pub fn spacing(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -
 /// How far dabs are from the pen, and how their sizes vary.
 pub fn strays(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Brush {
     let scatter =
-        settings.added("offset_by_random", 0.0).times(lengths.diameters()).within(0.0, 10.0);
+        settings.take_added("offset_by_random", 0.0).times(lengths.diameters()).within(0.0, 10.0);
     let brush = Brush { scatter: scatter.base, spread: Spread::Cloud, ..brush };
     let brush = with(brush, Property::Scatter, &scatter);
-    let sizes =
-        settings.added("radius_by_random", 0.0).times(std::f32::consts::LOG2_E).within(0.0, 4.0);
+    let sizes = settings
+        .take_added("radius_by_random", 0.0)
+        .times(std::f32::consts::LOG2_E)
+        .within(0.0, 4.0);
     let brush = Brush { size_jitter: sizes.base, ..brush };
     let brush = with(brush, Property::SizeJitter, &sizes);
-    let lead = settings.added("offset_by_speed", 0.0).times(0.1).within(-1.0, 1.0);
+    let lead = settings.take_added("offset_by_speed", 0.0).times(0.1).within(-1.0, 1.0);
     let brush = Brush { stylus: StylusFilter { lead_secs: lead.base, ..brush.stylus }, ..brush };
     settings.of_no_use(&["offset_by_speed_slowness"]);
     let brush = with(brush, Property::Lead, &lead);
@@ -71,11 +73,14 @@ const OFFSETS: [(&str, Bearing, bool, f32); 6] = [
 ];
 
 fn offset(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -> Brush {
-    let across = [settings.added("offset_x", 0.0), settings.added("offset_y", 0.0)];
-    let turn = settings.added("offset_angle_adj", 0.0).times(-1.0);
-    let times = settings.added("offset_multiplier", 0.0);
+    let across = [settings.take_added("offset_x", 0.0), settings.take_added("offset_y", 0.0)];
+    let turn = settings.take_added("offset_angle_adj", 0.0).times(-1.0);
+    let times = settings.take_added("offset_multiplier", 0.0);
     let kinds = OFFSETS.map(|(name, from, alternates, degrees)| {
-        (settings.added(name, 0.0), Offset { from, alternates, turn_degrees: degrees, amount: 0.0 })
+        (
+            settings.take_added(name, 0.0),
+            Offset { from, alternates, turn_degrees: degrees, amount: 0.0 },
+        )
     });
     let is_idle = |added: &Added| added.base == 0.0 && added.rows.is_empty();
     let mut kinds = kinds.into_iter().filter(|(added, _)| !is_idle(added));

@@ -63,10 +63,10 @@ pub fn read(file: &Path, text: &[u8], budget: &Budget) -> Result<KritaImage> {
             }
             Event::Start(e) if e.local_name().as_ref() == "layers" => {
                 let layers = parser.nodes(0)?;
-                let size = size.ok_or_else(|| parser.refused("it has no <IMAGE>"))?;
+                let size = size.ok_or_else(|| parser.refusal("it has no <IMAGE>"))?;
                 return Ok(KritaImage { size, layers });
             }
-            Event::Eof => return Err(parser.refused("it has no <layers>")),
+            Event::Eof => return Err(parser.refusal("it has no <layers>")),
             _ => {}
         }
     }
@@ -86,7 +86,7 @@ impl<'a> MaindocParser<'a> {
         self.xml.read_event().map_err(damaged)
     }
 
-    fn refused(&self, reason: &str) -> Error {
+    fn refusal(&self, reason: &str) -> Error {
         Error::decode(self.file, format!("maindoc.xml: {reason}"))
     }
 
@@ -103,7 +103,7 @@ impl<'a> MaindocParser<'a> {
                 Event::Start(e) => (e, true),
                 Event::Empty(e) => (e, false),
                 Event::End(_) => return Ok(nodes),
-                Event::Eof => return Err(self.refused("it ends within a list of layers")),
+                Event::Eof => return Err(self.refusal("it ends within a list of layers")),
                 _ => continue,
             };
             if matches!(element.local_name().as_ref(), "layer" | "mask") {
@@ -132,7 +132,7 @@ impl<'a> MaindocParser<'a> {
                     _ => self.skip(&e)?,
                 },
                 Event::End(_) => return Ok(()),
-                Event::Eof => return Err(self.refused("it ends within a layer")),
+                Event::Eof => return Err(self.refusal("it ends within a layer")),
                 _ => {}
             }
         }

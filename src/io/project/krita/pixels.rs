@@ -140,7 +140,7 @@ pub fn read(
     let mut tiles = Vec::new();
     for _ in 0..count {
         // Files that were cut short keep the tiles that are there.
-        let Some(tile) = packed_tile(&mut rest, offset) else { break };
+        let Some(tile) = read_packed_tile(&mut rest, offset) else { break };
         tiles.push(tile);
     }
     let of = |tile: &KritaTile| {
@@ -163,7 +163,7 @@ pub fn read(
         plain.iter().copied().cycle().take(area as usize * pixel_bytes).collect();
     let plane = sides[0] * sides[1];
     for tile in tiles.iter().filter(is_near) {
-        let stored = unpacked(tile.bytes, plane * pixel_bytes).ok_or_else(damaged)?;
+        let stored = unpack(tile.bytes, plane * pixel_bytes).ok_or_else(damaged)?;
         for row in 0..sides[1] {
             let y = (tile.y + row as i32 - rect.y0) as usize;
             let first = (y * rect.width() + (tile.x - rect.x0) as usize) * pixel_bytes;
@@ -186,7 +186,7 @@ fn line<'a>(rest: &mut &'a [u8]) -> Option<&'a str> {
 }
 
 /// A line such as `64,-128,LZF,915`, and as many bytes.
-fn packed_tile<'a>(rest: &mut &'a [u8], offset: [i32; 2]) -> Option<KritaTile<'a>> {
+fn read_packed_tile<'a>(rest: &mut &'a [u8], offset: [i32; 2]) -> Option<KritaTile<'a>> {
     let mut words = line(rest)?.split(',');
     let mut number = || words.next()?.trim().parse::<i32>().ok();
     let (x, y) = (number()?.checked_add(offset[0])?, number()?.checked_add(offset[1])?);
@@ -198,7 +198,7 @@ fn packed_tile<'a>(rest: &mut &'a [u8], offset: [i32; 2]) -> Option<KritaTile<'a
 }
 
 /// A tile's bytes: after a 1 packed by LZF, else as they are.
-fn unpacked(packed: &[u8], length: usize) -> Option<Vec<u8>> {
+fn unpack(packed: &[u8], length: usize) -> Option<Vec<u8>> {
     let (&kind, data) = packed.split_first()?;
     let out = if kind == 1 { lzf(data, length)? } else { data.get(..length)?.to_vec() };
     (out.len() == length).then_some(out)

@@ -94,7 +94,7 @@ impl<'a> StackParser<'a> {
                     return Ok(StackXml { size, layers: Vec::new() });
                 }
                 Event::Start(e) => self.skip(&e)?,
-                Event::Eof => return Err(self.refused("it has no <stack>")),
+                Event::Eof => return Err(self.refusal("it has no <stack>")),
                 _ => {}
             }
         }
@@ -106,7 +106,7 @@ impl<'a> StackParser<'a> {
             .map_err(|e| Error::decode(self.file, format!("stack.xml is damaged ({e})")))
     }
 
-    fn refused(&self, reason: impl std::fmt::Display) -> Error {
+    fn refusal(&self, reason: impl std::fmt::Display) -> Error {
         Error::decode(self.file, format!("stack.xml: {reason}"))
     }
 
@@ -147,7 +147,7 @@ impl<'a> StackParser<'a> {
                     _ => {}
                 },
                 Event::End(_) => break,
-                Event::Eof => return Err(self.refused("it ends within a <stack>")),
+                Event::Eof => return Err(self.refusal("it ends within a <stack>")),
                 _ => {}
             }
         }
@@ -164,7 +164,7 @@ impl<'a> StackParser<'a> {
         let mut all = XmlAttributes::default();
         for attribute in element.attributes() {
             let attribute =
-                attribute.map_err(|e| self.refused(format!("an attribute is damaged ({e})")))?;
+                attribute.map_err(|e| self.refusal(format!("an attribute is damaged ({e})")))?;
             // Custom entities are not expanded: they could grow without bound or lead to other
             // files.
             let value = attribute.normalized_value(XmlVersion::Implicit1_0);

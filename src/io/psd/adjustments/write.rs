@@ -47,7 +47,7 @@ pub fn blocks(adjustment: &ColorAdjustment) -> Vec<Block> {
             let mut said = DescriptorWriter::default();
             said.whole("vibrance", own.vibrance);
             said.whole("Strt", own.saturation);
-            one(b"vibA", said.done())
+            one(b"vibA", said.into_bytes())
         }
         // A table needs a profile that says the same, which this program does not make.
         A::ColorLookup(_) => Vec::new(),
@@ -119,7 +119,7 @@ fn brightness(own: &BrightnessContrast) -> Vec<Block> {
     newer.flag("Lab ", false);
     newer.flag("useLegacy", own.legacy);
     newer.flag("Auto", false);
-    vec![(*b"brit", old), (super::NEWER, newer.done())]
+    vec![(*b"brit", old), (super::NEWER, newer.into_bytes())]
 }
 
 fn hue_saturation(own: &HueSaturation) -> Vec<u8> {
@@ -147,7 +147,7 @@ fn black_white(own: &BlackWhite) -> Vec<u8> {
     out.color("tintColor", own.color);
     // One that the user made.
     out.whole("bwPresetKind", 3.0);
-    out.done()
+    out.into_bytes()
 }
 
 /// RGB, then four numbers of 16 bits.

@@ -91,7 +91,7 @@ impl DescriptorWriter {
     }
 
     /// The descriptor after its version.
-    pub fn done(self) -> Vec<u8> {
+    pub fn into_bytes(self) -> Vec<u8> {
         const VERSION: u32 = 16;
         let mut out = VERSION.to_be_bytes().to_vec();
         self.put(&mut out, "null");

@@ -51,13 +51,17 @@ pub fn blocks(effects: &[LayerEffect]) -> Vec<EffectBlock> {
             match (all.first(), with_lists && all.len() > 1) {
                 (None, _) => {}
                 (Some(_), true) => {
-                    said.objects(many, one, all.iter().map(|effect| written(effect)).collect());
+                    said.objects(
+                        many,
+                        one,
+                        all.iter().map(|effect| write_effect(effect)).collect(),
+                    );
                 }
-                (Some(first), false) => said.object(one, one, written(first)),
+                (Some(first), false) => said.object(one, one, write_effect(first)),
             }
         }
         let mut data = vec![0; 4];
-        data.extend(said.done());
+        data.extend(said.into_bytes());
         (key, data)
     };
     let [single, lists] = KEYS;
@@ -81,7 +85,7 @@ fn blend(said: &mut DescriptorWriter, name: &str, mode: BlendMode) {
     said.word(name, "BlnM", known.map_or("Nrml", |(_, word)| word));
 }
 
-fn written(effect: &LayerEffect) -> DescriptorWriter {
+fn write_effect(effect: &LayerEffect) -> DescriptorWriter {
     let (mut said, s) = (DescriptorWriter::default(), &effect.settings);
     said.flag("enab", effect.on);
     said.flag("present", true);

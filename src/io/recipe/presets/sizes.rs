@@ -55,7 +55,7 @@ fn picture(document: &Document) -> Vec<[f32; 3]> {
 }
 
 /// The mean of each square of `by` × `by` pixels.
-fn reduced(picture: &[[f32; 3]], size: Size, by: usize) -> Vec<[f32; 3]> {
+fn reduce(picture: &[[f32; 3]], size: Size, by: usize) -> Vec<[f32; 3]> {
     let (width, height) = (size.width as usize / by, size.height as usize / by);
     let mean = |x: usize, y: usize| {
         let square =
@@ -92,7 +92,7 @@ fn twice(preset: &BrushPreset, surface: Option<Arc<Surface>>) -> Vec<f32> {
     let layers = layers.into_iter().map(Arc::new).collect();
     let document = Document { surface, layers, ..Document::empty(SIZE) };
     let double = document.scaled(2.0).unwrap();
-    sorted_differences(&picture(&document), &reduced(&picture(&double), double.size, 2), ground)
+    sorted_differences(&picture(&document), &reduce(&picture(&double), double.size, 2), ground)
 }
 
 #[test]

@@ -66,8 +66,8 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
             self.0.resolve(path)
         }
 
-        fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
-            self.0.found(path)
+        fn find(&self, path: &Path) -> io::Result<Option<EntryKind>> {
+            self.0.find(path)
         }
 
         fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {

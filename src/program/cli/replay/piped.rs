@@ -26,9 +26,9 @@ enum Request {
 }
 
 impl ReplayValue for Request {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         match self {
-            Self::Act(action, _) => action.written(),
+            Self::Act(action, _) => action.to_value(),
             Self::Describe => json!({ "in": QUERY, "do": "document" }),
         }
     }
@@ -82,8 +82,10 @@ fn answer_all(session: &mut Session, mut from: impl BufRead, mut to: impl Write)
     }
     match refused {
         0 => Ok(()),
-        1 => Err(Error::unsupported("standard input", "a line was refused")),
-        many => Err(Error::unsupported("standard input", format!("{many} lines were refused"))),
+        1 => Err(Error::unsupported_file("standard input", "a line was refused")),
+        many => {
+            Err(Error::unsupported_file("standard input", format!("{many} lines were refused")))
+        }
     }
 }
 
@@ -102,7 +104,7 @@ fn answer(session: &mut Session, number: usize, line: &str) -> Option<(bool, Map
     let mut reply = Map::new();
     reply.insert("line".into(), number.into());
     reply.insert("done".into(), done.is_ok().into());
-    reply.insert("layer".into(), session.layer_path().map_or(Value::Null, |path| path.written()));
+    reply.insert("layer".into(), session.layer_path().map_or(Value::Null, |path| path.to_value()));
     match &done {
         Ok(Some(document)) => drop(reply.insert("document".into(), document.clone())),
         Ok(None) => {}
@@ -126,7 +128,7 @@ fn description(document: &Document) -> Value {
     let layers = walked.iter().filter_map(|(_, layer)| {
         let path = LayerPath::of(document, layer.id)?;
         Some(json!({
-            "layer": path.written(),
+            "layer": path.to_value(),
             "name": layer.name,
             "kind": layer.content.kind_name(),
             "visible": layer.visible,
@@ -193,7 +195,7 @@ mod tests {
         answer_all(&mut session, lines.as_bytes(), Vec::new()).unwrap();
         let kept = session.active().unwrap().document().clone();
         drop(session);
-        let lost = Autosave::new(folder.path().into()).lost_sessions();
+        let lost = Autosave::new(folder.path().into()).find_lost_sessions();
         let left = lost.list().pop().expect("a log");
         let back = lost.bring_back(left, &Progress::default()).unwrap().unwrap();
         assert_eq!(kept.difference(back.open.document()), None);

@@ -57,7 +57,7 @@ impl CanvasAction {
                     .crop
                     .area
                     .zip(canvas)
-                    .map(|(area, canvas)| aspect.given(area, canvas));
+                    .map(|(area, canvas)| aspect.apply(area, canvas));
                 return;
             }
             _ => session.tools.crop.area = None,
@@ -100,7 +100,8 @@ impl CanvasAction {
         let (label, change) = match self {
             CanvasAction::Crop { to } => ("Crop", crop_to(size, *to)?),
             CanvasAction::CropToSelection {} => {
-                let selected = document.selected().ok_or("Nothing is selected.")?.covered_rect();
+                let selected =
+                    document.active_coverage().ok_or("Nothing is selected.")?.covered_rect();
                 ("Crop to selection", crop_to(size, selected.intersect(size.rect()))?)
             }
             CanvasAction::Trim {} => {
@@ -120,7 +121,7 @@ impl CanvasAction {
             }
             CanvasAction::Size { width, height, anchor } => {
                 let to = check_size(*width, *height)?;
-                let change = CanvasChange::resized(size, to, *anchor);
+                let change = CanvasChange::resize(size, to, *anchor);
                 ("Canvas size", change.ok_or("A canvas has at least one pixel.")?)
             }
             CanvasAction::Scale { width, height, filter } => {
@@ -134,12 +135,12 @@ impl CanvasAction {
                 return Ok(("Image size", next?));
             }
             CanvasAction::Turn { degrees } => {
-                let change = CanvasChange::turned(size, f64::from(*degrees));
+                let change = CanvasChange::turn(size, f64::from(*degrees));
                 check_size(change.size().width, change.size().height)?;
                 ("Turn canvas", change)
             }
             CanvasAction::Mirror { mirror } => {
-                ("Mirror canvas", CanvasChange::mirrored(size, *mirror))
+                ("Mirror canvas", CanvasChange::mirror(size, *mirror))
             }
             CanvasAction::CropArea { .. } | CanvasAction::Aspect { .. } => {
                 return Err("There is no frame.".into());

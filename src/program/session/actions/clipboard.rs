@@ -121,7 +121,10 @@ const LOCKED: &str = "The layer is locked. Unlock it to cut from it.";
 
 /// What is selected, or all of the canvas.
 fn covered_area(document: &Document) -> CoverageGrid {
-    document.selected().cloned().unwrap_or_else(|| CoverageGrid::filled(document.size.rect()))
+    document
+        .active_coverage()
+        .cloned()
+        .unwrap_or_else(|| CoverageGrid::filled(document.size.rect()))
 }
 
 fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'static str> {
@@ -222,7 +225,7 @@ fn paste_new(session: &mut Session) {
     let layer =
         Layer::new(copied.name(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
-    let name = session.untitled();
+    let name = session.new_title();
     let mut open = OpenDocument::new(name, document, None);
     open.mark_unsaved();
     session.add_document(open);
@@ -252,7 +255,7 @@ fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
     if cut && old.lock != LayerLock::None {
         return Err(LOCKED);
     }
-    let Some(selected) = document.selected() else {
+    let Some(selected) = document.active_coverage() else {
         if cut {
             return Err("Nothing is selected.");
         }

@@ -72,7 +72,7 @@ impl FileAction {
                     (*width).into(),
                     (*height).into(),
                 )?;
-                let name = session.untitled();
+                let name = session.new_title();
                 session.add_document(OpenDocument::new(name, empty(size, *background), None));
             }
             FileAction::Open { file } => {
@@ -209,7 +209,7 @@ pub fn export_maps(
     terms: &Terms,
 ) -> Result<Vec<PathBuf>> {
     let no_shape =
-        || Error::unsupported(file, "the document has no shape, so it has no maps to export");
+        || Error::unsupported_file(file, "the document has no shape, so it has no maps to export");
     let surface = document.surface.as_ref().ok_or_else(no_shape)?;
     ShapeFiles::new(file, maps, options, terms)?.write(surface)
 }

@@ -26,7 +26,7 @@ as_in_recipes!(BrushMode);
 
 /// A word, or a number of turns.
 impl ReplayValue for Symmetry {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         match *self {
             Symmetry::None => "none".into(),
             Symmetry::Vertical => "vertical".into(),

@@ -356,7 +356,8 @@ impl LayerAction {
                 ("Apply transform", next, Vec::new())
             }
             LayerAction::Mesh { layer, columns, rows } => {
-                let mesh = |next: Document, id| transform::mesh::meshed(&next, id, *columns, *rows);
+                let mesh =
+                    |next: Document, id| transform::mesh::with_grid(&next, id, *columns, *rows);
                 let next = selected(layer)?.into_iter().try_fold(document.clone(), mesh)?;
                 ("Mesh", next, Vec::new())
             }
@@ -416,7 +417,7 @@ fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) 
         return Ok(());
     };
     let next = match to {
-        Property::Worded { text } => texts::retyped(open.document(), &ids, text)?,
+        Property::Worded { text } => texts::replace_texts(open.document(), &ids, text)?,
         _ => open.document().with_layers(&ids, |layer| to.apply(layer)),
     };
     match next {

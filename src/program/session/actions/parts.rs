@@ -35,7 +35,7 @@ pub struct InflationPreset(pub Inflation);
 
 /// Whether there is a part for each color was the question before places were known.
 impl ReplayValue for PartFor {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         match self {
             PartFor::Layer => false.into(),
             PartFor::Color => true.into(),
@@ -55,7 +55,7 @@ impl ReplayValue for PartFor {
 const PLACES: &str = "places";
 
 impl ReplayValue for InflationPreset {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         let known = Inflation::PRESETS.iter().find(|(preset, _)| *preset == self.0);
         known.map_or(Inflation::PRESETS[0].1, |(_, name)| name).into()
     }
@@ -181,7 +181,7 @@ impl PartAction {
                 ("Delete part", document.without_part(part).ok_or(NO_PART)?, None)
             }
             PartAction::Order { part, index } => {
-                ("Order parts", list::ordered(document, &of(part)?.id, *index), None)
+                ("Order parts", list::with_part_at(document, &of(part)?.id, *index), None)
             }
             PartAction::Visible { part, on } => {
                 let next = Part { visible: *on, ..Part::clone(&*of(part)?) };

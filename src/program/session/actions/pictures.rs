@@ -150,7 +150,7 @@ fn fit_mask(mask: &Plane<u8>, canvas: Size) -> Plane<u8> {
         mask.height() as f32 / canvas.height as f32,
     );
     let along = |v: usize, scale: f32| ((v as f32 + 0.5) * scale) as i32;
-    Plane::from_fn(canvas, |x, y| mask.clamped(along(x, scale.x), along(y, scale.y)))
+    Plane::from_fn(canvas, |x, y| mask.at_clamped(along(x, scale.x), along(y, scale.y)))
 }
 
 #[cfg(test)]

@@ -21,11 +21,11 @@ record!(ModifierKeys { shift, ctrl, alt });
 
 /// [x, y, pressure, tilt x, tilt y, seconds] and the keys held.
 impl ReplayValue for PenSample {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         let Sample { at, pressure, tilt, time_secs } = self.sample;
-        let mut list = vec![at.x, at.y, pressure, tilt.x, tilt.y, time_secs].written();
+        let mut list = vec![at.x, at.y, pressure, tilt.x, tilt.y, time_secs].to_value();
         if let Some(list) = list.as_array_mut().filter(|_| self.keys != ModifierKeys::default()) {
-            list.push(self.keys.written());
+            list.push(self.keys.to_value());
         }
         list
     }

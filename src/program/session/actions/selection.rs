@@ -45,7 +45,7 @@ impl EdgeChange {
             EdgeChange::Shrink => edges::grown(grid, -px, canvas),
             EdgeChange::Border => edges::border(grid, px, canvas),
             EdgeChange::Feather => edges::feathered(grid, px, canvas),
-            EdgeChange::Smooth => edges::smoothed(grid, px, canvas),
+            EdgeChange::Smooth => edges::smooth(grid, px, canvas),
         }
     }
 }
@@ -109,7 +109,7 @@ impl SelectionAction {
         let last = open.last_selection.clone();
         let step = match self {
             SelectionAction::CloseLasso {} => {
-                let closed = select::closed(open.document(), &lasso, &settings);
+                let closed = select::select_closed_lasso(open.document(), &lasso, &settings);
                 closed.map(|next| ("Select", next)).ok_or("A lasso needs at least three corners.")
             }
             SelectionAction::Again {} if open.document().active_selection.is_none() => match last {
@@ -137,7 +137,7 @@ impl SelectionAction {
     /// The step: its name and the resulting document; or why there is none.
     fn step(&self, document: &Document) -> Result<(&'static str, Document), &'static str> {
         let canvas = document.size.rect();
-        let selected = || document.selected().ok_or(NOTHING);
+        let selected = || document.active_coverage().ok_or(NOTHING);
         let with = |coverage: CoverageGrid| document.with_selection(Some(Selection::new(coverage)));
         let layer =
             |path: &LayerPath| path.find(document).cloned().ok_or("There is no such layer.");
@@ -147,7 +147,7 @@ impl SelectionAction {
                 selected()?;
                 ("Deselect", document.with_selection(None))
             }
-            SelectionAction::Invert {} => match document.selected() {
+            SelectionAction::Invert {} => match document.active_coverage() {
                 Some(grid) => ("Invert selection", with(grid.inverted(canvas))),
                 // All of the canvas may be changed, so the inverse is empty.
                 None => return Err("Nothing is selected, so there is nothing to invert."),

@@ -79,7 +79,7 @@ impl StrokeAction {
             StrokeAction::Restyle { layer, strokes, to, done } => {
                 let Some(id) = id(layer) else { return };
                 let next = document
-                    .with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &current_brush));
+                    .with_each_stroke(id, strokes, |stroke| to.apply_to(stroke, &current_brush));
                 match next {
                     Some(next) if *done => drop(open.commit("Restyle stroke", next)),
                     Some(next) => open.show("Restyle stroke", next),
@@ -143,7 +143,7 @@ impl StrokeAction {
 
 impl Style {
     /// The stroke painted in this way; `current_brush`: the brush that [`Style::Brush`] gives.
-    fn given_to(&self, stroke: &Stroke, current_brush: &Brush) -> Stroke {
+    fn apply_to(&self, stroke: &Stroke, current_brush: &Brush) -> Stroke {
         let mut brush = stroke.brush().clone();
         let (mut operator, mut color) = (stroke.operator(), stroke.color());
         match self {

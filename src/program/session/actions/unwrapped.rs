@@ -1,7 +1,7 @@
 //! Pictures of the unwrapped surface: written to a file, and put back on the surface. Floor 6. Not
 //! here: drawing them (`document::view`), the sheet (`surface::unwrap`).
 
-use crate::document::view::{UnwrapOptions, placed_over, render_unwrapped};
+use crate::document::view::{UnwrapOptions, place_over, render_unwrapped};
 use crate::document::{Document, Highlights, Progress};
 use crate::io::Terms;
 use crate::io::export::high_depth::encode as encode_floats;
@@ -30,7 +30,7 @@ pub fn export(
     let options = UnwrapOptions { floats, ..options };
     let seen = match render_unwrapped(document, None, options, progress) {
         _ if progress.is_canceled() => return Ok(()),
-        seen => seen.map_err(|why| Error::unsupported(file, why))?,
+        seen => seen.map_err(|why| Error::unsupported_file(file, why))?,
     };
     // A JPEG has no transparency for what lies between the pieces.
     let background = (format == ExportFormat::Jpeg).then_some(Color::WHITE);
@@ -61,7 +61,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture) {
     };
     let (sheet, size) = (layout.size(), picture.size);
     let lies = Lies {
-        placement: placed_over(sheet.rect(), size, document.size),
+        placement: place_over(sheet.rect(), size, document.size),
         outside: Outside::None,
         bend: layout.bend(),
     };

@@ -26,7 +26,7 @@ fn crash(session: Session) {
 }
 
 fn lost(folder: &Path) -> Vec<recovery::LostSession> {
-    Autosave::new(folder.into()).lost_sessions().list()
+    Autosave::new(folder.into()).find_lost_sessions().list()
 }
 
 fn files(folder: &Path) -> usize {
@@ -43,7 +43,7 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     let left = lost(folder.path()).pop().unwrap();
     let mut autosave = Autosave::new(folder.path().into());
     let RestoredDocument { open, recovery, .. } =
-        autosave.lost_sessions().bring_back(left, &Progress::default()).unwrap().unwrap();
+        autosave.find_lost_sessions().bring_back(left, &Progress::default()).unwrap().unwrap();
     assert_eq!((open.title().as_str(), &open.file), ("Untitled 1 (recovered)", &None));
     assert!(open.is_dirty());
     assert_eq!(crate::io::recipe::write(open.document()), before);
@@ -179,7 +179,7 @@ fn what_was_selected_and_in_hand_comes_back_with_the_drawing() {
     session.keep();
     crash(session);
     let RestoredDocument { open, tool, .. } = Autosave::new(folder.path().into())
-        .lost_sessions()
+        .find_lost_sessions()
         .bring_back(lost(folder.path()).pop().unwrap(), &Progress::default())
         .unwrap()
         .unwrap();

@@ -32,7 +32,7 @@ impl OpenDocument {
 
 /// The document with what is not selected under red.
 fn under_red(document: &Document) -> Document {
-    let Some(selected) = document.selected() else { return document.clone() };
+    let Some(selected) = document.active_coverage() else { return document.clone() };
     let coverage = Arc::new(selected.to_plane(document.size.rect()));
     let kind = MaskKind::File { file: String::new(), coverage };
     let mask = LayerMask { invert: true, ..LayerMask::new(kind) };

@@ -75,21 +75,21 @@ impl OpenDocument {
             on_mask: self.on_mask,
             quick_mask: self.quick_mask,
         };
-        stored.written()
+        stored.to_value()
     }
 
     /// Goes to a target from a recovery log. One that cannot be read, as of an older log, changes
     /// nothing.
     pub(in crate::session) fn aim_as_stored(&mut self, value: &Value) {
         if let Ok(stored) = StoredTarget::read(value) {
-            let target = stored.found(self.document());
+            let target = stored.find(self.document());
             self.aim(target);
         }
     }
 }
 
 impl StoredTarget {
-    fn found(self, document: &Document) -> EditTarget {
+    fn find(self, document: &Document) -> EditTarget {
         let primary = self.primary.and_then(|path| path.find(document)).map(|layer| layer.id);
         let mut layers = self.layers.find(document).unwrap_or_default();
         layers.extend(primary);

@@ -36,7 +36,7 @@ as_in_recipes!(LineSettings, HatchSettings, DrawingHand);
 
 /// As documents write it.
 impl crate::session::replay::ReplayValue for LayerTransform {
-    fn written(&self) -> serde_json::Value {
+    fn to_value(&self) -> serde_json::Value {
         transforms::write(self)
     }
 

@@ -56,7 +56,7 @@ pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
     let bytes = read_file(file, budget.file_bytes).ok()?;
     let normals = inspect::describe(file, &bytes, &budget).ok()?.normals;
     let normals = map.channel.as_ref().or(normals.first()).map_or("", String::as_str);
-    let (name, picture) = picture::finished(file, &bytes, normals, &budget).ok()??;
+    let (name, picture) = picture::read_finished_picture(file, &bytes, normals, &budget).ok()??;
     let name =
         name.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("Picture").to_owned();
     Some((name, picture))
@@ -111,7 +111,7 @@ pub struct SortedFiles {
 /// Sorts files of known kinds. A normal map, a depth map and a mask that are opened together belong
 /// to one object, whatever their names; a second normal map begins another object. Missing maps are
 /// looked for next to each file (see [`maps_beside`]).
-pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
+pub fn sort_files(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     let mut sorted = SortedFiles::default();
     let text = |file: &Path| file.to_string_lossy().into_owned();
     let map = |file: &Path| Some(MapSource { file: text(file), ..MapSource::default() });

@@ -35,7 +35,10 @@ fn a_crop_to_the_selection_is_one_step_that_undo_takes_back_whole() {
     assert_eq!(session.active().unwrap().history.undo_label(), Some("Crop to selection"));
     story(&mut session, r#"{"in":"edit","do":"undo"}"#);
     assert_eq!(size(&session), Size::new(200, 150));
-    assert!(is_red(&session, 100, 70) && session.active().unwrap().document().selected().is_some());
+    assert!(
+        is_red(&session, 100, 70)
+            && session.active().unwrap().document().active_coverage().is_some()
+    );
     story(&mut session, r#"{"in":"edit","do":"redo"}"#);
     story(
         &mut session,

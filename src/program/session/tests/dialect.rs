@@ -111,7 +111,7 @@ fn what_an_edit_sets_stands_in_a_document_as_the_edit_says_it() {
         session.replay(Path::new("story"), &edit.to_string()).unwrap();
         let said = &to[field];
         assert_eq!(
-            Action::read(&edit).unwrap().written()["to"][field],
+            Action::read(&edit).unwrap().to_value()["to"][field],
             *said,
             "as an action is written"
         );

@@ -89,7 +89,7 @@ fn every_paste_replays_with_the_picture_in_its_line() {
         let mut first = replay(PAPER);
         action.apply(&mut first).unwrap();
         let mut second = replay(PAPER);
-        second.replay(Path::new("story"), &action.written().to_string()).unwrap();
+        second.replay(Path::new("story"), &action.to_value().to_string()).unwrap();
         let seen = |session: &Session| {
             let document = session.shown_document().unwrap();
             flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())

@@ -15,7 +15,7 @@ fn story(session: &mut Session, lines: &str) {
 }
 
 fn area(session: &Session) -> f64 {
-    session.active().unwrap().document().selected().map_or(0.0, CoverageGrid::area_px)
+    session.active().unwrap().document().active_coverage().map_or(0.0, CoverageGrid::area_px)
 }
 
 fn red(session: &Session, x: i32, y: i32) -> bool {

@@ -42,7 +42,7 @@ fn layers_are_selected_together_and_one_of_them_is_painted_on() {
         (selected(&session), session.layer().unwrap().name.as_str()),
         (vec!["Fill".into(), "Paint".into()], "Paint")
     );
-    assert_eq!(session.layer_paths().written(), serde_json::json!(["1", "3"]));
+    assert_eq!(session.layer_paths().to_value(), serde_json::json!(["1", "3"]));
     story(&mut session, r#"{"in":"layer","do":"select","layer":"1"}"#);
     assert_eq!(selected(&session), ["Fill"]);
 }

@@ -121,7 +121,7 @@ fn after_a_crash_a_drawing_has_its_shape() {
     let before = picture(document_of(&session));
     session.autosave.as_ref().unwrap().wait_until_written();
     drop(session);
-    let lost = Autosave::new(folder.path().into()).lost_sessions();
+    let lost = Autosave::new(folder.path().into()).find_lost_sessions();
     let left = lost.list().pop().unwrap();
     let RestoredDocument { open, .. } =
         lost.bring_back(left, &Progress::default()).unwrap().unwrap();
@@ -142,7 +142,7 @@ fn a_recovery_that_is_canceled_is_offered_again() {
     session.keep();
     session.autosave.as_ref().unwrap().wait_until_written();
     drop(session);
-    let lost = Autosave::new(folder.path().into()).lost_sessions();
+    let lost = Autosave::new(folder.path().into()).find_lost_sessions();
     let given_up = Progress::default();
     given_up.cancel();
     assert!(lost.bring_back(lost.list().pop().unwrap(), &given_up).unwrap().is_none());

@@ -28,7 +28,7 @@ fn drag(tool: &str, from: [f32; 2], to: [f32; 2], key: &str) -> String {
 }
 
 fn covered(session: &Session) -> Rect {
-    session.active().unwrap().document().selected().map(CoverageGrid::covered_rect).unwrap()
+    session.active().unwrap().document().active_coverage().map(CoverageGrid::covered_rect).unwrap()
 }
 
 fn document(session: &Session) -> &Document {
@@ -125,7 +125,7 @@ fn a_stroke_goes_along_an_assistant_and_the_next_line_begins_at_its_end() {
     let samples = document(&session).strokes(layer)[1].samples().to_vec();
     assert!(samples.iter().all(|sample| (sample.at.y - 100.0).abs() < 1e-3), "{samples:?}");
     assert_eq!(session.active().unwrap().last_end.map(|at| at.round()), Some(vec2(150.0, 100.0)));
-    let written: Vec<_> = document(&session).assistants.iter().map(ReplayValue::written).collect();
+    let written: Vec<_> = document(&session).assistants.iter().map(ReplayValue::to_value).collect();
     assert_eq!(
         written,
         [serde_json::json!({ "kind": "line", "points": [[10.0, 100.0], [190.0, 100.0]] })]

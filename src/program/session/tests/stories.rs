@@ -19,7 +19,7 @@ mod starts;
 mod values;
 mod weights;
 
-pub use dice::{Dice, Drawn};
+pub use dice::{Dice, Roll};
 
 use super::*;
 use crate::session::actions::{Action, PartAction, StrokeAction};
@@ -68,7 +68,7 @@ fn replay_of(seed: u64) -> PathBuf {
     starts::write_assets(&target);
     let Some(broken) = outcome.broken else { return target };
     let (actions, broken) = shrink::shrunk(outcome.actions, broken, &folder);
-    let lines: Vec<String> = actions.iter().map(|action| action.written().to_string()).collect();
+    let lines: Vec<String> = actions.iter().map(|action| action.to_value().to_string()).collect();
     let there =
         |text: &str| text.replace(&*folder.path().to_string_lossy(), &target.to_string_lossy());
     let text = format!(

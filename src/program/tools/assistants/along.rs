@@ -56,7 +56,7 @@ struct AlongGesture {
 }
 
 impl AlongGesture {
-    fn drawn(&self, pen: &PenSample) -> PenSample {
+    fn place_pen(&self, pen: &PenSample) -> PenSample {
         let at = self.path.map_or(pen.place(), |path| {
             pen.place().lerp(path.nearest(pen.place()), self.magnetism)
         });
@@ -68,7 +68,7 @@ impl AlongGesture {
         let Some(Waiting { kept, start, pens, .. }) = self.waiting.take() else {
             return Outcome::Idle;
         };
-        let pens: Vec<PenSample> = pens.iter().map(|pen| self.drawn(pen)).collect();
+        let pens: Vec<PenSample> = pens.iter().map(|pen| self.place_pen(pen)).collect();
         self.end = pens.last().map(PenSample::place);
         let Some((first, rest)) = pens.split_first() else { return Outcome::Idle };
         let (stroke, outcome) = kept.lend(|context| start(context, *first));
@@ -89,7 +89,7 @@ fn nearest(paths: &[AssistantPath], from: Vec2, to: Vec2) -> Option<AssistantPat
 impl Gesture for AlongGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         if self.stroke.is_some() {
-            let pens: Vec<PenSample> = pens.iter().map(|pen| self.drawn(pen)).collect();
+            let pens: Vec<PenSample> = pens.iter().map(|pen| self.place_pen(pen)).collect();
             self.end = pens.last().map(PenSample::place).or(self.end);
             return self.stroke.as_mut().map_or(Outcome::Idle, |stroke| stroke.drag(&pens));
         }

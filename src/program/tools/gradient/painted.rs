@@ -24,7 +24,7 @@ pub(super) struct PaintedGradient {
 
 impl PaintedGradient {
     fn with(&self) -> Option<Document> {
-        painted(&self.document, self.layer, &self.gradient)
+        paint_gradient(&self.document, self.layer, &self.gradient)
     }
 }
 
@@ -52,10 +52,10 @@ impl Gesture for PaintedGradient {
 }
 
 /// The document with a gradient over the pixels of a paint layer, where they are selected.
-fn painted(document: &Document, id: LayerId, gradient: &Gradient) -> Option<Document> {
+fn paint_gradient(document: &Document, id: LayerId, gradient: &Gradient) -> Option<Document> {
     let layer = document.layer(id)?;
     let Content::Pixels(pixels) = &layer.content else { return None };
-    let (scene, selected) = (document.scene_of(id)?, document.selected());
+    let (scene, selected) = (document.scene_of(id)?, document.active_coverage());
     let mix = Mix { atop: layer.lock == LayerLock::Alpha, ..Mix::default() };
     let area = document.size.rect();
     let places: Vec<TileAt> = TileAt::covering(area).collect();

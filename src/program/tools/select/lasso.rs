@@ -2,7 +2,7 @@
 //! a click sets a corner, after which clicks and drags continue until the first corner is clicked,
 //! or Enter is pressed. Floor 5.
 
-use super::{SLOP_PT, combined, step};
+use super::{SLOP_PT, combine_selections, step};
 use crate::document::Document;
 use crate::math::Vec2;
 use crate::paint::Selection;
@@ -18,7 +18,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let how = context.tools.select.how(pen.keys);
     let closes = points.len() >= 3 && points[0].distance(at) <= GRAB_PT * context.px_per_pt;
     if closes {
-        return (None, step(selected(context.document, &points, how)));
+        return (None, step(select_inside(context.document, &points, how)));
     }
     let is_begun = !points.is_empty();
     points.push(at);
@@ -36,8 +36,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
 }
 
 /// The document with the inside of a closed line selected.
-pub fn selected(document: &Document, points: &[Vec2], how: SelectionMode) -> Document {
-    combined(document, Selection::new(shapes::polygon(points, document.size.rect())), how)
+pub fn select_inside(document: &Document, points: &[Vec2], how: SelectionMode) -> Document {
+    combine_selections(document, Selection::new(shapes::polygon(points, document.size.rect())), how)
 }
 
 struct LassoGesture {
@@ -64,13 +64,13 @@ impl Gesture for LassoGesture {
             .extend(pens.iter().map(PenSample::place).filter(|at| at.is_finite()).take(room));
         match self.is_begun {
             true => corners(self.points.clone()),
-            false => Outcome::Preview(selected(&self.document, &self.points, self.how)),
+            false => Outcome::Preview(select_inside(&self.document, &self.points, self.how)),
         }
     }
 
     fn release(&mut self) -> Outcome {
         if self.is_free && !self.is_begun {
-            return step(selected(&self.document, &self.points, self.how));
+            return step(select_inside(&self.document, &self.points, self.how));
         }
         corners(std::mem::take(&mut self.points))
     }

@@ -1,7 +1,7 @@
 //! Rectangles and ellipses dragged from corner to corner, and the outline of a selection moved.
 //! Floor 5.
 
-use super::{SLOP_PT, begin, combined, step};
+use super::{SLOP_PT, begin, combine_selections, step};
 use crate::document::Document;
 use crate::math::{Rect, Vec2};
 use crate::paint::Selection;
@@ -53,7 +53,7 @@ impl ShapeGesture {
             }
             SelectionShape::Ellipse => shapes::ellipse(self.from, self.to, canvas),
         };
-        combined(&self.document, Selection::new(coverage), self.how)
+        combine_selections(&self.document, Selection::new(coverage), self.how)
     }
 }
 
@@ -114,7 +114,7 @@ struct MoveOutline {
 
 impl MoveOutline {
     fn with(&self) -> Option<Document> {
-        let coverage = self.document.selected()?.shifted(self.by.x as i32, self.by.y as i32);
+        let coverage = self.document.active_coverage()?.shifted(self.by.x as i32, self.by.y as i32);
         Some(self.document.with_selection(Some(Selection::new(coverage))))
     }
 }
@@ -125,7 +125,7 @@ impl Gesture for MoveOutline {
         let by = |v: f32| crate::math::range::clamp_to_range(v, &crate::math::COORDINATE).round();
         let mut moved = pen.place() - self.from;
         if let Some(Rect { x0, y0, x1, y1 }) =
-            self.document.selected().map(CoverageGrid::covered_rect)
+            self.document.active_coverage().map(CoverageGrid::covered_rect)
         {
             let corner = |x: i32, y: i32| Vec2::new(x as f32, y as f32) + moved;
             let shift = self.snap.shift(corner(x0, y0), corner(x1, y1));

@@ -2,7 +2,7 @@
 //! it does, belongs to its object, would shine with it, or flows along it; a drag to the right or
 //! the left changes the tolerance. Floor 5. Not here: finding it (`surface::region`).
 
-use super::{adjust, combined, dragged};
+use super::{adjust, combine_selections, drag_tolerance};
 use crate::document::Document;
 use crate::math::Vec2;
 use crate::paint::Selection;
@@ -57,7 +57,7 @@ struct RegionGesture {
 impl RegionGesture {
     fn outcome(&self, is_done: bool) -> Outcome {
         let selection = Selection::provisional(self.field.region(&self.region), Some(self.region));
-        let document = combined(&self.document, selection, self.how);
+        let document = combine_selections(&self.document, selection, self.how);
         let select = SelectSettings { region: self.region, ..self.settings };
         adjust(document, select, is_done)
     }
@@ -68,7 +68,7 @@ impl Gesture for RegionGesture {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let by_px = pen.place().x - self.from.x;
         let range = self.begun.kind.tolerances();
-        self.region.tolerance = dragged(self.begun.tolerance, by_px, self.px_per_pt, &range);
+        self.region.tolerance = drag_tolerance(self.begun.tolerance, by_px, self.px_per_pt, &range);
         self.outcome(false)
     }
 

@@ -50,7 +50,7 @@ fn drawn(
 }
 
 fn covered(document: &Document) -> Rect {
-    document.selected().map_or(Rect::EMPTY, CoverageGrid::covered_rect)
+    document.active_coverage().map_or(Rect::EMPTY, CoverageGrid::covered_rect)
 }
 const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false };
 
@@ -64,7 +64,7 @@ fn a_rectangle_is_dragged_along_whole_pixels_and_keys_say_how_it_meets_the_last(
         let found =
             drawn(ToolKind::SelectRectangle, &one, ModifierKeys { shift, alt, ctrl: false }, &next)
                 .unwrap();
-        let grid = found.selected().unwrap().clone();
+        let grid = found.active_coverage().unwrap().clone();
         [(30, 70), (70, 40), (100, 20)].map(|(x, y)| grid.at(x, y) == 255)
     };
     assert_eq!(with(false, false), [false, true, true]);
@@ -86,7 +86,9 @@ fn a_drag_within_the_selection_moves_it_and_a_click_beside_it_lets_go() {
     let anew = drawn(ToolKind::SelectRectangle, &all, NONE, &drag).unwrap();
     assert_eq!(covered(&anew), Rect::new(50, 50, 75, 90), "in all of the canvas it begins anew");
     let click = [vec2(150.0, 100.0), vec2(151.0, 100.0)];
-    assert!(drawn(ToolKind::SelectRectangle, &one, NONE, &click).unwrap().selected().is_none());
+    assert!(
+        drawn(ToolKind::SelectRectangle, &one, NONE, &click).unwrap().active_coverage().is_none()
+    );
     let shift = ModifierKeys { shift: true, ..NONE };
     assert!(
         drawn(ToolKind::SelectRectangle, &one, shift, &click).is_none(),
@@ -118,7 +120,9 @@ fn a_lasso_of_clicks_goes_on_until_its_first_corner_is_clicked() {
         panic!("it is closed")
     };
     assert_eq!(covered(&found), Rect::new(20, 20, 120, 100));
-    assert!(closed(&document, &tools.lasso[..2], &SelectSettings::default()).is_none());
+    assert!(
+        select_closed_lasso(&document, &tools.lasso[..2], &SelectSettings::default()).is_none()
+    );
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! to the right or the left changes the tolerance. Floor 5. Not here: finding the region
 //! (`paint::fill`).
 
-use super::{adjust, combined, dragged};
+use super::{adjust, combine_selections, drag_tolerance};
 use crate::document::{Content, Document, PreparedDocument, Progress};
 use crate::math::{Rect, Vec2};
 use crate::paint::{Fill, Selection};
@@ -91,22 +91,23 @@ struct WandGesture {
 }
 
 impl WandGesture {
-    fn found(&mut self) -> Option<Document> {
+    fn select_found(&mut self) -> Option<Document> {
         let tolerance = self.settings.wand.tolerance;
         if let Some((_, document)) = self.shown.as_ref().filter(|(known, _)| *known == tolerance) {
             return Some(document.clone());
         }
         let (fill, size): (Fill, _) = (self.settings.wand, self.document.size);
         let read = |at: TileAt| self.picture.tile(at);
-        let coverage = fill.selected(self.from, size, &self.part, !self.settings.joined, read)?;
-        let document = combined(&self.document, Selection::new(coverage), self.how);
+        let coverage =
+            fill.find_coverage(self.from, size, &self.part, !self.settings.joined, read)?;
+        let document = combine_selections(&self.document, Selection::new(coverage), self.how);
         self.shown = Some((tolerance, document.clone()));
         Some(document)
     }
 
     fn outcome(&mut self, is_done: bool) -> Outcome {
         let select = self.settings;
-        self.found().map_or(Outcome::Cancel, |document| adjust(document, select, is_done))
+        self.select_found().map_or(Outcome::Cancel, |document| adjust(document, select, is_done))
     }
 }
 
@@ -116,7 +117,7 @@ impl Gesture for WandGesture {
         let by_px = pen.place().x - self.from.x;
         let range = SelectSettings::TOLERANCE;
         self.settings.wand.tolerance =
-            dragged(self.begun.wand.tolerance, by_px, self.px_per_pt, &range);
+            drag_tolerance(self.begun.wand.tolerance, by_px, self.px_per_pt, &range);
         self.outcome(false)
     }
 

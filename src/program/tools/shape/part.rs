@@ -245,7 +245,7 @@ struct PartGesture {
 }
 
 /// An inflated part with other numbers.
-fn inflated(part: &Part, to: impl Fn(Inflation) -> Inflation) -> Option<Part> {
+fn with_inflation(part: &Part, to: impl Fn(Inflation) -> Inflation) -> Option<Part> {
     let PartKind::Inflate { outline, inflation } = &part.kind else { return None };
     let kind = PartKind::Inflate { outline: outline.clone(), inflation: to(*inflation) };
     Some(Part { kind, ..part.clone() })
@@ -257,7 +257,7 @@ impl PartGesture {
         points * self.gizmo.px_per_pt.max(1e-6)
     }
 
-    fn dragged(&self, pen: &PenSample) -> Option<Part> {
+    fn part_at(&self, pen: &PenSample) -> Option<Part> {
         let (to, part) = (pen.place(), &*self.part);
         let by = to - self.from;
         let mapped = |map: Affine2| {
@@ -267,7 +267,7 @@ impl PartGesture {
             is_finite.then(|| Part { matrix, ..part.clone() })
         };
         match self.handle {
-            PartHandle::Body => mapped(Affine2::from_translation(moved_by(by, pen.keys.shift))),
+            PartHandle::Body => mapped(Affine2::from_translation(whole_px(by, pen.keys.shift))),
             PartHandle::Turn => {
                 let middle = self.gizmo.middle();
                 let (before, after) = (self.from - middle, to - middle);
@@ -295,14 +295,14 @@ impl PartGesture {
                     ..part.clone()
                 })
             }
-            PartHandle::Profile => inflated(part, |now| {
+            PartHandle::Profile => with_inflation(part, |now| {
                 let profile = now.profile + by.x / self.pt(PROFILE_PT);
                 Inflation {
                     profile: (clamp_to_range(profile, &Inflation::PROFILE) * 100.0).round() / 100.0,
                     ..now
                 }
             }),
-            PartHandle::Rim => inflated(part, |now| {
+            PartHandle::Rim => with_inflation(part, |now| {
                 let rim_deg = (now.rim_deg - by.y / self.pt(RIM_PT_A_DEGREE)).round();
                 Inflation { rim_deg: clamp_to_range(rim_deg, &Inflation::RIM), ..now }
             }),
@@ -324,7 +324,7 @@ impl PartGesture {
 }
 
 /// By whole pixels, so that nothing is made again; with Shift along one axis.
-fn moved_by(by: Vec2, along_axis: bool) -> Vec2 {
+fn whole_px(by: Vec2, along_axis: bool) -> Vec2 {
     match along_axis {
         true if by.x.abs() >= by.y.abs() => vec2(by.x, 0.0).round(),
         true => vec2(0.0, by.y).round(),
@@ -334,7 +334,7 @@ fn moved_by(by: Vec2, along_axis: bool) -> Vec2 {
 
 impl Gesture for PartGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        let Some(part) = pens.last().and_then(|pen| self.dragged(pen)) else {
+        let Some(part) = pens.last().and_then(|pen| self.part_at(pen)) else {
             return Outcome::Idle;
         };
         self.found = Some(part.clone());

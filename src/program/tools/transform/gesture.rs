@@ -40,25 +40,33 @@ pub enum Dragged {
 
 impl TransformGesture {
     /// The result with the handle at the pen; `None` if that is no map for one of them.
-    fn dragged(&self, pen: &PenSample) -> Option<Dragged> {
+    fn drag_to(&self, pen: &PenSample) -> Option<Dragged> {
         let inner = self.gizmo.inner;
         match self.handle {
             TransformHandle::Inside => {
-                self.all(&DragMap::OnCanvas(PlaneMap::translation(self.moved_by(pen))))
+                self.all(&DragMap::OnCanvas(PlaneMap::translation(self.displacement(pen))))
             }
-            TransformHandle::Outside => self.all(&DragMap::OnCanvas(self.turned_by(pen)?)),
-            TransformHandle::Corner(corner) if pen.keys.ctrl => self.distorted(corner, pen.place()),
+            TransformHandle::Outside => self.all(&DragMap::OnCanvas(self.rotation_to(pen)?)),
+            TransformHandle::Corner(corner) if pen.keys.ctrl => {
+                self.drag_corner(corner, pen.place())
+            }
             TransformHandle::Edge(edge) if pen.keys.ctrl => {
-                self.all(&DragMap::Local(self.skewed(edge, pen.place())?))
+                self.all(&DragMap::Local(self.shear_to(edge, pen.place())?))
             }
-            TransformHandle::Corner(corner) => {
-                self.all(&DragMap::Local(self.scaled(inner.corners()[corner], [true; 2], pen)?))
-            }
+            TransformHandle::Corner(corner) => self.all(&DragMap::Local(self.scaling_to(
+                inner.corners()[corner],
+                [true; 2],
+                pen,
+            )?)),
             TransformHandle::Edge(edge) => {
                 let [a, b] = [edge % 4, (edge + 1) % 4].map(|i| inner.corners()[i]);
                 // The upper and the lower edge are dragged up and down.
                 let along_y = edge.is_multiple_of(2);
-                self.all(&DragMap::Local(self.scaled((a + b) * 0.5, [!along_y, along_y], pen)?))
+                self.all(&DragMap::Local(self.scaling_to(
+                    (a + b) * 0.5,
+                    [!along_y, along_y],
+                    pen,
+                )?))
             }
             TransformHandle::Pivot => None,
         }
@@ -72,11 +80,11 @@ impl TransformGesture {
         if self.of_shape {
             return on_canvas.coefficients().map(|_| Dragged::Shape(on_canvas));
         }
-        let layers = self.layers.iter().map(|layer| self.dragged_layer(layer, map, on_canvas));
+        let layers = self.layers.iter().map(|layer| self.drag_layer(layer, map, on_canvas));
         layers.collect::<Option<_>>().map(Dragged::Layers)
     }
 
-    fn dragged_layer(
+    fn drag_layer(
         &self,
         layer: &HeldLayer,
         map: &DragMap,
@@ -89,7 +97,7 @@ impl TransformGesture {
     }
 
     /// The pen after snapping: with a handle the pen itself snaps, with the inside the gizmo.
-    fn snapped(&mut self, pen: &PenSample) -> PenSample {
+    fn snap_pen(&mut self, pen: &PenSample) -> PenSample {
         let at = pen.place();
         let (at, lines) = match self.handle {
             TransformHandle::Inside => {
@@ -110,7 +118,7 @@ impl TransformGesture {
         snapped
     }
 
-    fn moved_by(&self, pen: &PenSample) -> Vec2 {
+    fn displacement(&self, pen: &PenSample) -> Vec2 {
         // Whole pixels, so that paint is not resampled needlessly.
         let by = (pen.place() - self.from).round();
         match pen.keys.shift {
@@ -120,7 +128,7 @@ impl TransformGesture {
         }
     }
 
-    fn turned_by(&self, pen: &PenSample) -> Option<PlaneMap> {
+    fn rotation_to(&self, pen: &PenSample) -> Option<PlaneMap> {
         let pivot = self.gizmo.pivot();
         let (before, after) = (self.from - pivot, pen.place() - pivot);
         if before.length() < 1.0 || after.length() < 1.0 {
@@ -135,7 +143,7 @@ impl TransformGesture {
 
     /// A scaling in the gizmo that moves a handle to the pen. Shift keeps the aspect, Alt the
     /// pivot.
-    fn scaled(&self, handle: Vec2, axes: [bool; 2], pen: &PenSample) -> Option<PlaneMap> {
+    fn scaling_to(&self, handle: Vec2, axes: [bool; 2], pen: &PenSample) -> Option<PlaneMap> {
         let inner = self.gizmo.inner;
         let center = inner.center();
         let fixed = if pen.keys.alt { self.gizmo.inner_pivot() } else { center * 2.0 - handle };
@@ -159,7 +167,7 @@ impl TransformGesture {
     }
 
     /// A shear in the gizmo that moves an edge along itself.
-    fn skewed(&self, edge: usize, at: Vec2) -> Option<PlaneMap> {
+    fn shear_to(&self, edge: usize, at: Vec2) -> Option<PlaneMap> {
         let corners = self.gizmo.inner.corners().map(|corner| corner.as_dvec2());
         let (a, opposite) = (corners[edge % 4], corners[(edge + 2) % 4]);
         let (to, _) = self.gizmo.plane.from_canvas(at)?;
@@ -175,7 +183,7 @@ impl TransformGesture {
 
     /// The result of a perspective that moves one corner to the pen, or as far toward it as
     /// possible, and leaves the others.
-    fn distorted(&self, corner: usize, at: Vec2) -> Option<Dragged> {
+    fn drag_corner(&self, corner: usize, at: Vec2) -> Option<Dragged> {
         let held = self.gizmo.corners.map(|c| c.as_dvec2());
         let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
         let FrameBox { low, high } = self.gizmo.inner;
@@ -219,8 +227,8 @@ const STEP_DEGREES: f64 = 15.0;
 impl Gesture for TransformGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        let pen = &self.snapped(pen);
-        let Some(found) = self.dragged(pen) else { return Outcome::Idle };
+        let pen = &self.snap_pen(pen);
+        let Some(found) = self.drag_to(pen) else { return Outcome::Idle };
         let shown = self.with(&found);
         self.found = Some(found);
         shown.map_or(Outcome::Idle, Outcome::Preview)

@@ -8,7 +8,12 @@ use std::sync::Arc;
 
 /// A layer with a grid of so many points over what it shows; an existing mesh gets new points.
 /// `None` for an empty layer, or if there is no such grid.
-pub fn meshed(document: &Document, id: LayerId, columns: usize, rows: usize) -> Option<Document> {
+pub fn with_grid(
+    document: &Document,
+    id: LayerId,
+    columns: usize,
+    rows: usize,
+) -> Option<Document> {
     let (layer, map) = (document.layer(id)?, document.map_of(id)?);
     let filter = layer.transform.as_ref().map_or(map.filter, |own| own.filter);
     let old = layer.transform.as_ref();

@@ -29,7 +29,7 @@ impl LayerPlacement {
         let own =
             self.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
         let plane = match map {
-            DragMap::OnCanvas(map) => taken_along(own, &whole.plane, *map),
+            DragMap::OnCanvas(map) => compose_layer_map(own, &whole.plane, *map),
             // A mesh is drawn where it shows.
             DragMap::Local(map) if self.mesh().is_some() => own.then(map),
             DragMap::Local(map) => map.then(&own),
@@ -57,7 +57,7 @@ impl LayerPlacement {
 
 /// A layer's own map if what shows is moved by a map of the canvas; `whole`: its own and those of
 /// the groups around it.
-fn taken_along(own: PlaneMap, whole: &PlaneMap, on_canvas: PlaneMap) -> PlaneMap {
+fn compose_layer_map(own: PlaneMap, whole: &PlaneMap, on_canvas: PlaneMap) -> PlaneMap {
     let around = own.inverse().then(whole);
     own.then(&around).then(&on_canvas).then(&around.inverse())
 }

@@ -309,7 +309,7 @@ fn the_points_of_a_mesh_are_dragged_one_or_several() {
     let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     let plain = Document { layers: vec![Arc::new(paint)], ..Document::empty(Size::new(200, 120)) };
     let id = plain.layers[0].id;
-    let document = mesh::meshed(&plain, id, 3, 3).unwrap();
+    let document = mesh::with_grid(&plain, id, 3, 3).unwrap();
     assert!(!document.layers[0].is_warped(), "an even mesh moves nothing");
     let with_points = |selected: &[usize]| {
         let mut tools = ToolSettings::default();

@@ -199,7 +199,7 @@ impl PieceGesture {
         self.document.with_layer(self.layer, |layer| layer.content = content)
     }
 
-    fn dragged(&self, to: Vec2) -> PlanePiece {
+    fn piece_at(&self, to: Vec2) -> PlanePiece {
         let (before, after) = (self.from - self.pivot, to - self.pivot);
         match self.how {
             PieceDrag::Move => {
@@ -224,7 +224,7 @@ impl PieceGesture {
 impl Gesture for PieceGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        self.pieces[self.index] = self.dragged(pen.place());
+        self.pieces[self.index] = self.piece_at(pen.place());
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }

@@ -82,8 +82,11 @@ fn a_line_over_the_gap_between_two_pieces_is_cut_there_and_one_step() {
     let objects = document.surface.as_ref().unwrap().objects();
     let labels = objects.labels();
     for stroke in &strokes {
-        let on: Vec<u32> =
-            stroke.samples().iter().map(|s| labels.clamped(s.at.x as i32, s.at.y as i32)).collect();
+        let on: Vec<u32> = stroke
+            .samples()
+            .iter()
+            .map(|s| labels.at_clamped(s.at.x as i32, s.at.y as i32))
+            .collect();
         let there: Vec<u32> = on.iter().copied().filter(|label| *label > 0).collect();
         assert!(!there.is_empty() && there.iter().all(|label| *label == there[0]), "{on:?}");
     }
@@ -153,7 +156,7 @@ fn the_pen_leans_on_the_canvas_as_it_does_on_the_sheet() {
         sample: Sample { tilt: vec2(30.0, 10.0), ..Sample::at(at) },
         ..PenSample::at(at)
     };
-    let (led, _) = sheet.led(pen).unwrap();
+    let (led, _) = sheet.map_sample(pen).unwrap();
     let CanvasPlace { turn, .. } = sheet.layout.canvas_at(&sheet.surface, at).unwrap();
     assert!(turn.abs_diff_eq(Mat2::IDENTITY, 0.02), "a cylinder turns nothing: {turn}");
     assert!(led.sample.tilt.distance(vec2(30.0, 10.0)) < 1.0, "{}", led.sample.tilt);

@@ -29,11 +29,11 @@ pub fn square_and_bar(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<
         let (rect, response) = ui.allocate_exact_size(side, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::ColorWell, true, label));
         draw_square(ui.painter(), rect, now);
-        let chosen = picked(&response, rect).map(|c| c.map(|[x, y]| [h, x, 1.0 - y]));
+        let chosen = pick(&response, rect).map(|c| c.map(|[x, y]| [h, x, 1.0 - y]));
         let (bar, response) = ui.allocate_exact_size(vec2(BAR_PT, size.y), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("Hue of {label}")));
         draw_bar(ui.painter(), bar, h);
-        chosen.or(picked(&response, bar).map(|c| c.map(|[_, y]| [y.min(0.9999), s, v])))
+        chosen.or(pick(&response, bar).map(|c| c.map(|[_, y]| [y.min(0.9999), s, v])))
     })
     .inner
 }
@@ -62,10 +62,10 @@ pub fn wheel(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<ValueChan
     if on_ring {
         let by = at - center;
         let turned = by.x.atan2(-by.y) / std::f32::consts::TAU;
-        let held = picked(&response, rect)?;
+        let held = pick(&response, rect)?;
         return Some(held.map(|_| [turned.rem_euclid(1.0).min(0.9999), s, v]));
     }
-    picked(&response, square).map(|c| c.map(|[x, y]| [h, x, 1.0 - y]))
+    pick(&response, square).map(|c| c.map(|[x, y]| [h, x, 1.0 - y]))
 }
 
 /// The direction of a hue: red at the top, clockwise.
@@ -139,7 +139,7 @@ fn grid(mesh: &mut Mesh, cols: u32, rows: u32) {
 }
 
 /// Where a rectangle was pressed or dragged, each side in `[0, 1]`.
-fn picked(response: &Response, rect: Rect) -> Option<ValueChange<[f32; 2]>> {
+fn pick(response: &Response, rect: Rect) -> Option<ValueChange<[f32; 2]>> {
     let is_held =
         response.is_pointer_button_down_on() || response.clicked() || response.drag_stopped();
     let pos = response.interact_pointer_pos().filter(|_| is_held)?;

@@ -35,7 +35,7 @@ impl LayerFilter {
 
     /// The rows, the topmost first: the layers found, with the groups around them, or all that no
     /// folded group hides.
-    pub fn listed<'d>(
+    pub fn list_rows<'d>(
         &self,
         document: &'d Document,
         is_folded: impl Fn(LayerId) -> bool,
@@ -155,7 +155,7 @@ mod tests {
         let all = vec![Arc::new(fill("Think", LayerLabel::None)), Arc::new(group)];
         let document = Document { layers: all, ..Document::empty(Size::new(4, 4)) };
         let told = |filter: LayerFilter, folded: bool| {
-            let rows = filter.listed(&document, |_| folded);
+            let rows = filter.list_rows(&document, |_| folded);
             rows.iter()
                 .map(|(layer, depth)| format!("{}{}", depth, layer.name))
                 .collect::<Vec<_>>()

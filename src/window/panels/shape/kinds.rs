@@ -18,7 +18,7 @@ const SHOWN_POINTS: usize = 9;
 /// Points of a drag that turns a light from facing the viewer to the side.
 const LIGHT_PT: f32 = 60.0;
 
-pub fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
+pub fn edit_bevel(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
     let hint = "How far in from the rim it rises";
     let width = length("Width", &Bevel::WIDTH, hint, now.width)
         .show(ui, |width| Bevel { width, ..now.clone() });

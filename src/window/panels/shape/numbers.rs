@@ -46,7 +46,7 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
         PartKind::Inflate { outline, inflation } => inflation_rows(ui, *inflation).map(|changed| {
             changed.map(|inflation| PartKind::Inflate { outline: outline.clone(), inflation })
         }),
-        PartKind::Bevel { outline, bevel } => kinds::beveled(ui, bevel).map(|changed| {
+        PartKind::Bevel { outline, bevel } => kinds::edit_bevel(ui, bevel).map(|changed| {
             changed.map(|bevel| PartKind::Bevel { outline: outline.clone(), bevel })
         }),
         PartKind::Primitive(body) => {

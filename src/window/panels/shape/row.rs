@@ -3,7 +3,7 @@
 
 use super::{act, forms, set};
 use crate::document::{Document, Part, PartKind};
-use crate::icons::{Icon, sized_button};
+use crate::icons::{Icon, add_sized_button};
 use crate::part_pictures::PartPictures;
 use crate::requests::UiRequests;
 use crate::session::Session;
@@ -55,7 +55,7 @@ pub fn show(
     inner.add_space(2.0 + if lies_on { INDENT_PT } else { 0.0 });
     let eye = if part.visible { Icon::Shown } else { Icon::Hidden };
     let eye =
-        sized_button(&mut inner, eye, &format!("Show part {}", part.name), part.visible, 22.0);
+        add_sized_button(&mut inner, eye, &format!("Show part {}", part.name), part.visible, 22.0);
     if eye.on_hover_text("Show or hide").clicked() {
         act(requests, PartAction::Visible { part: part.id.clone(), on: !part.visible });
     }

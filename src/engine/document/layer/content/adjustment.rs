@@ -34,7 +34,7 @@ impl LayerKind for LiveAdjustment {
         false
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::Adjustment(old) if old == self))
     }
 

@@ -31,7 +31,7 @@ impl LayerKind for Color {
         false
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::Fill(old) if old == self))
     }
 }

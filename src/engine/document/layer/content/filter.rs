@@ -33,7 +33,7 @@ impl LayerKind for LiveFilter {
         false
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::Filter(old) if old == self))
     }
 }

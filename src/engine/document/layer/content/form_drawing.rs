@@ -86,7 +86,7 @@ impl LayerKind for Live<FormDrawing> {
         Ok(Some(Content::FormDrawing(Live::new(next))))
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::FormDrawing(old) = old { Some(old) } else { None })
     }
 

@@ -55,7 +55,7 @@ impl LayerKind for Live<Gradient> {
         Content::Gradient(Live::new(gradient))
     }
 
-    fn drafted(&self) -> Option<Content> {
+    fn draft(&self) -> Option<Content> {
         // Most ramps are smooth: only stops that lie close together show their pixels meanwhile.
         let gradient = self.params();
         let is_averaged = gradient.filter == ImageFilter::Antialias;
@@ -79,7 +79,7 @@ impl LayerKind for Live<Gradient> {
         Some(self.params().bend())
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::Gradient(old) = old { Some(old) } else { None })
     }
 }

@@ -40,11 +40,11 @@ impl LayerKind for Group {
     }
 
     /// Each of its layers says this itself.
-    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Nowhere
     }
 
-    fn changed_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::Wholly
     }
 }

@@ -82,7 +82,7 @@ impl LayerKind for Live<PlacedImage> {
         Some(Content::Image(Live::new(image)))
     }
 
-    fn drafted(&self) -> Option<Content> {
+    fn draft(&self) -> Option<Content> {
         let image = self.params();
         let source = image.source.read_by(TapRule::MOVING);
         let is_averaged = image.filter == ImageFilter::Antialias;
@@ -116,7 +116,7 @@ impl LayerKind for Live<PlacedImage> {
         Ok(Some(Content::Image(Live::new(image))))
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::Image(old) = old { Some(old) } else { None })
     }
 }

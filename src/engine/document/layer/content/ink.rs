@@ -104,13 +104,13 @@ impl LayerKind for InkLayer {
         false
     }
 
-    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Tiles(
             self.tiles().into_iter().flat_map(|tiles| tiles.iter()).map(|(at, _)| at).collect(),
         )
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         match old {
             Content::Ink(old) => {
                 let none = TileGrid::default();

@@ -60,11 +60,11 @@ impl LayerKind for NormalLayer {
     }
 
     /// Layers that see it see another scene.
-    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Nowhere
     }
 
-    fn changed_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::Wholly
     }
 }

@@ -5,7 +5,7 @@ use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent, Tou
 use crate::document::{LayerMap, MemoryCount};
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::Scene;
-use crate::raster::warp::{PixelMap, warped};
+use crate::raster::warp::{PixelMap, warp_tiles};
 use crate::raster::{TileAt, TileGrid};
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ pub struct PixelLayer {
 
 impl PixelLayer {
     /// All of it, moved by a map, also beyond the canvas by up to the canvas's length.
-    pub(in crate::document) fn taken_along(&self, map: &LayerMap) -> Self {
+    pub(in crate::document) fn transformed(&self, map: &LayerMap) -> Self {
         if map.is_none() {
             return self.clone();
         }
@@ -43,7 +43,7 @@ impl PixelLayer {
         });
         let room = canvas.rect().grown(canvas.longer_side() as i32);
         let wanted: Vec<TileAt> = TileAt::covering(around.intersect(room)).collect();
-        Self { tiles: warped(&self.tiles, map, map.filter, &wanted), ..self.clone() }
+        Self { tiles: warp_tiles(&self.tiles, map, map.filter, &wanted), ..self.clone() }
     }
 }
 
@@ -102,12 +102,12 @@ impl LayerKind for PixelLayer {
                     changed.iter().any(|changed| !changed.rect().intersect(source).is_empty())
                 };
                 let wanted: Vec<TileAt> = all().filter(shows).collect();
-                let anew = warped(&self.tiles, map, map.filter, &wanted);
+                let anew = warp_tiles(&self.tiles, map, map.filter, &wanted);
                 let mut tiles = seen.tiles.clone();
                 wanted.into_iter().for_each(|at| tiles.set(at, anew.tile(at).cloned()));
                 tiles
             }
-            _ => warped(&self.tiles, map, map.filter, &all().collect::<Vec<_>>()),
+            _ => warp_tiles(&self.tiles, map, map.filter, &all().collect::<Vec<_>>()),
         };
         Some(Content::Pixels(PixelLayer { tiles, ..self.clone() }))
     }
@@ -120,11 +120,11 @@ impl LayerKind for PixelLayer {
         vec![&self.file]
     }
 
-    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
         Touched::Tiles(self.tiles.iter().map(|(at, _)| at).collect())
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         match old {
             Content::Pixels(old) => Changed::Tiles(old.tiles.changed_tiles(&self.tiles)),
             _ => Changed::Wholly,

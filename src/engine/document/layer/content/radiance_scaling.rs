@@ -36,7 +36,7 @@ impl LayerKind for RadianceScaling {
         false
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::RadianceScaling(old) if old == self))
     }
 }

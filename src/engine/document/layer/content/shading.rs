@@ -88,7 +88,7 @@ impl LayerKind for Live<Shading> {
         self.params().has_ground_shadow()
     }
 
-    fn drafted(&self) -> Option<Content> {
+    fn draft(&self) -> Option<Content> {
         Some(Content::Shading(Live::new(self.params().drafted()?)))
     }
 
@@ -148,7 +148,7 @@ impl LayerKind for Live<Shading> {
         false
     }
 
-    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::Shading(old) = old { Some(old) } else { None })
     }
 }

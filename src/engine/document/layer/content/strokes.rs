@@ -9,7 +9,7 @@ use crate::document::layer::marks::{Done, Marks};
 use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Scene, Selection, Stroke, StrokeSelection, stroke};
-use crate::raster::warp::warped_plane_onto;
+use crate::raster::warp::warp_plane_onto;
 use crate::raster::{CoverageGrid, PlanarTile, TileAt};
 use crate::surface::{Bend, Deformation};
 use std::collections::HashMap;
@@ -107,7 +107,7 @@ impl LayerKind for Live<StrokeList> {
             Some(seen) => Arc::clone(seen),
             None => {
                 let own = stroke.attachment().map(|attachment| map.of_stroke(attachment));
-                taken_along(stroke, own.as_ref().unwrap_or(map), &mut selections)
+                move_stroke(stroke, own.as_ref().unwrap_or(map), &mut selections)
             }
         };
         let strokes = self.params().strokes.iter().map(&mut on_canvas).collect();
@@ -145,7 +145,7 @@ impl LayerKind for Live<StrokeList> {
         Ok(Some(Content::Strokes(Live::new(StrokeList { strokes }))))
     }
 
-    fn touched(&self, scene: Option<&Scene>) -> Touched {
+    fn painted_tiles(&self, scene: Option<&Scene>) -> Touched {
         let strokes = &self.params().strokes;
         match scene {
             Some(scene) => {
@@ -158,7 +158,7 @@ impl LayerKind for Live<StrokeList> {
     }
 
     /// Where both are rendered, their tiles show it.
-    fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
+    fn difference_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
         let Content::Strokes(old) = old else { return Changed::Wholly };
         if self.ptr_eq(old) {
             return Changed::Nowhere;
@@ -227,7 +227,7 @@ pub(in crate::document) type SeenSelections =
     Vec<(LayerMap, HashMap<*const Selection, Arc<Selection>>)>;
 
 /// A stroke moved by a map; one that does not move is the very same.
-pub(in crate::document) fn taken_along(
+pub(in crate::document) fn move_stroke(
     stroke: &Arc<Stroke>,
     map: &LayerMap,
     selections: &mut SeenSelections,
@@ -242,13 +242,13 @@ pub(in crate::document) fn taken_along(
         selections.push((*map, HashMap::new()));
         selections.len() - 1
     });
-    let selection = selections.get_mut(place).map(|(_, known)| selected(own, map, known));
+    let selection = selections.get_mut(place).map(|(_, known)| place_selection(own, map, known));
     Arc::new(mapped.within(selection))
 }
 
 /// The selection of a stroke as it lies on the canvas, sampled once for all strokes that share it
 /// unmoved.
-fn selected(
+fn place_selection(
     own: &StrokeSelection,
     map: &LayerMap,
     known: &mut HashMap<*const Selection, Arc<Selection>>,
@@ -263,7 +263,7 @@ fn selected(
         }
         let corner = PlaneMap::translation(vec2(rect.x0 as f32, rect.y0 as f32));
         let from_corner = map.after(&corner);
-        let warped = warped_plane_onto(&coverage.to_plane(rect), &from_corner, map.filter, canvas);
+        let warped = warp_plane_onto(&coverage.to_plane(rect), &from_corner, map.filter, canvas);
         Arc::new(Selection::new(CoverageGrid::from_plane(&warped, 0, 0)))
     };
     StrokeSelection::new(match own.moved == Vec2::ZERO {

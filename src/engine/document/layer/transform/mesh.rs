@@ -189,7 +189,7 @@ impl Mesh {
         let (mut q, mut right, mut down) = (Vec2::ZERO, Vec2::ZERO, Vec2::ZERO);
         for (j, row) in y.around.into_iter().enumerate() {
             for (i, column) in x.around.into_iter().enumerate() {
-                let point = self.extended(column, row);
+                let point = self.point_or_extension(column, row);
                 q += point * (x.value[i] * y.value[j]);
                 right += point * (x.slope[i] * y.value[j]);
                 down += point * (x.value[i] * y.slope[j]);
@@ -199,7 +199,7 @@ impl Mesh {
     }
 
     /// A point, or its straight continuation where the grid ends.
-    fn extended(&self, column: i32, row: i32) -> Vec2 {
+    fn point_or_extension(&self, column: i32, row: i32) -> Vec2 {
         let along =
             |row: usize| beyond(column, self.columns, |i| self.points[row * self.columns + i]);
         beyond(row, self.rows, along)

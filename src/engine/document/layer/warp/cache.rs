@@ -8,7 +8,7 @@ use crate::document::memory_use::MemoryCount;
 use crate::math::Rect;
 use crate::memory::once;
 use crate::paint::Scene;
-use crate::raster::warp::{PixelMap, warped_tile_within};
+use crate::raster::warp::{PixelMap, warp_tile_within};
 use crate::raster::{Tile, TileAt, TileGrid};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -67,10 +67,10 @@ impl WarpTiles {
             return Some(known.clone());
         }
         let map = self.warp.tile_map(at, &crate::math::PlaneMap::IDENTITY)?;
-        Some(once(cell, || self.sampled(at, &map, compose)).clone())
+        Some(once(cell, || self.sample_tile(at, &map, compose)).clone())
     }
 
-    fn sampled(
+    fn sample_tile(
         &self,
         at: TileAt,
         map: &dyn PixelMap,
@@ -86,7 +86,7 @@ impl WarpTiles {
             grid.set(from, tile.flatten());
         }
         let border = self.warp.has_continued_border().then_some(self.canvas);
-        warped_tile_within(&grid, border, map, self.warp.filter, at)
+        warp_tile_within(&grid, border, map, self.warp.filter, at)
     }
 }
 

@@ -36,7 +36,7 @@ impl CutLines {
                 .is_some_and(|part| is_off_color(cut, part as u16, (x, y)))
         };
         let marks = Plane::from_fn(size, |x, y| u8::from(is_marked(x, y)));
-        let away = distance::squared(&marks, SOFT as u16 + 1);
+        let away = distance::squared_distances(&marks, SOFT as u16 + 1);
         let mut taker = assign_marks(cut, &marks);
         let is_ink = taker.map(|part| part != NO_PART);
         for _ in 0..SOFT {

@@ -25,7 +25,7 @@ impl Cut {
         let lines = CutLines::of(self);
         let mut beneath = Plane::filled(self.drawn.size(), ColorBeneath::default());
         let mut pieces = Vec::with_capacity(self.outlines.len());
-        for (part, area) in (0..).zip(self.reached(&lines)) {
+        for (part, area) in (0..).zip(self.find_reached(&lines)) {
             let own = self.own_colors(part, area, &lines);
             let piece = over(area, |x, y, i| {
                 let own = own.values()[i];
@@ -52,7 +52,7 @@ impl Cut {
     }
 
     /// Where each part covers something, or has a pixel.
-    fn reached(&self, lines: &CutLines) -> Vec<Rect> {
+    fn find_reached(&self, lines: &CutLines) -> Vec<Rect> {
         let all = self.drawn.size().rect();
         let covered = |of: &PieceOutline| {
             of.outline.rect().moved(-self.rect.x0, -self.rect.y0).intersect(all)

@@ -50,7 +50,7 @@ crate::widest! {
     }
 
     /// Bent: J by differences within each pixel's piece of surface.
-    pub(in crate::paint::dab) fn bent_row(d: SpanNeighbors, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
+    pub(in crate::paint::dab) fn fill_bent_row(d: SpanNeighbors, tip: &RoundTip, row: &mut RowZones, paint: RowPaint) {
         let n = paint.coverage.len().min(TILE);
         judge(d, 0..n, tip, row);
         tip.add(row, 0..n, paint);
@@ -58,7 +58,7 @@ crate::widest! {
 
     /// The same over all rows of a part of a tile, to the same bits. Chunks that lie beyond the dab
     /// or within its hardness by their distance alone are not classified.
-    pub(in crate::paint::dab) fn bent_rows(
+    pub(in crate::paint::dab) fn fill_bent_rows(
         d: &DeformationField,
         part: BentPart,
         tip: &RoundTip,
@@ -70,7 +70,7 @@ crate::widest! {
             let Some(paint) = of_span(part.corner, span, (&mut *tile.0, &mut *tile.1)) else { continue };
             d.prefetch(*span);
             sure.enter((span.y - part.corner.1) as usize / BLOCK, part.pixel, tip);
-            bent_span(d.around(*span), sure.from((span.x - part.corner.0) as usize), tip, row, paint);
+            fill_bent_span(d.around(*span), sure.from((span.x - part.corner.0) as usize), tip, row, paint);
         }
     }
 }
@@ -141,7 +141,7 @@ fn flat_span(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, paint: RowPaint
 }
 
 #[inline(always)]
-fn bent_span(
+fn fill_bent_span(
     d: SpanNeighbors,
     sure: (&[f32], &[f32]),
     tip: &RoundTip,

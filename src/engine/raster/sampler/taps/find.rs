@@ -19,7 +19,7 @@ crate::widest! {
         match at.outside {
             Outside::None => find_folded(at, pair_or_seam, index, across, down),
             Outside::Clamp => find_folded(at, |c, n| pair(within(c, n) - 0.5, n), index, across, down),
-            Outside::Repeat => find_folded(at, |c, n| pair_or_seam(repeated(c, n), n), index, across, down),
+            Outside::Repeat => find_folded(at, |c, n| pair_or_seam(wrap_position(c, n), n), index, across, down),
             // Few pictures are bent so far that they repeat twice.
             Outside::Mirror
                 if are_within(at.x, -2.0 * wide, 1.999 * wide)
@@ -105,7 +105,7 @@ fn mirrored_once(c: f32, n: f32) -> f32 {
 
 /// The position in `[0, n]` that a repeated picture shows at `c`.
 #[inline(always)]
-fn repeated(c: f32, n: f32) -> f32 {
+fn wrap_position(c: f32, n: f32) -> f32 {
     c - floor(c / n) * n
 }
 

@@ -177,7 +177,7 @@ impl BouncedLight {
     /// axis.
     pub fn at(&self, surface: &Surface, (x, y): (usize, usize)) -> Vec3 {
         let mut quarters = [(Vec3::ZERO, 0.0f32); PHASES];
-        let joined = links::joined_around(surface.smooth_links_plane(), (x, y));
+        let joined = links::joined_neighbors(surface.smooth_links_plane(), (x, y));
         for (i, _) in joined.into_iter().enumerate().filter(|(_, joined)| *joined) {
             let (dx, dy) = (i as i32 % 3 - 1, i as i32 / 3 - 1);
             let share = ((2 - dx.abs()) * (2 - dy.abs())) as f32;

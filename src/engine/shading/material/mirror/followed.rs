@@ -80,7 +80,7 @@ impl FollowedTile {
             return own;
         }
         let luminance = |light: Vec3| srgb::luminance(light.x, light.y, light.z);
-        let joined = links::joined_around(surface.smooth_links_plane(), (x, y));
+        let joined = links::joined_neighbors(surface.smooth_links_plane(), (x, y));
         let around = joined.into_iter().enumerate().filter(|&(i, joined)| joined && i != 4);
         let brightest = around
             .map(|(i, _)| {

@@ -240,7 +240,7 @@ crate::widest! {
     }
 
     /// D = linear U + shift over a row of points of the unwrapped plane.
-    pub(super) fn laid_row(u: &[f32], v: &[f32], linear: Mat2, shift: Vec2, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn fill_laid_row(u: &[f32], v: &[f32], linear: Mat2, shift: Vec2, out_x: &mut [f32], out_y: &mut [f32]) {
         let n = out_x.len();
         let (u, v, out_y) = (&u[..n], &v[..n], &mut out_y[..n]);
         let ([xx, yx], [xy, yy]) = (linear.x_axis.to_array(), linear.y_axis.to_array());
@@ -252,7 +252,7 @@ crate::widest! {
 
     /// The same of a displaced plane: its displacement is turned and scaled as the plane is, and
     /// added.
-    pub(super) fn pulled_row(
+    pub(super) fn fill_pulled_row(
         uv: [&[f32]; 2],
         by: [&[f32]; 2],
         laid: (Mat2, Vec2, Mat2),
@@ -271,7 +271,7 @@ crate::widest! {
     }
 
     /// Points of the unwrapped plane where they lie, but for a shift in both directions.
-    pub(super) fn shifted_row(u: &[f32], v: &[f32], by: f32, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn fill_shifted_row(u: &[f32], v: &[f32], by: f32, out_x: &mut [f32], out_y: &mut [f32]) {
         for (out, from) in out_x.iter_mut().zip(u).chain(out_y.iter_mut().zip(v)) {
             *out = from + by;
         }

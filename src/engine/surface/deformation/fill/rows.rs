@@ -31,7 +31,7 @@ pub(in crate::surface::deformation) fn try_fill_dab(
     if matches!(kernel, Kernel::Still) {
         return false;
     }
-    let pin = kernel.pinned(pin);
+    let pin = kernel.pin(pin);
     let ask = |next: MapSpan| ask(surface, kernel, next);
     for_each_span(rect, columns, (out_x, out_y), ask, |y, span, out_x, out_y| {
         let first = deformation.center(span.x as i32, y).into();
@@ -116,7 +116,7 @@ fn try_fill_laid(
             away: planes.elsewhere_px(),
         };
         let coverage = span.of(surface.coverage_plane());
-        laid_dab_row(
+        fill_laid_dab_row(
             row,
             coverage,
             span.of(planes.objects.labels()),
@@ -182,7 +182,7 @@ impl DabRow {
 }
 
 crate::widest! {
-    fn laid_dab_row(
+    fn fill_laid_dab_row(
         row: LaidRow,
         coverage: &[u8],
         objects: &[u32],

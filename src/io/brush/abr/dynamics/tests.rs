@@ -128,7 +128,7 @@ fn a_texture_is_the_collection_s_pattern() {
     };
     let textured = |preset: &DescriptorObject, patterns: &[PatternResource]| {
         let mut carried = with_dynamics(preset, Brush::default(), Vec::new());
-        carried.textured(Path::new("a.abr"), patterns, &mut TipNames::default());
+        carried.convert_texture(Path::new("a.abr"), patterns, &mut TipNames::default());
         (carried.brush.grain, carried.notes)
     };
     let (grain, notes) = textured(&values(b"Mltp"), std::slice::from_ref(&pattern));

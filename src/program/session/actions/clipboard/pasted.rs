@@ -44,7 +44,7 @@ impl PastedPicture {
 }
 
 impl ReplayValue for PastedPicture {
-    fn written(&self) -> Value {
+    fn to_value(&self) -> Value {
         json!({ "name": self.name, "file": self.file().map(|file| base64::encode(file.bytes())) })
     }
 
@@ -101,7 +101,7 @@ fn open(session: &mut Session, tiles: TileGrid, pasted: &PastedPicture) {
     let layer = paint(stem(&pasted.name), tiles);
     let document =
         Document { layers: vec![Arc::new(layer)], ..Document::empty(pasted.picture.size) };
-    let name = session.untitled();
+    let name = session.new_title();
     let mut open = OpenDocument::new(name, document, None);
     open.mark_unsaved();
     session.add_document(open);

@@ -27,7 +27,7 @@ pub fn replace_maps(
     });
     let surface = Arc::new(surface)
         .onto(canvas, map.as_ref())
-        .map_err(|error| Error::unsupported("maps", error))?;
+        .map_err(|error| Error::unsupported_file("maps", error))?;
     let next = Document {
         surface_source: Some(Arc::new(source.placed_as(&surface))),
         surface: Some(surface),
@@ -60,7 +60,7 @@ pub fn add_maps(
     notes.extend((found != canvas).then(|| stretch_text(found, canvas)));
     let surface = Arc::new(surface)
         .onto(canvas, source.map().as_ref())
-        .map_err(|error| Error::unsupported("maps", error))?;
+        .map_err(|error| Error::unsupported_file("maps", error))?;
     parts::new::add_maps(
         open,
         PartMaps { source: Arc::new(source.clone()), files: Arc::new(files), surface },

@@ -115,7 +115,7 @@ pub(super) fn attach(
 pub(super) fn clear_layers(document: &Document, ids: &[LayerId]) -> Option<EditStep> {
     let (mut next, mut is_any) = (document.clone(), false);
     for id in ids {
-        let cleared = match document.selected() {
+        let cleared = match document.active_coverage() {
             Some(selected) => next.with_cleared(*id, selected),
             None => {
                 let empty = next.layer(*id)?.content.without_paint();
@@ -125,7 +125,7 @@ pub(super) fn clear_layers(document: &Document, ids: &[LayerId]) -> Option<EditS
         is_any |= cleared.is_some();
         next = cleared.unwrap_or(next);
     }
-    let label = if document.selected().is_some() { "Clear" } else { "Clear layer" };
+    let label = if document.active_coverage().is_some() { "Clear" } else { "Clear layer" };
     is_any.then_some((label, next, Vec::new()))
 }
 

@@ -110,7 +110,7 @@ pub(super) fn write(open: &mut OpenDocument, text: &Text, at: Vec2) -> Result<()
 
 /// The document with another text in the layers that are texts; `None` where none is. Each keeps
 /// its size and the place where its first baseline begins, and its name if that is not its text.
-pub(super) fn retyped(
+pub(super) fn replace_texts(
     document: &Document,
     ids: &[LayerId],
     text: &Text,

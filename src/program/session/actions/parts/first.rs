@@ -67,7 +67,7 @@ pub fn shape_layer(
         }
         FigureBackground::Empty => return Err("This layer is empty, so it has no outline."),
     };
-    let document = named_alone(&document, layer).ok_or("There is no such layer.")?;
+    let document = with_unique_name(&document, layer).ok_or("There is no such layer.")?;
     let name = document.layer(layer).map(|layer| layer.name.clone()).unwrap_or_default();
     let made = match each {
         PartFor::Color | PartFor::Place => parts_of_flats(&tiles, &name, inflation, each),
@@ -116,7 +116,7 @@ pub fn shape_layer(
 }
 
 /// With a name that no other layer has, by which parts follow it.
-fn named_alone(document: &Document, layer: LayerId) -> Option<Document> {
+fn with_unique_name(document: &Document, layer: LayerId) -> Option<Document> {
     let name = &document.layer(layer)?.name;
     let is_alone = document.walk().iter().filter(|(_, other)| other.name == *name).count() == 1;
     let named = if is_alone && !name.is_empty() {

@@ -11,7 +11,7 @@ pub use crate::tools::shape::with_new;
 
 /// With a part in front of so many others that have a form of their own; a part that lies on
 /// another, among those on the same one.
-pub fn ordered(document: &Document, id: &str, index: usize) -> Document {
+pub fn with_part_at(document: &Document, id: &str, index: usize) -> Document {
     let Some(on) = document.parts.part(id).map(|part| part.on().map(str::to_owned)) else {
         return document.clone();
     };

@@ -172,7 +172,7 @@ fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
 
 /// The selection as a picture of coverage, under a name that no part's picture has.
 fn of_selection(document: &Document) -> Option<OutlineSource> {
-    let coverage = Arc::new(document.selected()?.to_plane(document.size.rect()));
+    let coverage = Arc::new(document.active_coverage()?.to_plane(document.size.rect()));
     Some(OutlineSource::File(CoverageFile {
         file: grays::free_files(document, "outline").next()?,
         coverage,

@@ -13,8 +13,8 @@ use std::path::PathBuf;
 #[diagnostic::on_unimplemented(
     message = "add `{Self}` to the story tables (session/tests/stories/values.rs)"
 )]
-pub trait Drawn: Sized {
-    fn drawn(dice: &mut Dice) -> Self;
+pub trait Roll: Sized {
+    fn roll(dice: &mut Dice) -> Self;
 }
 
 /// Chance, which is the same for the same seed, and what it draws for.
@@ -127,10 +127,10 @@ impl Dice {
     }
 
     /// The value of a field of an action.
-    pub fn value<T: Drawn>(&mut self, word: &'static str, field: &'static str) -> T {
+    pub fn value<T: Roll>(&mut self, word: &'static str, field: &'static str) -> T {
         let around = (self.word, self.field);
         (self.word, self.field) = (word, field);
-        let value = T::drawn(self);
+        let value = T::roll(self);
         (self.word, self.field) = around;
         value
     }
@@ -143,22 +143,22 @@ impl Dice {
     }
 
     /// The same for a choice that may be absent, or a list.
-    fn several<T: Drawn>(&mut self, least: usize, most: usize) -> Vec<T> {
+    fn several<T: Roll>(&mut self, least: usize, most: usize) -> Vec<T> {
         let count = least + self.below(most - least + 1);
-        (0..count).map(|_| T::drawn(self)).collect()
+        (0..count).map(|_| T::roll(self)).collect()
     }
 }
 
-impl Drawn for bool {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for bool {
+    fn roll(dice: &mut Dice) -> Self {
         // Most of what has a preview is let go of.
         let percent = if matches!(dice.field, "done" | "visible" | "guides") { 85 } else { 50 };
         dice.is(percent)
     }
 }
 
-impl Drawn for f32 {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for f32 {
+    fn roll(dice: &mut Dice) -> Self {
         if dice.is(6) {
             return dice.one_of(&EDGES);
         }
@@ -172,15 +172,15 @@ impl Drawn for f32 {
     }
 }
 
-impl Drawn for f64 {
-    fn drawn(dice: &mut Dice) -> Self {
-        f32::drawn(dice).into()
+impl Roll for f64 {
+    fn roll(dice: &mut Dice) -> Self {
+        f32::roll(dice).into()
     }
 }
 
 /// A map of the canvas, near to one that moves nothing.
-impl Drawn for [f64; 6] {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for [f64; 6] {
+    fn roll(dice: &mut Dice) -> Self {
         let mut near = |low: f32, high: f32| f64::from(dice.within(low, high));
         [
             near(0.6, 1.4),
@@ -193,8 +193,8 @@ impl Drawn for [f64; 6] {
     }
 }
 
-impl Drawn for usize {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for usize {
+    fn roll(dice: &mut Dice) -> Self {
         match dice.field {
             "columns" | "rows" => 2 + dice.below(3),
             "index" if matches!(dice.word, "tab" | "close") => dice.below(dice.facts.documents + 1),
@@ -204,8 +204,8 @@ impl Drawn for usize {
     }
 }
 
-impl Drawn for u32 {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for u32 {
+    fn roll(dice: &mut Dice) -> Self {
         let whole = match (dice.word, dice.field) {
             (_, "width") => 40 + dice.below(110),
             (_, "height") => 30 + dice.below(80),
@@ -217,8 +217,8 @@ impl Drawn for u32 {
     }
 }
 
-impl Drawn for i32 {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for i32 {
+    fn roll(dice: &mut Dice) -> Self {
         let size = dice.facts.size;
         match dice.field {
             "x0" | "y0" => dice.within(-15.0, 25.0) as i32,
@@ -229,14 +229,14 @@ impl Drawn for i32 {
     }
 }
 
-impl Drawn for u8 {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for u8 {
+    fn roll(dice: &mut Dice) -> Self {
         if dice.field == "bits" { dice.one_of(&[8, 16]) } else { dice.one_of(&[60, 90, 100]) }
     }
 }
 
-impl Drawn for String {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for String {
+    fn roll(dice: &mut Dice) -> Self {
         let facts = &dice.facts;
         let known = match (dice.word, dice.field) {
             (_, "part") => facts.parts.iter().map(|part| part.id.clone()).collect(),
@@ -259,15 +259,15 @@ impl Drawn for String {
     }
 }
 
-impl Drawn for PathBuf {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for PathBuf {
+    fn roll(dice: &mut Dice) -> Self {
         let chance = dice.number();
         dice.facts.files.drawn(dice.word, dice.field, chance)
     }
 }
 
-impl Drawn for Color {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Color {
+    fn roll(dice: &mut Dice) -> Self {
         let [r, g, b, a] = dice.number().to_le_bytes()[..4] else { return Color::BLACK };
         match dice.below(4) {
             0 => Color { r, g, b, a },
@@ -277,8 +277,8 @@ impl Drawn for Color {
     }
 }
 
-impl Drawn for Vec2 {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Vec2 {
+    fn roll(dice: &mut Dice) -> Self {
         match (dice.word, dice.field) {
             ("pivot", _) => vec2(dice.within(-0.2, 1.2), dice.within(-0.2, 1.2)),
             (_, "by") => vec2(dice.within(-20.0, 20.0), dice.within(-20.0, 20.0)),
@@ -288,29 +288,29 @@ impl Drawn for Vec2 {
     }
 }
 
-impl Drawn for Vec3 {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Vec3 {
+    fn roll(dice: &mut Dice) -> Self {
         vec3(dice.within(-1.0, 1.0), dice.within(-1.0, 1.0), dice.within(-0.2, 1.0))
     }
 }
 
-impl<T: Drawn> Drawn for Vec<T> {
-    fn drawn(dice: &mut Dice) -> Self {
+impl<T: Roll> Roll for Vec<T> {
+    fn roll(dice: &mut Dice) -> Self {
         let least = usize::from(matches!(dice.field, "strokes" | "maps" | "stops" | "points"));
         dice.several(least, 3)
     }
 }
 
-impl<T: Drawn> Drawn for Option<T> {
-    fn drawn(dice: &mut Dice) -> Self {
+impl<T: Roll> Roll for Option<T> {
+    fn roll(dice: &mut Dice) -> Self {
         // Maps have normals.
         let percent = if dice.field == "normal" { 95 } else { 70 };
-        dice.is(percent).then(|| T::drawn(dice))
+        dice.is(percent).then(|| T::roll(dice))
     }
 }
 
-impl Drawn for LayerPath {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for LayerPath {
+    fn roll(dice: &mut Dice) -> Self {
         let layers = dice.facts.layers.clone();
         match layers.is_empty() || dice.is(3) {
             true => super::facts::no_layer(),
@@ -323,10 +323,10 @@ impl Drawn for LayerPath {
     }
 }
 
-impl Drawn for LayerPaths {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for LayerPaths {
+    fn roll(dice: &mut Dice) -> Self {
         match dice.is(75) {
-            true => LayerPath::drawn(dice).into(),
+            true => LayerPath::roll(dice).into(),
             false => LayerPaths::several(dice.several(1, 3)),
         }
     }

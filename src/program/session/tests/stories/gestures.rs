@@ -1,6 +1,6 @@
 //! Draws what the pen does with each tool: clicks, drags, and strokes of real length.
 
-use super::dice::{Dice, Drawn};
+use super::dice::{Dice, Roll};
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
 use crate::session::actions::{Action, CanvasAction, PointerAction, SelectionAction};
@@ -9,8 +9,8 @@ use crate::tools::{ModifierKeys, PenSample, ToolKind};
 /// Samples of a long stroke.
 const LONG: usize = 200;
 
-impl Drawn for PenSample {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for PenSample {
+    fn roll(dice: &mut Dice) -> Self {
         PenSample::at(dice.place())
     }
 }

@@ -1,6 +1,6 @@
 //! Draws new versions of the parts of a shape, as the panel of the shape and its handles make them.
 
-use super::dice::{Dice, Drawn};
+use super::dice::{Dice, Roll};
 use crate::document::parts::{OutlineSource, Part, PartKind};
 use crate::io::recipe::parts::write_part;
 use crate::math::{Vec2, srgb::Color};
@@ -75,7 +75,7 @@ fn all_have(dice: &mut Dice, value: &mut Value) {
         3 => value["name"] = dice.one_of(&["Head", "é", "a\"b"]).into(),
         4 => value["visible"] = json!(dice.is(50)),
         5 => (value["combine"], value["smooth"]) = ("union".into(), json!(dice.within(0.0, 12.0))),
-        _ => value["matrix"] = <[f64; 6]>::drawn(dice).written(),
+        _ => value["matrix"] = <[f64; 6]>::roll(dice).to_value(),
     }
 }
 
@@ -114,7 +114,7 @@ fn draw_fields_of_kind(dice: &mut Dice, kind: &PartKind, value: &mut Value) {
 }
 
 fn place(dice: &mut Dice) -> Value {
-    Vec2::drawn(dice).written()
+    Vec2::roll(dice).to_value()
 }
 
 /// Where a part has its outline from; a file stays the one it is.
@@ -135,7 +135,7 @@ fn outline(dice: &mut Dice, known: Option<&OutlineSource>) -> Value {
             let layer = dice.one_or(&names, "Ink".into());
             match dice.is(70) {
                 true => json!({ "layer": layer }),
-                false => json!({ "layer": layer, "color": Color::drawn(dice).written() }),
+                false => json!({ "layer": layer, "color": Color::roll(dice).to_value() }),
             }
         }
         OutlineSource::Path(_) => {

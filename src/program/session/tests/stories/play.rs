@@ -1,7 +1,7 @@
 //! Plays stories: draws what a user does next, performs it, and asks after each step and at the end
 //! whether every promise was kept (`promises`).
 
-use super::dice::{Dice, Drawn};
+use super::dice::{Dice, Roll};
 use super::facts::{Facts, StoryFiles};
 use super::gestures;
 use super::promises::{self, Broken};
@@ -77,7 +77,7 @@ fn step_of(dice: &mut Dice) -> Vec<Action> {
             let tool = dice.one_of(&ToolKind::ALL).0;
             gestures::gesture(dice, tool)
         }
-        false => vec![Action::drawn(dice)],
+        false => vec![Action::roll(dice)],
     }
 }
 
@@ -99,7 +99,7 @@ impl Play {
     }
 
     fn perform(&mut self, action: &Action) -> Result<(), Broken> {
-        let written = action.written();
+        let written = action.to_value();
         // As a replay gives it; what cannot be read is refused there.
         let action = Action::read(&written)
             .map_err(|why| Broken::new("a line cannot be read", format!("{written}: {why}")))?;

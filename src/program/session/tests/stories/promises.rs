@@ -305,7 +305,7 @@ pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
     let Some(autosave) = session.autosave.take() else { return Ok(()) };
     autosave.wait_until_written();
     drop(autosave);
-    let lost = Autosave::new(folder.into()).lost_sessions();
+    let lost = Autosave::new(folder.into()).find_lost_sessions();
     let mut back = Vec::new();
     for left in lost.list() {
         let recovered = lost.bring_back(left, &Progress::default());

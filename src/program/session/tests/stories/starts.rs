@@ -1,6 +1,6 @@
 //! How stories begin: the folder with the files that they may use, and every way in.
 
-use super::dice::{Dice, Drawn};
+use super::dice::{Dice, Roll};
 use super::gestures::gesture;
 use crate::math::{Vec2, srgb::Color, vec2};
 use crate::session::actions::{
@@ -225,7 +225,7 @@ fn drawing_with(dice: &mut Dice, flats: &str) -> Vec<Action> {
     let flats = ReplayValue::read(&serde_json::from_str(flats).unwrap()).unwrap();
     actions.push(Action::Part(PartAction::Shape {
         layer,
-        preset: InflationPreset::drawn(dice),
+        preset: InflationPreset::roll(dice),
         flats,
     }));
     actions

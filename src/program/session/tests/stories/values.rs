@@ -2,7 +2,7 @@
 //! Each is mostly one that a file may hold, at times one that it may not, which must then be
 //! refused. Not here: parts (`parts`).
 
-use super::dice::{Dice, Drawn};
+use super::dice::{Dice, Roll};
 use crate::document::parts::from_flats::PartFor;
 use crate::document::{DerivedMask, Inflation, LayerTransform, TransformShape};
 use crate::io::recipe::value::RecipeValue;
@@ -43,37 +43,37 @@ impl Dice {
     }
 }
 
-impl Drawn for Operator {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Operator {
+    fn roll(dice: &mut Dice) -> Self {
         let kind = dice.one_of(&Operator::KINDS).0;
         kind.map(|number, _| dice.in_range(number.useful.clone(), number.range.clone()))
     }
 }
 
-impl Drawn for Anchor {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Anchor {
+    fn roll(dice: &mut Dice) -> Self {
         let at = dice.place();
         if dice.is(50) { Anchor::fixed(at) } else { Anchor { at, source: dice.place() } }
     }
 }
 
-impl Drawn for PlanePiece {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for PlanePiece {
+    fn roll(dice: &mut Dice) -> Self {
         let (at, moved) = (dice.place(), dice.place() * 0.2);
         let scale = dice.in_range(0.5..=2.0, PlanePiece::SCALE);
         PlanePiece { at, moved, scale, rotation: dice.within(-180.0, 180.0) }
     }
 }
 
-impl Drawn for Placement {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Placement {
+    fn roll(dice: &mut Dice) -> Self {
         let scale = dice.in_range(0.2..=3.0, 0.01..=40.0);
         Placement { center: dice.place(), scale, rotation: dice.within(-180.0, 180.0) }
     }
 }
 
-impl Drawn for Adjust {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Adjust {
+    fn roll(dice: &mut Dice) -> Self {
         let blur = dice.within(0.0, 3.0);
         let mut factor = || dice.in_range(0.0..=2.0, Adjust::FACTOR);
         let [saturation, brightness, contrast] = [factor(), factor(), factor()];
@@ -89,8 +89,8 @@ impl Drawn for Adjust {
 }
 
 /// Mostly in a font that comes with the program, at times in one that no machine has.
-impl Drawn for Text {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Text {
+    fn roll(dice: &mut Dice) -> Self {
         let words = ["", "Rel", "a b\nc", "Ink & <gold>", "日本語。", "\n\n", "ﬁ שלום"];
         let family = if dice.is(80) { "Hack" } else { "No Such Font" };
         let style = TextStyle {
@@ -118,8 +118,8 @@ impl Drawn for Text {
     }
 }
 
-impl Drawn for GradientStop {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for GradientStop {
+    fn roll(dice: &mut Dice) -> Self {
         GradientStop {
             t: dice.in_range(0.0..=1.0, 0.0..=1.0),
             color: dice.value(dice.word, "color"),
@@ -128,16 +128,16 @@ impl Drawn for GradientStop {
 }
 
 /// Each parameter with a chance, mostly near where it begins.
-impl Drawn for ColorAdjustment {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for ColorAdjustment {
+    fn roll(dice: &mut Dice) -> Self {
         let mut adjustment = dice.one_of(&ColorAdjustment::all());
         adjustment.visit(&mut ParameterDice(dice));
         adjustment
     }
 }
 
-impl Drawn for PictureFilter {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for PictureFilter {
+    fn roll(dice: &mut Dice) -> Self {
         let mut filter = dice.one_of(&PictureFilter::all());
         filter.visit(&mut ParameterDice(dice));
         filter
@@ -145,8 +145,8 @@ impl Drawn for PictureFilter {
 }
 
 /// Each setting with a chance, mostly near where it begins.
-impl Drawn for LayerEffect {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for LayerEffect {
+    fn roll(dice: &mut Dice) -> Self {
         let mut effect = LayerEffect::new(dice.one_of(&EffectKind::ALL).0);
         effect.on = dice.is(85);
         for field in effect.kind.fields() {
@@ -186,8 +186,8 @@ impl Drawn for LayerEffect {
     }
 }
 
-impl Drawn for EffectLight {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for EffectLight {
+    fn roll(dice: &mut Dice) -> Self {
         let angle = dice.in_range(-180.0..=180.0, EffectLight::ANGLE);
         EffectLight { angle, altitude: dice.in_range(0.0..=90.0, EffectLight::ALTITUDE) }
     }
@@ -222,7 +222,7 @@ impl ParameterVisitor for ParameterDice<'_> {
     }
 
     fn stops(&mut self, _: ParameterName, value: &mut Vec<GradientStop>) {
-        *value = (0..1 + self.0.below(4)).map(|_| GradientStop::drawn(self.0)).collect();
+        *value = (0..1 + self.0.below(4)).map(|_| GradientStop::roll(self.0)).collect();
         value.sort_by(|a, b| a.t.total_cmp(&b.t));
     }
 
@@ -238,8 +238,8 @@ impl ParameterVisitor for ParameterDice<'_> {
     }
 }
 
-impl Drawn for NoiseRelief {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for NoiseRelief {
+    fn roll(dice: &mut Dice) -> Self {
         let size_px = dice.in_range(1.0..=40.0, NoiseRelief::SIZE_PX);
         let (octaves, seed) = (1 + dice.below(6) as u32, dice.below(1000) as u32);
         let roughness = dice.in_range(0.0..=1.0, NoiseRelief::ROUGHNESS);
@@ -253,8 +253,8 @@ impl Drawn for NoiseRelief {
     }
 }
 
-impl Drawn for SurfaceRegion {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for SurfaceRegion {
+    fn roll(dice: &mut Dice) -> Self {
         let kind = dice.one_of(&RegionKind::ALL).0;
         let tolerance = dice.in_range(0.0..=2.0 * kind.tolerance(), kind.tolerances());
         let (at, softness) = (dice.place(), dice.in_range(0.0..=1.0, SurfaceRegion::SOFTNESS));
@@ -262,8 +262,8 @@ impl Drawn for SurfaceRegion {
     }
 }
 
-impl Drawn for DerivedMask {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for DerivedMask {
+    fn roll(dice: &mut Dice) -> Self {
         // As many kinds as there are: a new one is told by the compiler.
         let (a, b) = (dice.within(0.0, 1.0), dice.within(0.0, 1.0));
         match dice.one_of(&[
@@ -271,7 +271,7 @@ impl Drawn for DerivedMask {
             DerivedMask::CURVATURE,
             DerivedMask::RAMP_OF_DEPTH,
         ]) {
-            _ if dice.is(35) => DerivedMask::Region(SurfaceRegion::drawn(dice)),
+            _ if dice.is(35) => DerivedMask::Region(SurfaceRegion::roll(dice)),
             DerivedMask::Fresnel { .. } => DerivedMask::Fresnel { f0: a, power: 8.0 * b },
             DerivedMask::Curvature { .. } => {
                 DerivedMask::Curvature { scale: 1.0 + 6.0 * a, blur: b, from: -b, to: a }
@@ -282,8 +282,8 @@ impl Drawn for DerivedMask {
     }
 }
 
-impl Drawn for Light {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Light {
+    fn roll(dice: &mut Dice) -> Self {
         let position = dice.place().extend(dice.within(1.0, 80.0));
         let kind = match Light::default().kind {
             LightKind::Directional { .. } if dice.is(50) => LightKind::Point { position },
@@ -300,11 +300,11 @@ impl Drawn for Light {
     }
 }
 
-impl Drawn for Term {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Term {
+    fn roll(dice: &mut Dice) -> Self {
         let (color, weight) =
             (dice.value(dice.word, "color"), dice.in_range(0.0..=2.0, Term::WEIGHT));
-        Term { color, weight, scaling: Scaling::drawn(dice) }
+        Term { color, weight, scaling: Scaling::roll(dice) }
     }
 }
 
@@ -317,23 +317,23 @@ fn settings<T>(dice: &mut Dice, table: &'static [NumberSetting<T>], mut all: T) 
     all
 }
 
-impl Drawn for Shadows {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Shadows {
+    fn roll(dice: &mut Dice) -> Self {
         let numbers = settings(dice, Shadows::SETTINGS, Shadows::DEFAULT);
         let rays = 1 + dice.below(8) as u32;
         Shadows { on: dice.is(80), color: dice.value(dice.word, "color"), rays, ..numbers }
     }
 }
 
-impl Drawn for BallStrokes {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for BallStrokes {
+    fn roll(dice: &mut Dice) -> Self {
         let numbers = settings(dice, BallStrokes::SETTINGS, BallStrokes::DEFAULT);
         BallStrokes { on: dice.is(80), ..numbers }
     }
 }
 
-impl Drawn for LineSettings {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for LineSettings {
+    fn roll(dice: &mut Dice) -> Self {
         let numbers = settings(dice, LineSettings::SETTINGS, LineSettings::DEFAULT);
         let with = |kinds: LineKinds, (kind, is_in)| kinds.with(kind, is_in);
         let kinds = LineKind::ALL.map(|(kind, _)| (kind, dice.is(50)));
@@ -342,8 +342,8 @@ impl Drawn for LineSettings {
     }
 }
 
-impl Drawn for HatchSettings {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for HatchSettings {
+    fn roll(dice: &mut Dice) -> Self {
         let numbers = settings(dice, HatchSettings::SETTINGS, HatchSettings::DEFAULT);
         let style = dice.one_of(&HatchStyle::ALL.map(|(style, _)| style));
         let way = dice.one_of(&HatchWay::ALL.map(|(way, _)| way));
@@ -351,37 +351,37 @@ impl Drawn for HatchSettings {
     }
 }
 
-impl Drawn for DrawingHand {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for DrawingHand {
+    fn roll(dice: &mut Dice) -> Self {
         settings(dice, DrawingHand::SETTINGS, DrawingHand::DEFAULT)
     }
 }
 
-impl Drawn for Painter {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Painter {
+    fn roll(dice: &mut Dice) -> Self {
         let numbers = settings(dice, Painter::SETTINGS, Painter::DEFAULT);
         Painter { beneath: dice.is(50), fill_color: dice.value(dice.word, "color"), ..numbers }
     }
 }
 
-impl Drawn for PixelShading {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for PixelShading {
+    fn roll(dice: &mut Dice) -> Self {
         let bands = [0, 2, 3, 4, 5][dice.below(5)];
         let colors = (0..dice.below(4)).map(|_| dice.value(dice.word, "color")).collect();
         Self { bands, dither: dice.within(0.0, 1.0), colors }
     }
 }
 
-impl Drawn for Scaling {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Scaling {
+    fn roll(dice: &mut Dice) -> Self {
         let alpha = dice.in_range(0.05..=0.95, Scaling::INVARIANT);
         let mut gamma = || dice.in_range(0.0..=4.0, Scaling::GAMMA);
         Scaling { alpha, gamma_convex: gamma(), gamma_concave: gamma() }
     }
 }
 
-impl Drawn for Features {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Features {
+    fn roll(dice: &mut Dice) -> Self {
         let scale = |dice: &mut Dice| FeatureScale {
             curvature_scale_px: dice.in_range(1.0..=12.0, FeatureScale::CURVATURE_PX).min(100.0),
             blur_px: dice.within(0.0, 4.0),
@@ -392,8 +392,8 @@ impl Drawn for Features {
     }
 }
 
-impl Drawn for Reference {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Reference {
+    fn roll(dice: &mut Dice) -> Self {
         if dice.is(30) {
             Reference::Auto
         } else {
@@ -402,20 +402,20 @@ impl Drawn for Reference {
     }
 }
 
-impl Drawn for LayerTransform {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for LayerTransform {
+    fn roll(dice: &mut Dice) -> Self {
         let size = dice.facts.size.as_dvec2();
         let near = |dice: &mut Dice, x: f64, y: f64| -> DVec2 {
             let off = [dice.within(-12.0, 12.0), dice.within(-9.0, 9.0)].map(f64::from);
             DVec2::new(x, y) * size + DVec2::from_array(off)
         };
         let shape = match dice.is(60) {
-            true => TransformShape::Matrix(<[f64; 6]>::drawn(dice)),
+            true => TransformShape::Matrix(<[f64; 6]>::roll(dice)),
             false => TransformShape::Quad(
                 [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| near(dice, x, y)),
             ),
         };
-        let drawn = LayerTransform { shape, filter: Resampling::drawn(dice) };
+        let drawn = LayerTransform { shape, filter: Resampling::roll(dice) };
         // On a tiny canvas its corners may pass each other.
         match drawn.fits() {
             Ok(()) => drawn,
@@ -427,8 +427,8 @@ impl Drawn for LayerTransform {
     }
 }
 
-impl Drawn for BrushMode {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for BrushMode {
+    fn roll(dice: &mut Dice) -> Self {
         let (aligned, picture) = (dice.is(50), dice.is(50));
         let kinds = [
             BrushMode::Paint,
@@ -446,8 +446,8 @@ impl Drawn for BrushMode {
     }
 }
 
-impl Drawn for Symmetry {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Symmetry {
+    fn roll(dice: &mut Dice) -> Self {
         let round = Symmetry::Radial(2 + dice.below(5) as u32);
         match dice.one_of(&[
             Symmetry::None,
@@ -463,23 +463,23 @@ impl Drawn for Symmetry {
     }
 }
 
-impl Drawn for PartFor {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for PartFor {
+    fn roll(dice: &mut Dice) -> Self {
         match dice.one_of(&[PartFor::Layer, PartFor::Color, PartFor::Place]) {
             each @ (PartFor::Layer | PartFor::Color | PartFor::Place) => each,
         }
     }
 }
 
-impl Drawn for InflationPreset {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for InflationPreset {
+    fn roll(dice: &mut Dice) -> Self {
         InflationPreset(dice.one_of(&Inflation::PRESETS).0)
     }
 }
 
 /// One of another program, somewhat transparent.
-impl Drawn for PastedPicture {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for PastedPicture {
+    fn roll(dice: &mut Dice) -> Self {
         let size = Size::new(1 + dice.below(60) as u32, 1 + dice.below(50) as u32);
         let texels = (0..size.area())
             .map(|_| dice.number().to_le_bytes())
@@ -490,8 +490,8 @@ impl Drawn for PastedPicture {
 }
 
 /// Values with a form of their own in files: a brush, or a part in a new version.
-impl Drawn for Value {
-    fn drawn(dice: &mut Dice) -> Self {
+impl Roll for Value {
+    fn roll(dice: &mut Dice) -> Self {
         match dice.field {
             "part" => super::parts::changed(dice),
             _ => brush(dice),
@@ -515,7 +515,7 @@ fn brush(dice: &mut Dice) -> Value {
         ("erases", json!(dice.is(50))),
         ("softness", json!(share(dice))),
         ("seed", json!(dice.below(1000))),
-        ("mark", BrushMode::drawn(dice).to_json()),
+        ("mark", BrushMode::roll(dice).to_json()),
     ];
     for _ in 0..dice.below(4) {
         let (name, value) = dice.one_of(&more);
