@@ -27,8 +27,7 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             vec2((x / 97.0).cos() * (y / 131.0).sin(), (x / 89.0).sin() * (y / 113.0).cos()) * 0.3;
         vec3(nbar.x, -nbar.y, (1.0 - nbar.length_squared()).sqrt())
     });
-    let maps =
-        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals, depth: Plane::full(SIZE, 0.5), coverage: Plane::full(SIZE, 255) };
     Scene { size: SIZE, surface: Surface::new(maps).ok().map(Arc::new) }
 });
 
@@ -44,7 +43,7 @@ static SOURCE: LazyLock<PictureSource> = LazyLock::new(|| {
 
 fn image(operator: Operator, filter: ImageFilter, anchors: usize) -> PlacedImage {
     let at = [vec2(1920.5, 1080.5), vec2(700.5, 500.5), vec2(3000.5, 1700.5)];
-    let anchors = at[..anchors].iter().map(|&at| Anchor::fixed(at)).collect();
+    let anchors = at[..anchors].iter().map(|&at| Anchor::pin(at)).collect();
     PlacedImage {
         source: SOURCE.clone(),
         placement: Placement::covering(SIZE),

@@ -54,7 +54,7 @@ fn shaped(document: Document) -> Document {
     let maps = Maps {
         normals: Plane::from_fn(size, normal),
         depth: Plane::from_fn(size, |x, y| 0.9 - 0.5 * up(x, y) / radius),
-        coverage: Plane::filled(size, 255),
+        coverage: Plane::full(size, 255),
     };
     Document { surface: Surface::new(maps).ok().map(Arc::new), ..document }
 }

@@ -205,7 +205,7 @@ fn balls(side: f32) -> Arc<Surface> {
     };
     let normals = Plane::from_fn(SCENE, |x, y| at(x, y).0);
     let depth = Plane::from_fn(SCENE, |x, y| at(x, y).1);
-    let maps = Maps { normals, depth, coverage: Plane::filled(SCENE, 255) };
+    let maps = Maps { normals, depth, coverage: Plane::full(SCENE, 255) };
     Arc::new(Surface::new(maps).expect("a surface"))
 }
 

@@ -41,7 +41,7 @@ fn ball(size: Size) -> Scene {
     });
     let depth =
         Plane::from_fn(size, |x, y| 1.0 - (1.0 - at(x, y).length_squared()).max(0.0).sqrt());
-    let maps = Maps { normals, depth, coverage: Plane::filled(size, 255) };
+    let maps = Maps { normals, depth, coverage: Plane::full(size, 255) };
     Scene { size, surface: Surface::new(maps).ok().map(Arc::new) }
 }
 
@@ -62,7 +62,7 @@ fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Co
         outside: Outside::Mirror,
         bend: Bend {
             operator: Operator::Normal { alpha, beta: 0.0, detail: 0.0 },
-            anchors: anchors.iter().map(|&at| Anchor::fixed(at)).collect(),
+            anchors: anchors.iter().map(|&at| Anchor::pin(at)).collect(),
             ..Bend::default()
         },
         filter: ImageFilter::Antialias,

@@ -48,7 +48,7 @@ static BALL: LazyLock<Arc<Surface>> = LazyLock::new(|| {
     let normals = Plane::from_fn(SCREEN, |x, y| normal(x, y).unwrap_or(vec3(0.0, 0.0, 1.0)));
     let depth = Plane::from_fn(SCREEN, |x, y| normal(x, y).map_or(1.0, |n| 0.5 * (1.0 - n.z)));
     Arc::new(
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(SCREEN, 255) }).expect("maps"),
+        Surface::new(Maps { normals, depth, coverage: Plane::full(SCREEN, 255) }).expect("maps"),
     )
 });
 
@@ -120,9 +120,9 @@ fn brush_frame(bencher: Bencher, selected: &str) {
     let scene = Scene { size: LARGE, surface: None };
     let grid = match selected {
         "free" => None,
-        "all" => Some(CoverageGrid::filled(LARGE.rect())),
+        "all" => Some(CoverageGrid::full(LARGE.rect())),
         _ => Some(edges::feathered(
-            &CoverageGrid::filled(Rect::new(0, 0, 4096, 2000)),
+            &CoverageGrid::full(Rect::new(0, 0, 4096, 2000)),
             40.0,
             LARGE.rect(),
         )),

@@ -36,8 +36,7 @@ fn scene((width, height): (u32, u32)) -> Scene {
         let (x, y) = (x as f32 * 0.05, y as f32 * 0.07);
         vec3(0.6 * x.sin(), 0.5 * (y + x * 0.3).cos(), 1.0)
     });
-    let maps =
-        Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+    let maps = Maps { normals, depth: Plane::full(size, 0.5), coverage: Plane::full(size, 255) };
     Scene { size, surface: Some(Arc::new(Surface::new(maps).expect("a whole surface"))) }
 }
 
@@ -221,7 +220,7 @@ fn balls((width, height): (u32, u32)) -> Scene {
     let maps = Maps {
         normals: Plane::from_fn(size, |x, y| at(x, y).1),
         depth: Plane::from_fn(size, |x, y| 1.0 - at(x, y).0 / highest),
-        coverage: Plane::filled(size, 255),
+        coverage: Plane::full(size, 255),
     };
     Scene { size, surface: Some(Arc::new(Surface::new(maps).expect("a whole surface"))) }
 }

@@ -38,7 +38,7 @@ fn balls_before_a_wall() -> Maps {
     Maps {
         normals: Plane::from_fn(SIZE, |x, y| ball(x, y).unwrap_or_else(|| wall(x, y)).0),
         depth: Plane::from_fn(SIZE, |x, y| ball(x, y).unwrap_or_else(|| wall(x, y)).1),
-        coverage: Plane::filled(SIZE, 255),
+        coverage: Plane::full(SIZE, 255),
     }
 }
 
@@ -89,7 +89,7 @@ fn ball_before_a_wall() -> Surface {
     let maps = Maps {
         normals: Plane::from_fn(UNWRAPPED, |x, y| at(x, y).0),
         depth: Plane::from_fn(UNWRAPPED, |x, y| at(x, y).1),
-        coverage: Plane::filled(UNWRAPPED, 255),
+        coverage: Plane::full(UNWRAPPED, 255),
     };
     Surface::new(maps).expect("a surface")
 }
@@ -112,7 +112,7 @@ fn unwrapped_under_a_moved_anchor(bencher: Bencher, anchors: usize) {
     let at = [vec2(512.5, 512.5), vec2(300.5, 400.5), vec2(700.5, 600.5)];
     let mut bend = Bend {
         operator: Operator::Surface { amount: 1.0, smooth: 0.0 },
-        anchors: at[..anchors].iter().map(|&at| Anchor::fixed(at)).collect(),
+        anchors: at[..anchors].iter().map(|&at| Anchor::pin(at)).collect(),
         ..Bend::default()
     };
     let mut deformed = DeformedRect::default();

@@ -89,7 +89,7 @@ fn layers(list: Value, folder: &Path) -> Vec<Layer> {
     let text = json!({ "canvas": { "width": SIZE.width, "height": SIZE.height }, "layers": list })
         .to_string();
     let (file, budget) = (folder.join("a.json"), Budget::default());
-    let files = RecipeFolder::beside(&file);
+    let files = RecipeFolder::folder_of(&file);
     let source = recipe::RecipeSource { file: &file, files: &files, budget: &budget, onto: None };
     let document = recipe::read(text.as_bytes(), source).unwrap();
     document.layers.iter().map(|layer| Layer::clone(layer)).collect()

@@ -121,12 +121,12 @@ fn an_operator_without_anchors_is_pinned_at_the_center_of_the_placement() {
         let Content::Image(image) = only_layer(layer).content else { panic!("an image layer") };
         image.params().bend.anchors.clone()
     };
-    assert_eq!(anchors(Value::Null), [Anchor::fixed(vec2(3.0, 4.0))]);
+    assert_eq!(anchors(Value::Null), [Anchor::pin(vec2(3.0, 4.0))]);
     assert_eq!(anchors(json!([])), []);
     let dragged = anchors(json!([{ "at": [1, 2], "source": [5, 6] }, { "at": [7, 8] }]));
     assert_eq!(
         dragged,
-        [Anchor { at: vec2(1.0, 2.0), source: vec2(5.0, 6.0) }, Anchor::fixed(vec2(7.0, 8.0))]
+        [Anchor { at: vec2(1.0, 2.0), source: vec2(5.0, 6.0) }, Anchor::pin(vec2(7.0, 8.0))]
     );
 }
 

@@ -134,7 +134,7 @@ pub struct Surface {
 fn split_normals(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
     const AT_A_TIME: usize = 1 << 22;
     let size = normals.size();
-    let mut planes = [(); 3].map(|()| Plane::filled(size, 0.0));
+    let mut planes = [(); 3].map(|()| Plane::full(size, 0.0));
     let mut left = normals.into_values();
     while !left.is_empty() {
         let start = (left.len() - 1) / AT_A_TIME * AT_A_TIME;

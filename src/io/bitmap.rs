@@ -166,7 +166,7 @@ fn limits(format: ImageFormat, bytes: &[u8], budget: &Budget) -> image::Limits {
     limits.max_alloc = Some(match format {
         // Here the limit is for everything besides the pixels: packed texts and the unpacked
         // profile.
-        ImageFormat::Png => beside_pixels(bytes),
+        ImageFormat::Png => bytes_beside_pixels(bytes),
         // Four floats a pixel is the most that any of the formats decodes to.
         _ => budget.area_px.saturating_mul(16),
     });
@@ -174,7 +174,7 @@ fn limits(format: ImageFormat, bytes: &[u8], budget: &Budget) -> image::Limits {
 }
 
 /// What a PNG may hold in memory besides its pixels.
-pub fn beside_pixels(bytes: &[u8]) -> u64 {
+pub fn bytes_beside_pixels(bytes: &[u8]) -> u64 {
     PROFILE_BYTES + bytes.len() as u64
 }
 

@@ -17,7 +17,7 @@ pub fn is_clip(bytes: &[u8]) -> bool {
 
 /// The largest PNG in the rows of the database; `None` where there is none.
 pub fn preview(bytes: &[u8]) -> Option<Vec<u8>> {
-    let database = Database::within(bytes)?;
+    let database = Database::find_in(bytes)?;
     let (mut largest, mut gathered): (Option<Vec<u8>>, usize) = (None, 0);
     for page in 0..database.pages() {
         for cell in database.cells(page) {
@@ -47,7 +47,7 @@ struct Database<'a> {
 }
 
 impl<'a> Database<'a> {
-    fn within(file: &'a [u8]) -> Option<Self> {
+    fn find_in(file: &'a [u8]) -> Option<Self> {
         let mut at = 24usize;
         let chunk = loop {
             let head = file.get(at..at.checked_add(16)?)?;

@@ -122,7 +122,7 @@ impl<'a> ExrFile<'a> {
     /// As [`Self::read`], some rows of the display window.
     pub fn read_rows(&self, wanted: &[usize], rows: Range<usize>) -> Result<Vec<Plane<f32>>> {
         let size = Size::new(self.size.width, rows.len() as u32);
-        let mut planes = vec![Plane::filled(size, f32::NAN); wanted.len()];
+        let mut planes = vec![Plane::full(size, f32::NAN); wanted.len()];
         let targets: Vec<&ExrChannel> =
             wanted.iter().filter_map(|&w| self.channels.get(w)).collect();
         let (first, end) = (rows.start as i64, rows.end as i64);

@@ -63,7 +63,7 @@ impl RecipeFolder {
     }
 
     /// The folder of a recipe.
-    pub fn beside(recipe: &Path) -> Self {
+    pub fn folder_of(recipe: &Path) -> Self {
         Self::new(recipe.parent().unwrap_or(Path::new("")))
     }
 }
@@ -214,7 +214,7 @@ mod tests {
         fs::create_dir_all(outer.path().join("doc/sub")).unwrap();
         fs::write(outer.path().join("secret.png"), "secret").unwrap();
         fs::write(outer.path().join("doc/sub/a.png"), "inside").unwrap();
-        let folder = RecipeFolder::beside(&outer.path().join("doc/recipe.json"));
+        let folder = RecipeFolder::folder_of(&outer.path().join("doc/recipe.json"));
         (outer, folder)
     }
 

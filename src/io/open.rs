@@ -78,7 +78,7 @@ impl FileKind {
 pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let bytes = read_file(file, budget.file_bytes)?;
     let kind = FileKind::of(&bytes);
-    let files = TrackedFiles::new(RecipeFolder::beside(file));
+    let files = TrackedFiles::new(RecipeFolder::folder_of(file));
     let whole =
         |(document, notes)| ProjectContents { document, notes, is_whole: true, picture: None };
     let read = |budget: &Budget| match kind {

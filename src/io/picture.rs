@@ -38,7 +38,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let picture = if is_exr {
         light::decode(file, bytes, budget)
     } else {
-        picture_of(file, upright(file, bytes, budget)?, budget)
+        picture_of(file, decode_upright(file, bytes, budget)?, budget)
     }?;
     Ok(Picture { encoded: Some(Asset::from(bytes.to_vec())), ..picture })
 }
@@ -57,7 +57,7 @@ pub fn encode(file: &Path, picture: &Picture) -> Result<(Asset, &'static str)> {
 }
 
 /// A decoded file in its upright position.
-fn upright(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
+fn decode_upright(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let mut bitmap = bitmap::decode(file, bytes, budget)?;
     bitmap.image.apply_orientation(bitmap.orientation);
     Ok(bitmap)
@@ -80,12 +80,12 @@ fn picture_of(file: &Path, bitmap: Bitmap, budget: &Budget) -> Result<Picture> {
                 &format!("a picture of {size} pixels of 16 bits a channel"),
                 asked,
             )?;
-            let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
+            let profiled = bitmap.icc.as_deref().and_then(|icc| convert_by_profile(image, icc));
             let plain = || bitmap.image.into_rgba16().into_raw().as_chunks().0.to_vec();
             Picture::srgb16(size, profiled.unwrap_or_else(plain))
         }
         image => {
-            let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
+            let profiled = bitmap.icc.as_deref().and_then(|icc| convert_by_profile(image, icc));
             let profiled = profiled.map(|texels| texels.iter().map(|t| t.map(byte)).collect());
             let plain = || bitmap.image.into_rgba8().into_raw().as_chunks().0.to_vec();
             Picture::srgb8(size, profiled.unwrap_or_else(plain))
@@ -163,7 +163,7 @@ fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
     srgb::quantize(srgb::luminance(r, g, b) * a)
 }
 
-/// Straight RGBA bytes in the colors of an ICC profile as sRGB; unchanged if `through_profile`
+/// Straight RGBA bytes in the colors of an ICC profile as sRGB; unchanged if `convert_by_profile`
 /// finds nothing to do.
 ///
 /// * `is_gray`: red, green and blue are equal, and the profile is one of gray.
@@ -179,7 +179,7 @@ pub fn to_srgb(size: Size, rgba: Vec<u8>, is_gray: bool, icc: &[u8]) -> Vec<u8> 
     } else {
         DynamicImage::ImageRgba8(image)
     };
-    match through_profile(&image, icc) {
+    match convert_by_profile(&image, icc) {
         Some(texels) => texels.into_flattened().into_iter().map(byte).collect(),
         None => image.into_rgba8().into_raw(),
     }
@@ -194,14 +194,14 @@ pub fn to_srgb16(size: Size, texels: Vec<[u16; 4]>, is_gray: bool, icc: &[u8]) -
         let four = texels.as_flattened().to_vec();
         image::ImageBuffer::from_raw(size.width, size.height, four).map(DynamicImage::ImageRgba16)
     };
-    image.and_then(|image| through_profile(&image, icc)).unwrap_or(texels)
+    image.and_then(|image| convert_by_profile(&image, icc)).unwrap_or(texels)
 }
 
 /// Straight sRGB of an integer image in the colors of its ICC profile, 16 bits a channel.
 ///
 /// `None` where the profile is sRGB as far as a byte can tell (so that such files keep their
 /// bytes), does not belong to the image's kind of color, or cannot be used.
-fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
+fn convert_by_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
     let profile = ColorProfile::new_from_slice(icc).ok()?;
     let gray = matches!(
         image,

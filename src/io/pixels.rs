@@ -207,7 +207,7 @@ pub fn decode_png(bytes: &[u8]) -> Option<Vec<u8>> {
 ///
 /// A row of tiles at a time, so that only this is in memory twice.
 pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Painted> {
-    let limits = png::Limits { bytes: usize::try_from(bitmap::beside_pixels(bytes)).ok()? };
+    let limits = png::Limits { bytes: usize::try_from(bitmap::bytes_beside_pixels(bytes)).ok()? };
     let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().ok()?;
@@ -296,12 +296,12 @@ fn to_rgba<T: Copy>(
 /// The smallest rectangle that holds every pixel that is not transparent.
 fn painted_rect(tiles: &TileGrid, within: Option<Rect>) -> Rect {
     tiles.iter().fold(Rect::EMPTY, |bounds, (at, tile)| {
-        let rect = painted_rect_of(at, tile);
+        let rect = painted_rect_in_tile(at, tile);
         bounds.union(within.map_or(rect, |within| rect.intersect(within)))
     })
 }
 
-fn painted_rect_of(at: TileAt, tile: &Tile) -> Rect {
+fn painted_rect_in_tile(at: TileAt, tile: &Tile) -> Rect {
     let tile_rect = at.rect();
     if tile.is_opaque() {
         return tile_rect;

@@ -110,7 +110,7 @@ pub fn load(file: &Path, budget: &Budget) -> Result<Document> {
 /// Loads a recipe and puts it on another object; its canvas stays, the maps are fitted to it.
 pub fn load_onto(file: &Path, budget: &Budget, onto: Option<OtherSurface>) -> Result<Document> {
     let text = files::read_file(file, budget.json_bytes)?;
-    read(&text, RecipeSource { file, files: &RecipeFolder::beside(file), budget, onto })
+    read(&text, RecipeSource { file, files: &RecipeFolder::folder_of(file), budget, onto })
 }
 
 /// Reads a document from its JSON.

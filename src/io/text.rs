@@ -52,7 +52,7 @@ pub fn lay_out(text: &Text, budget: &Budget) -> Result<TextPicture> {
     let lines = lines(text)?;
     let tree = parse(&markup::of_lines(text, &lines))?;
     let bounds = bounds(&tree);
-    let outlines = markup::within(&tree.to_string(&WriteOptions::default()), bounds);
+    let outlines = markup::drawing_within(&tree.to_string(&WriteOptions::default()), bounds);
     let outlines = outlines.ok_or_else(|| Error::decode(file, "the text has no outlines"))?;
     let picture = svg::decode(file, outlines.as_bytes(), budget)?;
     let origin = vec2(-bounds.x0 as f32, -bounds.y0 as f32);

@@ -184,7 +184,7 @@ impl Dialog {
             Dialog::Maps(maps) => maps.show(ui, session),
             Dialog::Losses(losses) => losses.show(ui),
             Dialog::Palette(palette) => palette.show(ui, session, &settings.keymap, requests),
-            Dialog::About => help::about(ui),
+            Dialog::About => help::show_about(ui),
             Dialog::Preferences(_) | Dialog::Path(_) => DialogAnswer::Close,
         }
     }

@@ -213,7 +213,11 @@ fn a_second_view_shows_the_document_until_it_is_asked_to_go() {
     harness.drop_at(view.center() + vec2(30.0, 20.0));
     steps(&mut harness);
     let open = session(&harness).active().unwrap();
-    assert_eq!((open.view, open.history.past().len()), (before, 0), "nothing is painted or moved");
+    assert_eq!(
+        (open.view, open.history.past_names().len()),
+        (before, 0),
+        "nothing is painted or moved"
+    );
     command(&mut harness, "Second view");
     assert!(harness.query_by_label("Second view").is_none());
 }

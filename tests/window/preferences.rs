@@ -80,7 +80,7 @@ fn undo_steps_limit_the_documents_that_are_open() {
     for _ in 0..14 {
         command(&mut harness, "New fill layer");
     }
-    assert_eq!(session(&harness).active().unwrap().history.past().len(), 12);
+    assert_eq!(session(&harness).active().unwrap().history.past_names().len(), 12);
 }
 
 /// Whether a press takes the color under the pen while this is held.
@@ -117,6 +117,6 @@ fn a_color_is_taken_with_ctrl_or_alt_by_choice() {
         key(&mut harness, Modifiers::NONE, Key::D);
         assert_eq!(takes_color(&mut harness, held), takes, "{held:?}");
     }
-    let drawn = session(&harness).active().unwrap().history.past().len();
+    let drawn = session(&harness).active().unwrap().history.past_names().len();
     assert_eq!(drawn, 1, "Alt draws now");
 }

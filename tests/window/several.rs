@@ -99,7 +99,7 @@ fn guides_are_pulled_out_of_a_ruler_and_dragged_back() {
     let moved = guides(&harness);
     assert_eq!(moved.len(), 1);
     let done: Vec<String> =
-        session(&harness).active().unwrap().history.past().map(str::to_owned).collect();
+        session(&harness).active().unwrap().history.past_names().map(str::to_owned).collect();
     assert_eq!(done, ["Add guide", "Move guide"]);
     drag(&mut harness, vec2(-37.0, 0.0), ruler);
     assert!(guides(&harness).is_empty());

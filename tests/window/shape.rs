@@ -115,7 +115,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     assert_eq!(layers(&harness).len(), 3);
     let (steps_done, document) = {
         let open = session(&harness).active().unwrap();
-        (open.history.past().count(), open.document().clone())
+        (open.history.past_names().count(), open.document().clone())
     };
     // The shape, the puff, the touch, the sculpting, the stroke: one step each.
     assert_eq!(steps_done, 5);

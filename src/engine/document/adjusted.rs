@@ -95,7 +95,7 @@ mod tests {
         let id = document.layers[0].id;
         let whole = document.with_paint_adjusted(id, &invert).unwrap();
         assert_eq!(pixel(&whole, 3, 3), [215, 165, 55, 255]);
-        let half = CoverageGrid::filled(Rect::new(0, 0, 50, 70));
+        let half = CoverageGrid::full(Rect::new(0, 0, 50, 70));
         let document = document.with_selection(Some(Selection::new(half)));
         let part = document.with_paint_adjusted(id, &invert).unwrap();
         assert_eq!(pixel(&part, 49, 30), [215, 165, 55, 255]);

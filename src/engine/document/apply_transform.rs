@@ -31,7 +31,7 @@ impl Document {
     /// no such transform.
     pub fn transform_to_canvas(&self, id: LayerId) -> Option<Option<LayerTransform>> {
         let (layer, around) = (self.layer(id)?, self.map_around(id)?);
-        transform_of(&around.outside(layer.on.as_ref()).inverse(), &around.within(layer))
+        transform_of(&around.map_outside(layer.on.as_ref()).inverse(), &around.within(layer))
     }
 }
 
@@ -81,7 +81,7 @@ fn hand_down_transform(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     if is_in_place(group, &was) {
         return Some(Layer::clone(group));
     }
-    let transform = transform_of(&around.outside(group.on.as_ref()).inverse(), &was)?;
+    let transform = transform_of(&around.map_outside(group.on.as_ref()).inverse(), &was)?;
     let bare = Layer { transform, ..Layer::clone(group) };
     let now = around.within(&bare);
     let inner = group.content.group()?.layers.iter();
@@ -123,7 +123,7 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
         }
         content => Some(content.clone()),
     };
-    let transform = transform_of(&around.outside(layer.on.as_ref()).inverse(), &map);
+    let transform = transform_of(&around.map_outside(layer.on.as_ref()).inverse(), &map);
     let (Some(content), Some(transform)) = (content, transform) else { return layer.clone() };
     let mut next =
         Layer { content, transform, liquify: None, mask: seen.mask.clone(), ..Layer::clone(layer) };

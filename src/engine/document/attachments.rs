@@ -259,8 +259,9 @@ fn preserve_look_on(
     (old, new): (&LayerMap, &LayerMap),
     replace: &ReplaceAttachment,
 ) -> Option<Arc<Layer>> {
-    let (was, outside) = (old.within(layer), new.outside(on.as_ref()));
-    let (stood, mut next) = (old.outside(layer.on.as_ref()), Layer { on, ..Layer::clone(layer) });
+    let (was, outside) = (old.within(layer), new.map_outside(on.as_ref()));
+    let (stood, mut next) =
+        (old.map_outside(layer.on.as_ref()), Layer { on, ..Layer::clone(layer) });
     if stood != outside {
         // From the list that it was in to the one that it is in.
         let outer = stood.then(&outside.inverse());

@@ -95,7 +95,8 @@ impl Document {
             }
             Content::Group(group) => {
                 let mut group = group.clone();
-                group.layers = group.layers.iter().map(|inner| Arc::new(afresh(inner))).collect();
+                group.layers =
+                    group.layers.iter().map(|inner| Arc::new(with_fresh_ids(inner))).collect();
                 next.content = Content::Group(group);
                 next.mask = Some(shown.narrowed_mask(old, covered));
             }
@@ -184,10 +185,10 @@ fn narrowed(stroke: &Stroke, to: &CoverageGrid) -> Stroke {
 }
 
 /// The same layer and those in it under fresh ids.
-fn afresh(layer: &Layer) -> Layer {
+fn with_fresh_ids(layer: &Layer) -> Layer {
     let mut next = Layer { id: LayerId::fresh(), ..layer.clone() };
     if let Some(group) = next.content.group_mut() {
-        group.layers = group.layers.iter().map(|inner| Arc::new(afresh(inner))).collect();
+        group.layers = group.layers.iter().map(|inner| Arc::new(with_fresh_ids(inner))).collect();
     }
     next
 }
@@ -266,16 +267,16 @@ mod tests {
     fn only_the_strokes_that_meet_it_are_copied_and_the_others_stay_the_very_same() {
         let document = layers();
         let strokes = &document.layers[1];
-        let top = CoverageGrid::filled(Rect::new(0, 0, 200, 60));
+        let top = CoverageGrid::full(Rect::new(0, 0, 200, 60));
         let copied = document.copy_covered(strokes.id, &top).unwrap();
         let Content::Strokes(live) = &copied.content else { panic!("strokes") };
         assert_eq!(live.params().strokes.len(), 1);
         let left = document.with_cleared(strokes.id, &top).unwrap();
         let (old, new) = (document.strokes(strokes.id), left.strokes(strokes.id));
         assert!(Arc::ptr_eq(&old[1], new.last().unwrap()));
-        let nothing = CoverageGrid::filled(Rect::new(0, 70, 200, 80));
+        let nothing = CoverageGrid::full(Rect::new(0, 70, 200, 80));
         assert!(document.copy_covered(strokes.id, &nothing).is_none());
-        let all = CoverageGrid::filled(SIZE.rect());
+        let all = CoverageGrid::full(SIZE.rect());
         assert!(document.with_cleared(strokes.id, &all).unwrap().strokes(strokes.id).is_empty());
     }
 

@@ -161,7 +161,7 @@ impl Diff<'_> {
                 return self.report_both(old, new);
             };
             let unmoved = Arc::new(Layer { liquify: old.liquify.clone(), ..Layer::clone(new) });
-            let tiles = self.around(new, tiles);
+            let tiles = self.with_effect_reach(new, tiles);
             return self.report_tiles(tiles) | self.compare_layers(old, &unmoved, beneath);
         }
         if let (Some(a), Some(b)) = (&old.mask, &new.mask)
@@ -173,7 +173,7 @@ impl Diff<'_> {
             // If a mask was painted on, only some of its tiles differ.
             let Some(tiles) = a.changed_tiles(b) else { return self.report_both(old, new) };
             let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
-            let tiles = self.around(new, tiles);
+            let tiles = self.with_effect_reach(new, tiles);
             return self.report_tiles(tiles) | self.compare_layers(old, &unmasked, beneath);
         }
         if let (Some(a), Some(b)) = (old.content.group(), new.content.group())
@@ -202,7 +202,7 @@ impl Diff<'_> {
             Changed::Wholly => self.report_both(old, new),
             // Paint was displaced when it was taken to the canvas.
             Changed::Tiles(tiles) if matches!(new.content, Content::Pixels(_)) => {
-                let tiles = self.around(new, tiles);
+                let tiles = self.with_effect_reach(new, tiles);
                 self.report_tiles(tiles)
             }
             Changed::Tiles(tiles) => {
@@ -233,12 +233,12 @@ impl Diff<'_> {
         let own = std::mem::replace(&mut self.changed, before);
         let own: Vec<TileAt> = own.into_iter().collect();
         let shown = warp.map_or_else(|| own.clone(), |warp| warp.showing(&own));
-        let shown = self.around(layer, shown);
+        let shown = self.with_effect_reach(layer, shown);
         self.report_tiles(shown) | is_any
     }
 
     /// Tiles of a layer, with those that its effects change with them.
-    fn around(&self, layer: &Layer, tiles: Vec<TileAt>) -> Vec<TileAt> {
+    fn with_effect_reach(&self, layer: &Layer, tiles: Vec<TileAt>) -> Vec<TileAt> {
         if layer.effects.is_empty() || tiles.is_empty() {
             return tiles;
         }
@@ -317,7 +317,7 @@ impl Diff<'_> {
             Touched::Rects(rects) => rects.into_iter().flat_map(TileAt::covering).collect(),
             Touched::Tiles(tiles) => tiles,
         };
-        let tiles = self.around(&layer, touched);
+        let tiles = self.with_effect_reach(&layer, touched);
         self.report_tiles(tiles)
     }
 

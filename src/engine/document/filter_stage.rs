@@ -127,7 +127,7 @@ impl StoredTile {
         }
         for (y, row) in pixels.rows_mut().iter_mut().enumerate() {
             for x in 0..TILE {
-                row.set(x, over(self.pixel(x, y), row.pixel(x), keeps_alpha));
+                row.set(x, compose_over(self.pixel(x, y), row.pixel(x), keeps_alpha));
             }
         }
     }
@@ -139,7 +139,7 @@ impl StoredTile {
             let (x, y) = ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
             let row = &mut pixels.rows_mut()[place / TILE];
             let old = row.pixel(place % TILE);
-            row.set(place % TILE, over(self.pixel(x, y), old, keeps_alpha));
+            row.set(place % TILE, compose_over(self.pixel(x, y), old, keeps_alpha));
         }
     }
 }
@@ -157,7 +157,7 @@ crate::widest! {
 
 /// A filtered pixel in the place of an old one.
 #[inline(always)]
-fn over(filtered: [f32; 4], old: [f32; 4], keeps_alpha: bool) -> [f32; 4] {
+fn compose_over(filtered: [f32; 4], old: [f32; 4], keeps_alpha: bool) -> [f32; 4] {
     if !keeps_alpha {
         return filtered;
     }

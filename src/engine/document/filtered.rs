@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(pixel(&whole, 3, 0), [200, 0, 0, 255]);
         let [r, _, _, a] = pixel(&whole, 82, 30);
         assert!((70..110).contains(&a) && r.abs_diff((f32::from(a) * 200.0 / 255.0) as u8) <= 1);
-        let upper = CoverageGrid::filled(Rect::new(0, 0, 160, 35));
+        let upper = CoverageGrid::full(Rect::new(0, 0, 160, 35));
         let selected = document.with_selection(Some(Selection::new(upper)));
         let part = selected.with_paint_filtered(id, &blur()).unwrap();
         assert_eq!(pixel(&part, 82, 20), pixel(&whole, 82, 20));

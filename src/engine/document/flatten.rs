@@ -141,7 +141,7 @@ impl Document {
     /// from which nothing is made again: it has no parts.
     pub fn with_only(&self, ids: &[LayerId]) -> Option<Document> {
         Some(Document {
-            layers: alone(&self.layers, ids, true)?,
+            layers: isolate(&self.layers, ids, true)?,
             parts: Arc::default(),
             ..self.clone()
         })
@@ -151,12 +151,12 @@ impl Document {
 /// The same without the hidden ones, which parts may be made of: to be seen, not to be shaped
 /// again.
 fn without_others(document: &Document, ids: &[LayerId]) -> Option<Document> {
-    Some(Document { layers: alone(&document.layers, ids, false)?, ..document.clone() })
+    Some(Document { layers: isolate(&document.layers, ids, false)?, ..document.clone() })
 }
 
 /// The layers with all hidden except some, or without those; `None` if none of the wanted ones is
 /// among them.
-fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<Vec<Arc<Layer>>> {
+fn isolate(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<Vec<Arc<Layer>>> {
     let (mut found, mut base_is_shown) = (false, false);
     let shown = layers.iter().filter_map(|layer| {
         let is_shown = ids.contains(&layer.id);
@@ -168,7 +168,8 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<V
             found = true;
             return Some(Arc::new(Layer { visible: true, clip_below, ..Layer::clone(layer) }));
         }
-        let inner = layer.content.group().and_then(|group| alone(&group.layers, ids, keeps_hidden));
+        let inner =
+            layer.content.group().and_then(|group| isolate(&group.layers, ids, keeps_hidden));
         if let Some(layers) = inner {
             found = true;
             let content = Content::Group(Group { layers, pass_through: true });
@@ -193,12 +194,12 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId], keeps_hidden: bool) -> Option<V
 impl PreparedDocument {
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
-        self.alone_in_tile(at).or_else(|| self.compose_tile(at, None).quantize().map(Arc::new))
+        self.sole_tile(at).or_else(|| self.compose_tile(at, None).quantize().map(Arc::new))
     }
 
     /// The tile of the topmost layer where nothing else is seen: what composing would give, to the
     /// byte.
-    fn alone_in_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
+    fn sole_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         if self.contours.as_ref().is_some_and(|contours| contours.on(at).is_some()) {
             return None;
         }
@@ -220,7 +221,7 @@ impl PreparedDocument {
     /// A tile as a paint layer holds it: as it shows, but with 16 bits where it is soft, or shows a
     /// picture that has them.
     fn paint_tile(&self, at: TileAt, floats: &FloatTiles) -> Option<Arc<Tile>> {
-        let alone = self.alone_in_tile(at).filter(|tile| tile.is_16_bit());
+        let alone = self.sole_tile(at).filter(|tile| tile.is_16_bit());
         let was_16_bit = || {
             self.stack.iter().any(|node| node.has_16_bit_paint(at) || node.has_16_bit_picture(at))
         };

@@ -98,7 +98,7 @@ impl FloatTiles {
                 let done = |at, tile| {
                     found.lock().unwrap_or_else(PoisonError::into_inner).insert(key(at), tile);
                 };
-                marks.together(scene, tiles, progress, &done);
+                marks.render_together(scene, tiles, progress, &done);
             }
         });
         self.together = found.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -119,7 +119,7 @@ impl<T> History<T> {
     }
 
     /// The names of the edits that were made, oldest first.
-    pub fn past(&self) -> impl ExactSizeIterator<Item = &str> {
+    pub fn past_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.past_labels().map(|label| label.name.as_str())
     }
 

@@ -12,7 +12,7 @@ use std::sync::Arc;
 impl Document {
     /// How many layers lie beneath the ink on top of all: the place of new layers, so that lines stay
     /// on top.
-    pub fn below_top_ink(&self) -> usize {
+    pub fn layers_below_top_ink(&self) -> usize {
         let is_ink = |layer: &Arc<Layer>| matches!(layer.content, Content::Ink(_));
         self.layers.iter().rposition(|layer| !is_ink(layer)).map_or(0, |last| last + 1)
     }

@@ -114,16 +114,16 @@ mod tests {
     const SIZE: Size = Size::new(80, 40);
 
     fn document(layers: Vec<Layer>) -> Document {
-        let (depth, coverage) = (Plane::filled(SIZE, 0.5), Plane::filled(SIZE, 255));
+        let (depth, coverage) = (Plane::full(SIZE, 0.5), Plane::full(SIZE, 255));
         let surface =
-            Surface::new(Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage }).unwrap();
+            Surface::new(Maps { normals: Plane::full(SIZE, Vec3::Z), depth, coverage }).unwrap();
         let layers = layers.into_iter().map(Arc::new).collect();
         Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(SIZE) }
     }
 
     /// Detail that leans everywhere to the right.
     fn leaning(strength: f32) -> NormalLayer {
-        let map = Arc::new(DetailMap::new(Plane::filled(Size::new(4, 4), vec3(0.6, 0.0, 0.8))));
+        let map = Arc::new(DetailMap::new(Plane::full(Size::new(4, 4), vec3(0.6, 0.0, 0.8))));
         let texels = vec![[204, 128, 230, 255]; 16];
         let picture = crate::raster::Picture::srgb8(Size::new(4, 4), texels).unwrap();
         let picture = PictureSource::new("d.png".into(), picture, Default::default());

@@ -47,7 +47,7 @@ impl Document {
     pub fn with_combined(&self, new: Selection, how: SelectionMode) -> Document {
         let canvas = self.size.rect();
         let new = new.within(canvas);
-        let all = || CoverageGrid::filled(canvas);
+        let all = || CoverageGrid::full(canvas);
         let both = match (how, self.active_coverage()) {
             (SelectionMode::Replace, _) | (SelectionMode::Add | SelectionMode::Intersect, None) => {
                 new
@@ -119,7 +119,7 @@ impl Document {
 
     /// How far a layer covers each pixel of the canvas by its mask; fully if it has none.
     pub fn mask_coverage(&self, layer: &Layer) -> CoverageGrid {
-        let Some(mask) = &layer.mask else { return CoverageGrid::filled(self.size.rect()) };
+        let Some(mask) = &layer.mask else { return CoverageGrid::full(self.size.rect()) };
         let scene = self.scene_of(layer.id).unwrap_or_else(|| self.scene());
         match mask.as_picture(&scene) {
             LayerMask { kind: MaskKind::File { coverage, .. }, invert, .. } => {

@@ -187,7 +187,7 @@ impl<'s> PlacedDab<'s> {
             };
         }
         let mut add = |span: PixelSpan, tip: &RoundTip, out: RowPaint| match &field {
-            Some(field) => fill_bent_row(field.around(span), tip, row, out),
+            Some(field) => fill_bent_row(field.span_neighbors(span), tip, row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
         // The stroke tile applies the ceiling, because it knows the coverage.
@@ -363,7 +363,7 @@ impl<'f> DeformationField<'f> {
     }
 
     #[inline(always)]
-    fn around(&self, span: PixelSpan) -> SpanNeighbors<'f> {
+    fn span_neighbors(&self, span: PixelSpan) -> SpanNeighbors<'f> {
         let start = |y: i32| {
             (y - self.corner.1) as usize * self.width + (span.x - 1 - self.corner.0) as usize
         };

@@ -157,7 +157,7 @@ impl DabWalker {
         let curve = CurveSegment::new(before, from.at, to.at, Some(after.at));
         let walk = self.walk.get_or_insert_with(|| Walk::from(from));
         walk.from = from;
-        walk.along(&curve, to, &self.rules, dabs);
+        walk.follow_curve(&curve, to, &self.rules, dabs);
         if before.is_some() {
             self.places.remove(0);
         }
@@ -170,14 +170,14 @@ impl DabWalker {
         let mut walk = self.walk.unwrap_or_else(|| Walk::from(first));
         match self.places[..] {
             [only] => walk.begin(only, Vec2::ZERO, &self.rules, &mut dabs),
-            [from, to] => walk.along(
+            [from, to] => walk.follow_curve(
                 &CurveSegment::new(None, from.at, to.at, None),
                 to,
                 &self.rules,
                 &mut dabs,
             ),
             [before, from, to] => {
-                walk.along(
+                walk.follow_curve(
                     &CurveSegment::new(Some(before.at), from.at, to.at, None),
                     to,
                     &self.rules,

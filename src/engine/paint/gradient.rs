@@ -62,7 +62,7 @@ impl Gradient {
     /// The *where*: both ends are anchors, and their weights change along the segment (MATH 2).
     pub fn bend(&self) -> Bend {
         let on_canvas = |p: Vec2| self.frame.to_canvas(p).unwrap_or(p);
-        let anchors = vec![Anchor::fixed(on_canvas(self.from)), Anchor::fixed(on_canvas(self.to))];
+        let anchors = vec![Anchor::pin(on_canvas(self.from)), Anchor::pin(on_canvas(self.to))];
         Bend {
             operator: self.operator,
             anchors,

@@ -162,7 +162,7 @@ fn luminance(texture: &Texture) -> Plane<f32> {
         (0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)) / 255.0
     };
     let values = level.texels.iter().map(gray).collect();
-    Plane::from_values(level.size, values).unwrap_or_else(|| Plane::filled(level.size, 1.0))
+    Plane::from_values(level.size, values).unwrap_or_else(|| Plane::full(level.size, 1.0))
 }
 
 #[cfg(test)]

@@ -235,7 +235,7 @@ impl LiquifyStroke {
 
 fn slope_of(surface: &Surface, p: Vec2) -> Vec2 {
     // Image axes: y down.
-    surface.at_point(p).map_or(Vec2::ZERO, |at| at.nbar / at.nz.max(LEAST_FACING))
+    surface.values_at(p).map_or(Vec2::ZERO, |at| at.nbar / at.nz.max(LEAST_FACING))
 }
 
 /// How much longer a direction is along a surface than as seen: √(1 + (s · d)²).
@@ -343,7 +343,7 @@ mod tests {
 
     #[test]
     fn what_is_not_selected_stays() {
-        let selected = CoverageGrid::filled(Rect::new(0, 0, 200, 300));
+        let selected = CoverageGrid::full(Rect::new(0, 0, 200, 300));
         let mut lattice = Lattice::default();
         let settings = of(LiquifyTool::Grow);
         let mut stroke = LiquifyStroke::new(

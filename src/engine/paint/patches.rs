@@ -46,7 +46,15 @@ impl Patches {
             for (axis, plane) in [&positions.x, &positions.y].into_iter().enumerate() {
                 let row = |dy: usize| &plane[here - stride + dy * stride..][..n];
                 let [left, right, up, down] = self.edges.each_mut().map(|edge| &mut edge[axis][..]);
-                linked_edges(&plane[here - 1..][..n + 2], row(0), row(2), left, right, up, down);
+                fill_linked_edges(
+                    &plane[here - 1..][..n + 2],
+                    row(0),
+                    row(2),
+                    left,
+                    right,
+                    up,
+                    down,
+                );
             }
         } else {
             self.edges_where_linked(positions, (here, stride), texels_from_canvas);
@@ -124,7 +132,7 @@ fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
 crate::widest! {
     /// Halfway to the left, right, upper and lower neighbors of a row that is linked to all of
     /// them; `row` has one pixel more at each end.
-    fn linked_edges(
+    fn fill_linked_edges(
         row: &[f32],
         above: &[f32],
         below: &[f32],

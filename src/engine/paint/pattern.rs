@@ -114,7 +114,7 @@ fn equalize(plane: &Plane<f32>) -> Plane<f32> {
     let mut order: Vec<u32> = (0..plane.values().len() as u32).collect();
     order.sort_by(|&a, &b| plane.values()[a as usize].total_cmp(&plane.values()[b as usize]));
     let per_rank = 1.0 / order.len().max(1) as f32;
-    let mut out = Plane::filled(plane.size(), 0.0);
+    let mut out = Plane::full(plane.size(), 0.0);
     for (rank, at) in order.into_iter().enumerate() {
         out.values_mut()[at as usize] = (rank as f32 + 0.5) * per_rank;
     }
@@ -128,7 +128,7 @@ fn equalize(plane: &Plane<f32>) -> Plane<f32> {
 /// * `side`: of the square, texels.
 pub fn bristles(count: u32, seed: u32, side: u32) -> Plane<f32> {
     let size = Size::new(side.max(1), side.max(1));
-    let mut plane = Plane::filled(size, 0.0);
+    let mut plane = Plane::full(size, 0.0);
     let half = 0.5 * size.longer_side();
     let count = count.max(1);
     for i in 0..count {

@@ -146,9 +146,9 @@ mod tests {
         let size = Size::new(200, 100);
         let normals =
             Plane::from_fn(size, |x, _| if x < 100 { Vec3::Z } else { vec3(0.6, 0.0, 0.8) });
-        let coverage = Plane::filled(size, 255);
+        let coverage = Plane::full(size, 255);
         let surface =
-            Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+            Surface::new(Maps { normals, depth: Plane::full(size, 0.5), coverage }).unwrap();
         Scene { size, surface: Some(Arc::new(surface)) }
     }
 

@@ -296,7 +296,7 @@ fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha:
         let Some(row) = tile.rows_mut().get_mut((y - corner.y0) as usize) else { continue };
         for (x, &color) in (area.x0..area.x1).zip(colors) {
             let column = (x - corner.x0) as usize;
-            let mixed = toward(row.pixel(column), color, touch.share(x, y), keeps_alpha);
+            let mixed = move_toward(row.pixel(column), color, touch.share(x, y), keeps_alpha);
             put(row, column, mixed);
         }
     }
@@ -304,7 +304,7 @@ fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha:
 
 /// A premultiplied pixel moved by a ratio toward a color; if it keeps its alpha, only hue and
 /// brightness change.
-fn toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f32; 4] {
+fn move_toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f32; 4] {
     let mixed: [f32; 4] = std::array::from_fn(|c| pixel[c] + (color[c] - pixel[c]) * share);
     if !keeps_alpha {
         return mixed;

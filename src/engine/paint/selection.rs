@@ -59,7 +59,7 @@ impl Selection {
     pub fn of_region(region: SurfaceRegion, scene: &Scene) -> Self {
         let coverage = match &scene.surface {
             Some(surface) => CoverageGrid::clone(&surface.region(&region)),
-            None => CoverageGrid::filled(scene.size.rect()),
+            None => CoverageGrid::full(scene.size.rect()),
         };
         Self { coverage, made: Some(region), found: Some(FoundOn::new(scene)) }
     }
@@ -213,7 +213,7 @@ mod tests {
         let scene = Scene { size: Size::new(100, 70), surface: None };
         let region = SurfaceRegion::new(Default::default(), vec2(5.0, 5.0));
         let selection = Selection::of_region(region, &scene);
-        assert!(selection.coverage.is_same(&CoverageGrid::filled(Rect::new(0, 0, 100, 70))));
+        assert!(selection.coverage.is_same(&CoverageGrid::full(Rect::new(0, 0, 100, 70))));
         assert!(selection.found_on(&scene).is_none(), "it was found there");
         let wide = Scene { size: Size::new(120, 70), surface: None };
         assert_eq!(

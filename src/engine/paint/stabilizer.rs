@@ -214,9 +214,9 @@ mod tests {
         let size = Size::new(400, 40);
         let slope = vec3(-2.0, 0.0, 1.0).normalize();
         let maps = Maps {
-            normals: Plane::filled(size, slope),
+            normals: Plane::full(size, slope),
             depth: Plane::from_fn(size, |x, _| 1.0 - x as f32 / 400.0),
-            coverage: Plane::filled(size, 255),
+            coverage: Plane::full(size, 255),
         };
         let scene = Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
         let drawn = |stabilizer, stabilizer_on, way: Vec2| {

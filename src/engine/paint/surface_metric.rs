@@ -31,7 +31,7 @@ impl SurfaceMetric {
         let on = |(x, y, share): (usize, usize, f32)| {
             share * (surface.stretch(x, y, self.amount) * along).length()
         };
-        let length: f32 = surface.linked_pixels_around(at).map(on).sum();
+        let length: f32 = surface.linked_pixels(at).map(on).sum();
         if length.is_finite() && length > 0.0 { length } else { 1.0 }
     }
 }

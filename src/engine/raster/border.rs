@@ -17,7 +17,7 @@ pub fn outermost(size: Size) -> Vec<usize> {
 /// their index.
 pub fn connected_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     let (w, h) = (size.width as usize, size.height as usize);
-    let mut found = Plane::filled(size, false);
+    let mut found = Plane::full(size, false);
     // No file has more pixels than 32 bits count.
     let mut front: Vec<u32> =
         outermost(size).into_iter().filter(|&i| is(i)).map(|i| i as u32).collect();

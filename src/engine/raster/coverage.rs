@@ -133,7 +133,7 @@ impl Grid<CoverageTile> {
     }
 
     /// Every pixel of a rectangle.
-    pub fn filled(rect: Rect) -> Self {
+    pub fn full(rect: Rect) -> Self {
         Self::gather(rect, |at| {
             if at.rect().intersect(rect) == at.rect() {
                 return Some(CoverageTile::whole());
@@ -159,7 +159,7 @@ impl Grid<CoverageTile> {
 
     /// The coverage of a rectangle as a map.
     pub fn to_plane(&self, rect: Rect) -> Plane<u8> {
-        let mut plane = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
+        let mut plane = Plane::full(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
         if rect.is_empty() {
             return plane;
         }
@@ -252,7 +252,7 @@ impl Grid<CoverageTile> {
 
     /// The uncovered part of a rectangle; nothing beyond it.
     pub fn inverted(&self, rect: Rect) -> Self {
-        Self::filled(rect).combined(self, |whole, own| whole.saturating_sub(own))
+        Self::full(rect).combined(self, |whole, own| whole.saturating_sub(own))
     }
 
     /// The part within a rectangle.
@@ -260,7 +260,7 @@ impl Grid<CoverageTile> {
         if self.bounds().intersect(rect) == self.bounds() {
             return self.clone();
         }
-        Self::filled(rect).combined(self, u8::min)
+        Self::full(rect).combined(self, u8::min)
     }
 
     /// The same coverage elsewhere: moved by whole pixels, byte for byte.

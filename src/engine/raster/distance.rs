@@ -17,17 +17,17 @@ pub fn squared_distances(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
     // Bands of rows, each with enough rows around it that no nearer mark lies beyond.
     let around = usize::from(limit);
     let band = (2 * around).max(LEAST_BAND);
-    let mut out = Plane::filled(marked.size(), 0u16);
+    let mut out = Plane::full(marked.size(), 0u16);
     out.values_mut().par_chunks_mut(band * width).enumerate().for_each_init(
         Vec::new,
         |columns, (i, out)| {
             let (first, rows) = (i * band, out.len() / width);
             let from = first.saturating_sub(around);
             let to = (first + rows + around).min(height);
-            along_columns(&marked.values()[from * width..to * width], width, limit + 1, columns);
+            fill_columns(&marked.values()[from * width..to * width], width, limit + 1, columns);
             let own = &columns[(first - from) * width..][..out.len()];
             for (row, own) in out.chunks_exact_mut(width).zip(own.chunks_exact(width)) {
-                along_row(own, limit, row);
+                fill_row(own, limit, row);
             }
         },
     );
@@ -38,7 +38,7 @@ pub fn squared_distances(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
 const LEAST_BAND: usize = 64;
 
 /// Distances down and up the columns of some rows, at most `far`.
-fn along_columns(marked: &[u8], width: usize, far: u16, columns: &mut Vec<u16>) {
+fn fill_columns(marked: &[u8], width: usize, far: u16, columns: &mut Vec<u16>) {
     columns.clear();
     columns.extend(marked.iter().map(|&m| if m != 0 { 0 } else { far }));
     let height = columns.len() / width;
@@ -53,7 +53,7 @@ fn along_columns(marked: &[u8], width: usize, far: u16, columns: &mut Vec<u16>) 
 }
 
 /// Squared distances along a row of distances along columns.
-fn along_row(columns: &[u16], limit: u16, row: &mut [u16]) {
+fn fill_row(columns: &[u16], limit: u16, row: &mut [u16]) {
     let far = limit + 1;
     let (least, most) =
         columns.iter().fold((far, 0), |(least, most), &d| (least.min(d), most.max(d)));
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn without_a_mark_everything_is_farther_than_the_limit() {
-        let found = squared_distances(&Plane::filled(Size::new(3, 2), 0), u16::MAX);
+        let found = squared_distances(&Plane::full(Size::new(3, 2), 0), u16::MAX);
         assert!(found.values().iter().all(|&d| d == (FARTHEST + 1).pow(2)));
     }
 }

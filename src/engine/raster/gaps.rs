@@ -32,7 +32,7 @@ impl PixelSet {
         if rect == self.rect {
             return self;
         }
-        let mut pixels = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
+        let mut pixels = Plane::full(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
         let both = rect.intersect(self.rect);
         for y in both.y0..both.y1 {
             let from =
@@ -89,7 +89,7 @@ pub fn rooms(inside: &Plane<bool>, gap_px: f32) -> Plane<u32> {
     hills.rise();
     let width = pixels.width();
     let mut numbers = vec![0u32; pixels.values().len()];
-    let (mut count, mut rooms) = (0, Plane::filled(size, 0u32));
+    let (mut count, mut rooms) = (0, Plane::full(size, 0u32));
     for y in 0..rooms.height() {
         for (x, room) in rooms.row_mut(y).iter_mut().enumerate().filter(|(x, _)| inside.at(*x, y)) {
             let number = &mut numbers[hills.top_of((y + 1) * width + x + 1)];

@@ -128,7 +128,7 @@ impl Lattice {
     }
 
     /// All nodes that a tile's pixels are interpolated from, row by row; `None` if none displaces.
-    fn around(&self, at: TileAt) -> Option<[[Vec2; AROUND]; AROUND]> {
+    fn nodes_of_tile(&self, at: TileAt) -> Option<[[Vec2; AROUND]; AROUND]> {
         let near = |d: i32| (-1..=1).map(move |c| TileAt::new(at.col + c, at.row + d));
         if (-1..=1).flat_map(near).all(|at| self.blocks.tile(at).is_none()) {
             return None;
@@ -146,13 +146,13 @@ impl Lattice {
 
     /// Whether the pixels of a tile show themselves.
     pub fn is_none_on(&self, at: TileAt) -> bool {
-        self.around(at).is_none()
+        self.nodes_of_tile(at).is_none()
     }
 
     /// At the middle of every pixel of a tile: which point it shows, and how that moves with the
     /// pixel; `None` if the tile shows itself. The same as [`Lattice::at`], along rows.
     pub fn on_tile(&self, at: TileAt) -> Option<TilePoints> {
-        let nodes = self.around(at)?;
+        let nodes = self.nodes_of_tile(at)?;
         let phases: [NodeWeights; CELL] =
             std::array::from_fn(|k| NodeWeights::at((k as f32 + 0.5) / CELL as f32));
         // Transposed: for each weight its values in all phases, contiguous.
@@ -171,12 +171,12 @@ impl Lattice {
             let steep: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.slope, i));
             let place = y * TILE..(y + 1) * TILE;
             let TilePoints { x: xs, y: ys, jacobian: [a, b, c, d] } = &mut out;
-            between(&row.map(|v| v.x), &value, &mut xs[place.clone()]);
-            between(&row.map(|v| v.y), &value, &mut ys[place.clone()]);
-            between(&row.map(|v| v.x), &slope, &mut a[place.clone()]);
-            between(&row.map(|v| v.y), &slope, &mut b[place.clone()]);
-            between(&steep.map(|v| v.x), &value, &mut c[place.clone()]);
-            between(&steep.map(|v| v.y), &value, &mut d[place.clone()]);
+            interpolate_row(&row.map(|v| v.x), &value, &mut xs[place.clone()]);
+            interpolate_row(&row.map(|v| v.y), &value, &mut ys[place.clone()]);
+            interpolate_row(&row.map(|v| v.x), &slope, &mut a[place.clone()]);
+            interpolate_row(&row.map(|v| v.y), &slope, &mut b[place.clone()]);
+            interpolate_row(&steep.map(|v| v.x), &value, &mut c[place.clone()]);
+            interpolate_row(&steep.map(|v| v.y), &value, &mut d[place.clone()]);
             let (x0, y0) = (corner.x0 as f32 + 0.5, (corner.y0 + y as i32) as f32 + 0.5);
             xs[place.clone()].iter_mut().enumerate().for_each(|(k, x)| *x += x0 + k as f32);
             ys[place.clone()].iter_mut().for_each(|y| *y += y0);
@@ -195,7 +195,7 @@ impl Lattice {
         }
         near.sort_unstable_by_key(|at| (at.row, at.col));
         near.dedup();
-        near.retain(|at| self.around(*at) != other.around(*at));
+        near.retain(|at| self.nodes_of_tile(*at) != other.nodes_of_tile(*at));
         near
     }
 
@@ -231,7 +231,7 @@ impl Lattice {
 
 crate::widest! {
     /// A row between its nodes: eight pixels a cell, with the weights of four nodes around.
-    fn between(nodes: &[f32; AROUND], weights: &[[f32; CELL]; 4], out: &mut [f32]) {
+    fn interpolate_row(nodes: &[f32; AROUND], weights: &[[f32; CELL]; 4], out: &mut [f32]) {
         for (first, cell) in out.as_chunks_mut::<CELL>().0.iter_mut().enumerate() {
             let around = &nodes[first..first + 4];
             for k in 0..CELL {

@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn gray_changes_little_along_a_line_and_much_across() {
-        let field = Plane::filled(Size::new(80, 60), vec2(0.6, 0.8));
+        let field = Plane::full(Size::new(80, 60), vec2(0.6, 0.8));
         let lines = smear_noise(&field, LINES, |_, _| true);
         assert!(mean_change(&lines, 3, 4) < 0.5 * mean_change(&lines, 4, 3));
     }
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn the_sign_of_a_direction_does_not_matter() {
         let size = Size::new(40, 40);
-        let steady = smear_noise(&Plane::filled(size, Vec2::X), LINES, |_, _| true);
+        let steady = smear_noise(&Plane::full(size, Vec2::X), LINES, |_, _| true);
         let flipping =
             Plane::from_fn(size, |x, y| if (x + y) % 2 == 0 { Vec2::X } else { -Vec2::X });
         assert!(
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn the_noise_fills_the_grays_without_clipping_much() {
-        let lines = smear_noise(&Plane::filled(Size::new(128, 128), Vec2::X), LINES, |_, _| true);
+        let lines = smear_noise(&Plane::full(Size::new(128, 128), Vec2::X), LINES, |_, _| true);
         let clipped = lines.values().iter().filter(|&&v| v <= 0.0 || v >= 1.0).count();
         assert!(clipped < 128 * 128 / 20, "{clipped}");
         assert!(lines.values().iter().any(|&v| v < 0.2) && lines.values().iter().any(|&v| v > 0.8));

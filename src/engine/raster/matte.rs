@@ -16,7 +16,7 @@ pub struct Matte {
 
 impl Matte {
     /// One value everywhere.
-    pub fn filled(rect: Rect, value: f32) -> Self {
+    pub fn full(rect: Rect, value: f32) -> Self {
         Self { rect, values: vec![value; rect.width() * rect.height()] }
     }
 
@@ -50,7 +50,7 @@ impl Matte {
     }
 
     /// The value between pixels: `x` and `y` count from pixel centers.
-    pub fn between(&self, x: f32, y: f32) -> f32 {
+    pub fn interpolate(&self, x: f32, y: f32) -> f32 {
         let (left, top) = (x.floor(), y.floor());
         let (s, t) = (x - left, y - top);
         let (left, top) = (left as i32, top as i32);
@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     fn dot(side: i32) -> Matte {
-        let mut matte = Matte::filled(Rect::new(-side, -side, side + 1, side + 1), 0.0);
+        let mut matte = Matte::full(Rect::new(-side, -side, side + 1, side + 1), 0.0);
         matte.row_mut(0)[side as usize] = 1.0;
         matte
     }
@@ -243,7 +243,7 @@ mod tests {
             if v > 0.97 { v } else { 0.0 }
         };
         let window = |rect: Rect| {
-            let mut matte = Matte::filled(rect, 0.0);
+            let mut matte = Matte::full(rect, 0.0);
             for y in rect.y0..rect.y1 {
                 let row = matte.row_mut(y).iter_mut().zip(rect.x0..);
                 row.for_each(|(v, x)| *v = noise(x, y));

@@ -28,7 +28,7 @@ impl<T: Clone> Clone for Plane<T> {
 
 impl<T: Copy> Plane<T> {
     /// The same value everywhere.
-    pub fn filled(size: Size, value: T) -> Self {
+    pub fn full(size: Size, value: T) -> Self {
         Self { size, values: fill_or_unwind(size.area(), value) }
     }
 

@@ -111,7 +111,7 @@ pub fn warp_tile_within(
     let wanted = source.rect_to_read(map.source_rect(at.rect()));
     Warp { source: &source, map, filter }.block_of(at.rect(), wanted, &mut |x, y, row| {
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
-        within_range(row, &mut pixels[y * TILE + x..][..row.len()]);
+        limit_to_alpha(row, &mut pixels[y * TILE + x..][..row.len()]);
     });
     let is_16_bit = grid.is_16_bit_at(wanted);
     let tile =
@@ -133,7 +133,7 @@ fn quantized16(pixels: &TileF32) -> Box<[Row16]> {
 
 crate::widest! {
     /// Premultiplied colors limited to their alpha, which rings of a cubic may exceed.
-    fn within_range(row: &[[f32; 4]], out: &mut [[f32; 4]]) {
+    fn limit_to_alpha(row: &[[f32; 4]], out: &mut [[f32; 4]]) {
         for (out, value) in out.iter_mut().zip(row) {
             let alpha = min(max(value[3], 0.0), 1.0);
             for c in 0..4 {
@@ -196,7 +196,7 @@ pub fn warp_plane_onto(
     let blocks: Vec<TileAt> = TileAt::covering(canvas).collect();
     let values: Vec<Vec<(i32, i32, u8)>> =
         blocks.par_iter().map(|at| warp.values(at.rect().intersect(canvas))).collect();
-    let mut out = Plane::filled(size, 0);
+    let mut out = Plane::full(size, 0);
     values.into_iter().flatten().for_each(|(x, y, value)| out.set(x as usize, y as usize, value));
     out
 }

@@ -225,8 +225,8 @@ mod tests {
         });
         Surface::new(Maps {
             normals,
-            depth: Plane::filled(size, 0.5),
-            coverage: Plane::filled(size, 255),
+            depth: Plane::full(size, 0.5),
+            coverage: Plane::full(size, 255),
         })
         .unwrap()
     }

@@ -118,7 +118,7 @@ impl RowLight {
     }
 
     /// The direction for κ(ℓ).
-    pub fn toward(&self) -> LightDirection<'_> {
+    pub fn direction(&self) -> LightDirection<'_> {
         match self.stands {
             RowLightPosition::Afar(l) => LightDirection::One(l),
             RowLightPosition::At(_) => LightDirection::Each(&self.direction[0], &self.direction[1]),

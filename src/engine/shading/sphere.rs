@@ -103,7 +103,7 @@ impl SphereLight {
     #[inline(always)]
     pub fn at(&self, nbar: Vec2) -> [f32; 3] {
         let SphereSpot { index, across, along } = self.spot(nbar);
-        self.between(index, across, along).to_array()
+        self.interpolate(index, across, along).to_array()
     }
 
     /// The same for a row of normals, camera space (y up).
@@ -124,7 +124,7 @@ impl SphereLight {
 
     /// Of four texels, by their numbers.
     #[inline(always)]
-    fn between(&self, index: [i32; 4], across: f32, along: f32) -> Vec3A {
+    fn interpolate(&self, index: [i32; 4], across: f32, along: f32) -> Vec3A {
         let texel = |i: i32| self.texels.get(i as usize).copied().unwrap_or_default();
         let above = texel(index[0]).lerp(texel(index[1]), across);
         let below = texel(index[2]).lerp(texel(index[3]), across);
@@ -155,7 +155,7 @@ crate::widest! {
         }
         for x in 0..TILE {
             let index = [index[0][x], index[1][x], index[2][x], index[3][x]];
-            let here = sphere.between(index, across[x], along[x]);
+            let here = sphere.interpolate(index, across[x], along[x]);
             (light[0][x], light[1][x], light[2][x]) = (here.x, here.y, here.z);
         }
     }

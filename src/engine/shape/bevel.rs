@@ -94,7 +94,7 @@ impl Default for Bevel {
 /// z = f(d/w) · height over an outline, d the distance to the rim.
 pub fn bevel_outline(outline: &Outline, bevel: &Bevel) -> Form {
     let RimDistance { distance, inward } = RimDistance::of(outline);
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     let steep = bevel.height / bevel.width;
     let at = |x: usize, y: usize| bevel.curve.at(distance.at(x, y) / bevel.width);
     let height = Plane::from_fn(outline.size(), |x, y| {

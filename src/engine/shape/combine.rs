@@ -73,10 +73,10 @@ impl Relief {
     /// One without a form.
     pub fn empty(size: Size) -> Self {
         Self {
-            height: Plane::filled(size, 0.0),
-            normals: Plane::filled(size, Vec3::Z),
-            coverage: Plane::filled(size, 0),
-            ids: Plane::filled(size, 0),
+            height: Plane::full(size, 0.0),
+            normals: Plane::full(size, Vec3::Z),
+            coverage: Plane::full(size, 0),
+            ids: Plane::full(size, 0),
             piece_of: vec![0],
         }
     }
@@ -275,7 +275,7 @@ impl FormTexel {
                 let id = if share < 0.5 { above.id } else { self.id };
                 FormTexel {
                     height,
-                    normal: between(self.normal, above.normal, share),
+                    normal: mean_normal(self.normal, above.normal, share),
                     coverage,
                     id,
                 }
@@ -309,7 +309,7 @@ pub fn smooth_max(a: f32, b: f32, smooth: f32) -> (f32, f32) {
 }
 
 /// The normal whose slope is the mean of two, weighted by the first one's share.
-fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
+fn mean_normal(a: Vec3, b: Vec3, share: f32) -> Vec3 {
     let (wa, wb) = (share * b.z, (1.0 - share) * a.z);
     if share >= 1.0 {
         return a;

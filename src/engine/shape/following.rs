@@ -27,7 +27,7 @@ impl Following {
         let solver = Solver::of_couplings(
             couplings.map(|s| s.x),
             couplings.map(|s| s.y),
-            Plane::filled(inside.size(), 0.0),
+            Plane::full(inside.size(), 0.0),
         );
         let heights =
             found.depth.map(|z| if z.is_finite() { z * found.range_px } else { 0.0 }).into_values();

@@ -43,10 +43,10 @@ impl Form {
     ) -> Self {
         let flat = flattening(outline, squares, rim, round);
         let (sin, cos) = round.rim_deg.to_radians().sin_cos();
-        let (size, inside) = (outline.size(), outline.inside());
+        let (size, inside) = (outline.size(), outline.inside_pixels());
         let puff = round.puff;
-        let mut height = Plane::filled(size, 0.0);
-        let mut normals = Plane::filled(size, Vec3::Z);
+        let mut height = Plane::full(size, 0.0);
+        let mut normals = Plane::full(size, Vec3::Z);
         let width = size.width as usize;
         let rows = height
             .values_mut()
@@ -122,7 +122,7 @@ impl Form {
         let origin = vec2(x0 as f32, y0 as f32) + 0.5;
         let size = Size::new(extent.x as u32, extent.y as u32);
         let read = Plane::from_fn(size, |x, y| {
-            self.between(back.transform_point2(low + vec2(x as f32, y as f32) + 0.5) - origin)
+            self.interpolate(back.transform_point2(low + vec2(x as f32, y as f32) + 0.5) - origin)
         });
         let turned = |n: Vec3| {
             // n̄ / n_z in image axes; multiplied by n_z, so that silhouettes stay finite.
@@ -138,7 +138,7 @@ impl Form {
     }
 
     /// Height, normal and coverage at a place relative to the center of the first pixel.
-    fn between(&self, p: Vec2) -> (f32, Vec3, f32) {
+    fn interpolate(&self, p: Vec2) -> (f32, Vec3, f32) {
         let whole = p.floor();
         let part = p - whole;
         let (mut height, mut normal, mut coverage, mut sum) = (0.0, Vec3::ZERO, 0.0, 0.0);
@@ -254,7 +254,7 @@ fn flattening(outline: &Outline, squares: &Plane<f32>, rim: &OutlineRim, round: 
     if round.rim_deg >= 90.0 {
         return 0.0;
     }
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     let (w, h) = (inside.width(), inside.height());
     let (mut sum, mut count) = (0.0f64, 0u32);
     for (x, y) in (1..h - 1).flat_map(|y| (1..w - 1).map(move |x| (x, y))) {

@@ -30,7 +30,7 @@ pub fn inflate(
         return double(&inflate_halved(outline), outline);
     }
     let rim = OutlineRim::of(outline, joined);
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     let source = inside.map(|i| if i { 4.0 } else { 0.0 });
     let u = rim.equation(|_, _| 0.0).solve(&source, start, GOAL);
     u.updated(|x, y, u| if inside.at(x, y) && u.is_finite() { u.max(0.0) } else { 0.0 })
@@ -46,7 +46,7 @@ fn inflate_halved(outline: &Outline) -> Plane<f32> {
         let (x, y) = (2 * x, 2 * y);
         ((at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1) + 2) / 4) as u8
     });
-    let Some(half) = Outline::new((0, 0), &mean) else { return Plane::filled(size, 0.0) };
+    let Some(half) = Outline::new((0, 0), &mean) else { return Plane::full(size, 0.0) };
     let u = inflate(&half, None, None);
     let corner = half.corner();
     Plane::from_fn(size, |x, y| u.get(x as i32 - corner.0, y as i32 - corner.1).unwrap_or(0.0))
@@ -56,7 +56,7 @@ fn inflate_halved(outline: &Outline) -> Plane<f32> {
 /// become four.
 fn double(half: &Plane<f32>, outline: &Outline) -> Plane<f32> {
     Plane::from_fn(outline.size(), |x, y| {
-        if !outline.inside().at(x, y) {
+        if !outline.inside_pixels().at(x, y) {
             return 0.0;
         }
         let (px, py) = (x as f32 * 0.5 - 0.25, y as f32 * 0.5 - 0.25);

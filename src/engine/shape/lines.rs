@@ -66,7 +66,7 @@ const WIDEST_PX: i32 = 64;
 ///
 /// * `ink`: coverage over the planes of the form.
 pub fn add_lines(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) -> Form {
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     let size = inside.size();
     if form.normals.size() != size || ink.size() != size {
         return form.clone();
@@ -85,7 +85,8 @@ pub fn add_lines(form: &Form, outline: &Outline, ink: &Plane<u8>, lines: Lines) 
     };
     // n̄ next to the line; none where nothing is requested.
     let asked = Plane::from_fn(size, |x, y| {
-        let away = is_beside(x, y).then(|| sums.away(x as i32, y as i32)).flatten()?;
+        let away =
+            is_beside(x, y).then(|| sums.direction_from_ink(x as i32, y as i32)).flatten()?;
         let inner = || sums.is_inner(&inked, (x as i32, y as i32), away);
         match lines.form {
             LineForm::Ridge => Some(away * turn),
@@ -170,7 +171,7 @@ impl InkSums {
 
     /// The number of inked pixels in a square around a pixel, and the sums of their columns and
     /// rows.
-    fn around(&self, x: i32, y: i32, reach: i32) -> [f64; 3] {
+    fn sums_in_square(&self, x: i32, y: i32, reach: i32) -> [f64; 3] {
         let column = |x: i32| x.max(0).min(self.width) as usize;
         let row = |y: i32| y.max(0).min(self.height) as usize * (self.width as usize + 1);
         let at = |x: i32, y: i32| self.sums[row(y) + column(x)];
@@ -180,9 +181,9 @@ impl InkSums {
     }
 
     /// The direction from the ink to a pixel next to it, unit.
-    fn away(&self, x: i32, y: i32) -> Option<Vec2> {
+    fn direction_from_ink(&self, x: i32, y: i32) -> Option<Vec2> {
         const REACH: i32 = 2;
-        let side = |dx: i32, dy: i32| self.around(x + dx, y + dy, REACH)[0] as f32;
+        let side = |dx: i32, dy: i32| self.sums_in_square(x + dx, y + dy, REACH)[0] as f32;
         vec2(side(-1, 0) - side(1, 0), side(0, -1) - side(0, 1)).try_normalize()
     }
 
@@ -198,7 +199,7 @@ impl InkSums {
         let line = here - away * (0.5 * (width + 1) as f32);
         let reach = BEND_PX.max(BEND_WIDTHS * width);
         let [count, columns, rows] =
-            self.around(line.x.round() as i32, line.y.round() as i32, reach);
+            self.sums_in_square(line.x.round() as i32, line.y.round() as i32, reach);
         if count < 1.0 {
             return false;
         }
@@ -228,8 +229,8 @@ mod tests {
         let outline = Outline::new((0, 0), &coverage).unwrap();
         let form = Form {
             corner: outline.corner(),
-            height: Plane::filled(outline.size(), 0.0).into(),
-            normals: Plane::filled(outline.size(), Vec3::Z).into(),
+            height: Plane::full(outline.size(), 0.0).into(),
+            normals: Plane::full(outline.size(), Vec3::Z).into(),
             coverage: outline.coverage().clone(),
         };
         (form, outline)
@@ -290,7 +291,7 @@ mod tests {
     #[test]
     fn an_open_line_makes_no_dent_and_one_without_ink_changes_nothing() {
         let (form, outline) = plate();
-        let none = Plane::filled(outline.size(), 0);
+        let none = Plane::full(outline.size(), 0);
         assert!(add_lines(&form, &outline, &none, Lines::default()) == form);
         let ridge = add_lines(
             &form,

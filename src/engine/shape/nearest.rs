@@ -36,7 +36,7 @@ fn measure<T: Copy + Default + Send + Sync>(
     joined: Option<&Plane<bool>>,
     of: impl Fn(f32, Vec2) -> T + Sync,
 ) -> Plane<T> {
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     let joined = joined.filter(|joined| joined.size() == outline.size());
     let crossings = |swapped: bool| nearest_crossings(outline, joined, swapped);
     let (upright, across) = rayon::join(|| crossings(false), || crossings(true));
@@ -49,7 +49,7 @@ fn measure<T: Copy + Default + Send + Sync>(
         let (a, b) = (upright.at(x, y), across.at(y, x));
         let b = vec2(b.y, b.x);
         let nearer = if here.distance_squared(b) < here.distance_squared(a) { b } else { a };
-        let (distance, way) = toward(outline, here, nearer);
+        let (distance, way) = distance_from_crossing(outline, here, nearer);
         if distance <= farthest { of(distance, way) } else { of(farthest, Vec2::ZERO) }
     })
 }
@@ -60,7 +60,7 @@ const FAR_PX: f32 = 8.0;
 
 /// Distance and direction from a crossing of the rim, or from the straight rim through it if its
 /// foot is near.
-fn toward(outline: &Outline, here: Vec2, crossing: Vec2) -> (f32, Vec2) {
+fn distance_from_crossing(outline: &Outline, here: Vec2, crossing: Vec2) -> (f32, Vec2) {
     let from = here - crossing;
     let plain = from.length();
     if plain < FAR_PX {
@@ -92,7 +92,7 @@ fn nearest_crossings(
     let size = if swapped { Size::new(size.height, size.width) } else { size };
     let (w, h) = (size.width as usize, size.height as usize);
     let inside = |x: usize, y: usize| {
-        if swapped { outline.inside().at(y, x) } else { outline.inside().at(x, y) }
+        if swapped { outline.inside_pixels().at(y, x) } else { outline.inside_pixels().at(x, y) }
     };
     let is_free = |x: usize, y: usize| {
         joined.is_some_and(|joined| if swapped { joined.at(y, x) } else { joined.at(x, y) })
@@ -111,7 +111,7 @@ fn nearest_crossings(
         }
     };
     const NOWHERE: f32 = -1e9;
-    let mut column = Plane::filled(size, NOWHERE);
+    let mut column = Plane::full(size, NOWHERE);
     let mut last = vec![NOWHERE; w];
     for y in 0..h {
         for (x, last) in last.iter_mut().enumerate() {
@@ -136,7 +136,7 @@ fn nearest_crossings(
             }
         }
     }
-    let mut out = Plane::filled(size, Vec2::splat(NOWHERE));
+    let mut out = Plane::full(size, Vec2::splat(NOWHERE));
     out.values_mut().par_chunks_mut(w).enumerate().for_each(|(y, row)| {
         let beside = column.row(y);
         let cost: Vec<f64> = beside
@@ -213,14 +213,14 @@ mod tests {
                 .unwrap();
         let found = RimDistance::of(&disc);
         let (mut worst, mut turned) = (0.0f32, 0.0f32);
-        for (x, y) in (0..disc.inside().height())
-            .flat_map(|y| (0..disc.inside().width()).map(move |x| (x, y)))
+        for (x, y) in (0..disc.inside_pixels().height())
+            .flat_map(|y| (0..disc.inside_pixels().width()).map(move |x| (x, y)))
         {
             let from = vec2(
                 x as f32 + 0.5 + disc.corner().0 as f32,
                 y as f32 + 0.5 + disc.corner().1 as f32,
             ) - vec2(60.3, 60.8);
-            if disc.inside().at(x, y) && from.length() > 5.0 {
+            if disc.inside_pixels().at(x, y) && from.length() > 5.0 {
                 worst =
                     worst.max((found.distance.at(x, y) - (50.0 - from.length()).max(0.0)).abs());
                 turned = turned.max((found.inward.at(x, y) + from.normalize()).length());
@@ -234,15 +234,15 @@ mod tests {
                 .into();
         let outline = Outline::of_path(&strip, 1 << 20).unwrap();
         let found = RimDistance::of(&outline);
-        for (x, y) in (0..outline.inside().height())
-            .flat_map(|y| (0..outline.inside().width()).map(move |x| (x, y)))
+        for (x, y) in (0..outline.inside_pixels().height())
+            .flat_map(|y| (0..outline.inside_pixels().width()).map(move |x| (x, y)))
         {
             let p = vec2(
                 x as f32 + 0.5 + outline.corner().0 as f32,
                 y as f32 + 0.5 + outline.corner().1 as f32,
             );
             let local = Vec2::from_angle(-0.5).rotate(p - 100.0);
-            if outline.inside().at(x, y) && local.x.abs() < 60.0 {
+            if outline.inside_pixels().at(x, y) && local.x.abs() < 60.0 {
                 let off = found.distance.at(x, y) - (20.0 - local.y.abs());
                 assert!(off.abs() < 0.06, "{off} at {local}");
             }

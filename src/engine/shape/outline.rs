@@ -86,7 +86,7 @@ impl Outline {
 
     /// Whether the center of a pixel is inside: these pixels are the unknowns of every equation
     /// here.
-    pub fn inside(&self) -> &Plane<bool> {
+    pub fn inside_pixels(&self) -> &Plane<bool> {
         &self.inside
     }
 
@@ -259,10 +259,10 @@ mod tests {
             Plane::from_fn(Size::new(9, 7), |x, y| u8::from(x == 4 && y > 2 && y < 5) * 200);
         let outline = Outline::new((10, 20), &coverage).unwrap();
         assert_eq!(outline.rect(), Rect::new(13, 22, 16, 26));
-        assert_eq!(outline.inside().values().iter().filter(|i| **i).count(), 2);
-        assert!(Outline::new((0, 0), &Plane::filled(Size::new(3, 3), 0)).is_none());
-        let hairline = Outline::new((0, 0), &Plane::filled(Size::new(3, 1), 20)).unwrap();
-        assert_eq!(hairline.inside().values().iter().filter(|i| **i).count(), 3);
+        assert_eq!(outline.inside_pixels().values().iter().filter(|i| **i).count(), 2);
+        assert!(Outline::new((0, 0), &Plane::full(Size::new(3, 3), 0)).is_none());
+        let hairline = Outline::new((0, 0), &Plane::full(Size::new(3, 1), 20)).unwrap();
+        assert_eq!(hairline.inside_pixels().values().iter().filter(|i| **i).count(), 3);
     }
 
     #[test]
@@ -273,7 +273,7 @@ mod tests {
         let moved =
             outline.transformed(Affine2::from_translation(vec2(7.0, -3.0)), 1 << 20).unwrap();
         assert_eq!(moved, outline.moved((7, -3)));
-        let square = Outline::new((0, 0), &Plane::filled(Size::new(40, 40), 255)).unwrap();
+        let square = Outline::new((0, 0), &Plane::full(Size::new(40, 40), 255)).unwrap();
         let turned = square.transformed(Affine2::from_angle(0.6), 1 << 20).unwrap();
         let area =
             |o: &Outline| o.coverage().values().iter().map(|c| f64::from(*c)).sum::<f64>() / 255.0;

@@ -82,7 +82,7 @@ impl Accumulator {
     }
 
     fn coverage(&self, w: usize, h: usize) -> Plane<u8> {
-        let mut out = Plane::filled(Size::new(w as u32, h as u32), 0);
+        let mut out = Plane::full(Size::new(w as u32, h as u32), 0);
         for y in 0..h {
             let mut sum = 0.0;
             for (x, c) in out.row_mut(y).iter_mut().enumerate() {

@@ -88,7 +88,7 @@ fn solve(profiles: &[ShadedDrawing], x: usize, y: usize) -> (Vec3, f32) {
 ///
 /// The planes of the shadings are those of the outline.
 pub fn solve_form(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form> {
-    let (found, inside) = (normals_from_profiles(profiles)?, outline.inside());
+    let (found, inside) = (normals_from_profiles(profiles)?, outline.inside_pixels());
     if found.normals.size() != inside.size() {
         return None;
     }
@@ -108,7 +108,7 @@ pub fn solve_form(profiles: &[ShadedDrawing], outline: &Outline) -> Option<Form>
     });
     let flat = Form {
         corner: outline.corner(),
-        height: Plane::filled(inside.size(), 0.0).into(),
+        height: Plane::full(inside.size(), 0.0).into(),
         normals: normals.clone().into(),
         coverage: outline.coverage().clone(),
     };
@@ -173,7 +173,7 @@ mod tests {
         let n = vec3(0.3, 0.2, 0.9).normalize();
         let mut profiles: Vec<ShadedDrawing> = lights()
             .into_iter()
-            .map(|light| ShadedDrawing { gray: Plane::filled(size, 0.7 * n.dot(light)), light })
+            .map(|light| ShadedDrawing { gray: Plane::full(size, 0.7 * n.dot(light)), light })
             .collect();
         profiles[0].gray.set(2, 2, 0.9);
         let found = normals_from_profiles(&profiles).unwrap();

@@ -39,9 +39,9 @@ impl Default for Detail {
 ///
 /// `luminance`: `[0, 1]`, as large as the outline's planes.
 pub fn relief(outline: &Outline, luminance: &Plane<f32>, detail: Detail) -> Plane<f32> {
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     if luminance.size() != inside.size() {
-        return Plane::filled(inside.size(), 0.0);
+        return Plane::full(inside.size(), 0.0);
     }
     let edge = detail.edge * detail.edge;
     let fine = filter_guided(luminance, inside, (0.25 * detail.radius).max(1.0) as usize, edge);
@@ -93,7 +93,7 @@ fn mean_within(plane: &Plane<f32>, inside: &Plane<bool>, radius: usize) -> Plane
             |x: usize| if inside.at(x, y) { (f64::from(plane.at(x, y)), 1.0) } else { (0.0, 0.0) };
         rows.extend(along(&value, w));
     }
-    let mut out = Plane::filled(plane.size(), 0.0);
+    let mut out = Plane::full(plane.size(), 0.0);
     for x in 0..w {
         for (y, (sum, count)) in along(&|y| rows[y * w + x], h).into_iter().enumerate() {
             out.set(x, y, if count > 0.0 { (sum / count) as f32 } else { 0.0 });
@@ -108,7 +108,7 @@ mod tests {
     use crate::math::Size;
 
     fn square() -> Outline {
-        Outline::new((0, 0), &Plane::filled(Size::new(80, 80), 255)).unwrap()
+        Outline::new((0, 0), &Plane::full(Size::new(80, 80), 255)).unwrap()
     }
 
     #[test]
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn an_even_picture_has_no_relief() {
         let outline = square();
-        let found = relief(&outline, &Plane::filled(outline.size(), 0.7), Detail::default());
+        let found = relief(&outline, &Plane::full(outline.size(), 0.7), Detail::default());
         assert!(found.values().iter().all(|h| h.abs() < 1e-4));
     }
 }

@@ -48,9 +48,9 @@ impl<'a> OutlineRim<'a> {
 
     /// The rim from an inside pixel toward a neighbor: none if that is inside too or joined, else
     /// θ.
-    fn toward(&self, (x, y): (usize, usize), step: (i32, i32)) -> Side {
+    fn side_toward(&self, (x, y): (usize, usize), step: (i32, i32)) -> Side {
         let other = (x as i32 + step.0, y as i32 + step.1);
-        if self.outline.inside().get(other.0, other.1).unwrap_or(false) {
+        if self.outline.inside_pixels().get(other.0, other.1).unwrap_or(false) {
             Side::Inside
         } else if self.is_free(other.0, other.1) {
             Side::Free
@@ -62,21 +62,21 @@ impl<'a> OutlineRim<'a> {
     /// The couplings of −∇²v + s v: 1 between inside pixels, 1/θ toward the rim (Gibou et al. 2002,
     /// symmetric), and `s`, px⁻², `≥ 0`.
     pub fn equation(&self, screen: impl Fn(usize, usize) -> f32 + Sync) -> Equation {
-        let (inside, size) = (self.outline.inside(), self.outline.size());
+        let (inside, size) = (self.outline.inside_pixels(), self.outline.size());
         let held = Plane::from_fn(size, |x, y| self.rim_coupling((x, y), &screen));
         Equation { solver: Solver::new(inside, held) }
     }
 
     /// The coupling of a pixel toward 0.
     fn rim_coupling(&self, (x, y): (usize, usize), screen: &impl Fn(usize, usize) -> f32) -> f32 {
-        let inside = self.outline.inside();
+        let inside = self.outline.inside_pixels();
         if !inside.at(x, y) {
             return 0.0;
         }
         // A piece that is free all around would rise without limit: it is held weakly, with the
         // plane's length as its reach.
         let faint = if self.joined.is_some() { inside.size().longer_side().powi(-2) } else { 0.0 };
-        let sides = STEPS.map(|step| match self.toward((x, y), step) {
+        let sides = STEPS.map(|step| match self.side_toward((x, y), step) {
             Side::Rim(theta) => 1.0 / theta,
             Side::Inside | Side::Free => 0.0,
         });
@@ -87,7 +87,7 @@ impl<'a> OutlineRim<'a> {
     /// steps at the rim, where the field is 0.
     #[inline(always)]
     pub fn slope(&self, field: &Plane<f32>, x: usize, y: usize) -> Vec2 {
-        let inside = self.outline.inside();
+        let inside = self.outline.inside_pixels();
         // Inside pixels are a margin away from the border.
         if inside.at(x - 1, y) && inside.at(x + 1, y) && inside.at(x, y - 1) && inside.at(x, y + 1)
         {
@@ -98,7 +98,7 @@ impl<'a> OutlineRim<'a> {
         let along = |step: (i32, i32)| {
             let side = |sign: i32| {
                 let step = (sign * step.0, sign * step.1);
-                match self.toward((x, y), step) {
+                match self.side_toward((x, y), step) {
                     Side::Inside => {
                         (1.0, field.at((x as i32 + step.0) as usize, (y as i32 + step.1) as usize))
                     }
@@ -136,7 +136,7 @@ impl Equation {
     /// ([`Solver::approach`]).
     pub fn approach(&self, b: &Plane<f32>, start: Plane<f32>, near: Rect) -> Plane<f32> {
         let found = self.solver.approach(b.values(), start.into_values(), near);
-        Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::filled(b.size(), 0.0))
+        Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::full(b.size(), 0.0))
     }
 
     /// The field for a right-hand side, row by row; `start`: the field that the search begins at,
@@ -145,6 +145,6 @@ impl Equation {
         let start =
             start.filter(|start| start.size() == b.size()).map(|start| start.values().to_vec());
         let found = self.solver.solve(b.values(), start, goal);
-        Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::filled(b.size(), 0.0))
+        Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::full(b.size(), 0.0))
     }
 }

@@ -103,7 +103,7 @@ impl Sculpting {
     pub fn of(form: &Form) -> Self {
         Self {
             strokes: Vec::new(),
-            layer: Plane::filled(form.height.size(), 0.0),
+            layer: Plane::full(form.height.size(), 0.0),
             dabs: 0,
             first: None,
         }
@@ -242,7 +242,7 @@ impl SculptDab<'_> {
                     SculptTool::Flatten => share(coverage) * toward_plane(),
                     SculptTool::Scrape => share(coverage) * toward_plane().min(0.0),
                     SculptTool::Smooth => {
-                        share(coverage) * (self.around(form, layer, x, y) - total(layer, x, y))
+                        share(coverage) * (self.mean_height(form, layer, x, y) - total(layer, x, y))
                     }
                     SculptTool::Pinch => {
                         let out = p + from * (0.25 * share(coverage));
@@ -258,7 +258,7 @@ impl SculptDab<'_> {
     }
 
     /// The mean height of a pixel and eight places around it, an eighth of the dab away.
-    fn around(&self, form: &Form, layer: &Plane<f32>, x: usize, y: usize) -> f32 {
+    fn mean_height(&self, form: &Form, layer: &Plane<f32>, x: usize, y: usize) -> f32 {
         let p = vec2(x as f32 + 0.5, y as f32 + 0.5);
         let far = (0.25 * self.radius).max(1.0);
         let around =
@@ -298,8 +298,8 @@ mod tests {
         Form {
             corner: (10, 20),
             height: Plane::from_fn(size, height).into(),
-            normals: Plane::filled(size, Vec3::Z).into(),
-            coverage: Plane::filled(size, 255).into(),
+            normals: Plane::full(size, Vec3::Z).into(),
+            coverage: Plane::full(size, 255).into(),
         }
     }
 
@@ -328,7 +328,7 @@ mod tests {
             let mean = values.iter().sum::<f32>() / values.len() as f32;
             values.iter().map(|v| (v - mean).powi(2)).sum::<f32>() / values.len() as f32
         };
-        let before = spread(&Plane::filled(rough.height.size(), 0.0));
+        let before = spread(&Plane::full(rough.height.size(), 0.0));
         let line = [(55.0, 60.0), (85.0, 60.0)];
         for tool in [SculptTool::Smooth, SculptTool::Flatten, SculptTool::Scrape] {
             let layer = sculpt_heights(&rough, &[stroke(tool, 0.6, &line)]);

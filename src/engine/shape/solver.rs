@@ -87,7 +87,7 @@ impl Solver {
             restrict(grid, below, &other, &mut rest);
             let nothing = fill_or_unwind(rest.len(), 0.0);
             let coarse = self.solve_by_conjugate_gradients(1, &rest, nothing, GOAL);
-            grid.fill(&mut other, |y, out| between_blocks(grid, below, &coarse, y, out));
+            grid.fill(&mut other, |y, out| interpolate_blocks(grid, below, &coarse, y, out));
             v.par_chunks_mut(grid.w * BAND)
                 .zip(other.par_chunks(grid.w * BAND))
                 .for_each(|(v, c)| add(v, 1.0, c));
@@ -168,7 +168,7 @@ impl Solver {
         restrict(grid, below, b, &mut rest);
         let coarse = self.solve_nested(at + 1, &rest);
         let mut v = fill_or_unwind(b.len(), 0.0);
-        grid.fill(&mut v, |y, out| between_blocks(grid, below, &coarse, y, out));
+        grid.fill(&mut v, |y, out| interpolate_blocks(grid, below, &coarse, y, out));
         let mut left = fill_or_unwind(b.len(), 0.0);
         grid.fill(&mut left, |y, out| {
             compute_residual(grid.couplings(y), grid.rows_around(&v, y), grid.row(b, y), out)
@@ -245,7 +245,7 @@ fn restrict(grid: &Level, below: &Level, fine: &[f32], out: &mut [f32]) {
 }
 
 /// A field of blocks read between their middles, at the unknowns of one row.
-fn between_blocks(grid: &Level, below: &Level, coarse: &[f32], y: usize, out: &mut [f32]) {
+fn interpolate_blocks(grid: &Level, below: &Level, coarse: &[f32], y: usize, out: &mut [f32]) {
     // The middle of a pixel lies a quarter of a block from that of its own.
     let beside =
         |i: usize| if i % 2 == 1 { (i.div_ceil(2), i.div_ceil(2) - 1) } else { (i / 2, i / 2 + 1) };

@@ -50,8 +50,8 @@ pub fn sweep(balls: &[Ball], most_px: usize) -> Option<(Outline, Plane<f32>)> {
         return None;
     }
     let size = Size::new(size.x as u32, size.y as u32);
-    let mut square = Plane::filled(size, 0.0f32);
-    let mut depth = Plane::filled(size, f32::NEG_INFINITY);
+    let mut square = Plane::full(size, 0.0f32);
+    let mut depth = Plane::full(size, f32::NEG_INFINITY);
     for (i, a) in balls.iter().enumerate() {
         let b = balls.get(i + 1).unwrap_or(a);
         if i > 0 && i + 1 == balls.len() {
@@ -106,7 +106,7 @@ pub fn turn_outline(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
         })
         .collect();
     let sides = smooth_sides(&sides);
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     Plane::from_fn(size, |x, y| {
         if !inside.at(x, y) {
             return 0.0;

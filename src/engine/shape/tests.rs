@@ -45,7 +45,7 @@ fn a_disc_becomes_a_half_sphere() {
     let outline = Outline::of_path(&ellipse(center, Vec2::splat(r), 0.0, 6000), 1 << 20).unwrap();
     let form = pillow(&outline);
     let (mut angles, mut worst) = (Vec::new(), 0.0f32);
-    for (x, y) in pixels(outline.size()).filter(|&(x, y)| outline.inside().at(x, y)) {
+    for (x, y) in pixels(outline.size()).filter(|&(x, y)| outline.inside_pixels().at(x, y)) {
         let from = place(&form, x, y) - center;
         let z = (r * r - from.length_squared()).max(0.0).sqrt();
         angles.push(angle_deg(form.normals.at(x, y), vec3(from.x, -from.y, z).normalize()));
@@ -221,8 +221,9 @@ fn a_low_rim_turns_by_its_angle_in_the_mean() {
         &OutlineRim::silhouette(&outline),
         Roundness { puff: 0.8, rim_deg: 35.0 },
     );
-    let at_rim = pixels(outline.size())
-        .filter(|&(x, y)| outline.inside().at(x, y) && (place(&form, x, y) - 70.0).length() > 59.5);
+    let at_rim = pixels(outline.size()).filter(|&(x, y)| {
+        outline.inside_pixels().at(x, y) && (place(&form, x, y) - 70.0).length() > 59.5
+    });
     let (mean, _) =
         mean_and_p99(at_rim.map(|(x, y)| angle_deg(form.normals.at(x, y), Vec3::Z)).collect());
     assert!((mean - 35.0).abs() < 3.0, "{mean}°");
@@ -296,7 +297,7 @@ fn a_part_that_is_joined_runs_level_into_its_neighbor() {
     assert!((end / middle - 1.0).abs() < 0.01, "{end} at the end, {middle} in the middle");
     assert!(u.at(1, row) < 0.3 * middle);
     // Free all around: still finite.
-    let everywhere = Plane::filled(strip.size(), true);
+    let everywhere = Plane::full(strip.size(), true);
     assert!(inflate(&strip, Some(&everywhere), None).values().iter().all(|v| v.is_finite()));
 }
 

@@ -76,7 +76,7 @@ pub fn apply_touches(
     touches: &[Touch],
     mut last: Option<&mut Touching>,
 ) -> Form {
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     if form.normals.size() != inside.size() || touches.is_empty() {
         return form.clone();
     }
@@ -89,7 +89,7 @@ pub fn apply_touches(
         touches.iter().map(|t| if t.reach > 0.0 { t.reach } else { f32::INFINITY }).collect();
     reaches.sort_by(|a, b| b.total_cmp(a));
     reaches.dedup();
-    let mut delta = Plane::filled(inside.size(), Vec2::ZERO);
+    let mut delta = Plane::full(inside.size(), Vec2::ZERO);
     for reach in reaches {
         let now = Plane::from_fn(inside.size(), |x, y| bar.at(x, y) + delta.at(x, y));
         let (held, wanted) = constraints(outline, &now, touches, reach);
@@ -149,7 +149,7 @@ impl Touching {
 
     /// As [`with_normals`], approximately.
     fn with_normals(&mut self, form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
-        let inside = outline.inside();
+        let inside = outline.inside_pixels();
         let Some(mut following) = self.heights.take().or_else(|| Following::of(&normals, inside))
         else {
             return with_normals(form, outline, normals);
@@ -184,7 +184,7 @@ impl TouchingStep {
         let near = if near.is_empty() { near } else { near.grown(FELT) };
         self.equation.hold(rim, &changed, stiffness(held, self.reach));
         for (c, delta) in self.delta.iter_mut().enumerate() {
-            let last = std::mem::replace(delta, Plane::filled(held.size(), 0.0));
+            let last = std::mem::replace(delta, Plane::full(held.size(), 0.0));
             let start = last.updated(|x, y, d| if held.at(x, y) { wanted.at(x, y)[c] } else { d });
             *delta = self.equation.approach(&source(held, wanted, c), start, near);
         }
@@ -208,9 +208,9 @@ fn constraints(
     touches: &[Touch],
     reach: f32,
 ) -> (Plane<bool>, Plane<Vec2>) {
-    let (inside, corner) = (outline.inside(), outline.corner());
-    let mut held = Plane::filled(inside.size(), false);
-    let mut wanted = Plane::filled(inside.size(), Vec2::ZERO);
+    let (inside, corner) = (outline.inside_pixels(), outline.corner());
+    let mut held = Plane::full(inside.size(), false);
+    let mut wanted = Plane::full(inside.size(), Vec2::ZERO);
     for touch in touches {
         let own = if touch.reach > 0.0 { touch.reach == reach } else { reach.is_infinite() };
         let center = touch.at - vec2(corner.0 as f32, corner.1 as f32);
@@ -309,7 +309,7 @@ fn side_by_side([x, y]: &[Plane<f32>; 2]) -> Plane<Vec2> {
 
 /// A form with other normals, and heights with these slopes, as high in the mean as before.
 pub fn with_normals(form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     let Some(found) = depth_from_normals(&normals, inside) else { return form.clone() };
     with_heights(form, inside, normals, |x, y| -found.depth.at(x, y) * found.range_px)
 }
@@ -377,8 +377,13 @@ mod tests {
                 apply_touches(&form, &outline, &touches[..n], Some(&mut last)),
                 apply_touches(&form, &outline, &touches[..n], None),
             );
-            let inside =
-                outline.inside().values().iter().enumerate().filter(|(_, is)| **is).map(|(i, _)| i);
+            let inside = outline
+                .inside_pixels()
+                .values()
+                .iter()
+                .enumerate()
+                .filter(|(_, is)| **is)
+                .map(|(i, _)| i);
             let (mut turned, mut off) = (0.0f32, 0.0f32);
             for i in inside {
                 turned = turned.max(draft.normals.values()[i].distance(whole.normals.values()[i]));

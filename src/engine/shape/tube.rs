@@ -34,7 +34,7 @@ pub fn tube(
     let reach = silhouette_distance(outline, joined);
     let rim = OutlineRim::of(outline, joined);
     let raw = balls(outline, &reach);
-    let inside = outline.inside();
+    let inside = outline.inside_pixels();
     let screen = |x: usize, y: usize| {
         let length = (SMOOTHING * raw.at(x, y).max(0.0).sqrt()).max(LEAST_SMOOTHING_PX);
         1.0 / (length * length)
@@ -63,7 +63,7 @@ pub fn tube(
 /// max_c (r²(c) − |x − c|²) over the inside: rows first, then columns, each an upper envelope of
 /// parabolas.
 pub fn balls(outline: &Outline, reach: &Plane<f32>) -> Plane<f32> {
-    let (size, inside) = (outline.size(), outline.inside());
+    let (size, inside) = (outline.size(), outline.inside_pixels());
     let (w, h) = (size.width as usize, size.height as usize);
     let ball = |x: usize, y: usize| {
         if inside.at(x, y) { -f64::from(reach.at(x, y)).powi(2) } else { f64::INFINITY }

@@ -16,7 +16,7 @@ pub struct Anchor {
 
 impl Anchor {
     /// Pins the image where it lies.
-    pub fn fixed(at: Vec2) -> Self {
+    pub fn pin(at: Vec2) -> Self {
         Self { at, source: at }
     }
 }
@@ -39,7 +39,7 @@ impl Bend {
 
     /// An operator with the image pinned at some points, canvas px.
     pub fn pin_at(operator: Operator, at: impl IntoIterator<Item = Vec2>) -> Self {
-        Self { operator, anchors: at.into_iter().map(Anchor::fixed).collect(), ..Self::default() }
+        Self { operator, anchors: at.into_iter().map(Anchor::pin).collect(), ..Self::default() }
     }
 
     /// Moves anchors and pieces with the canvas.
@@ -128,23 +128,23 @@ fn shepard_gradients(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<Vec2> {
 /// Anchors beyond the second have no weight; a single one, or two at the same place, leave all of
 /// it to the first.
 pub fn segment(anchors: &[Anchor], q: Vec2) -> Vec<f32> {
-    let along = along_segment(anchors, q).max(0.0).min(1.0);
+    let along = project_onto_segment(anchors, q).max(0.0).min(1.0);
     (0..anchors.len()).map(|i| [1.0 - along, along].get(i).copied().unwrap_or(0.0)).collect()
 }
 
 /// ∇w_i of [`segment`]; 0 beyond its ends.
 fn segment_gradients(anchors: &[Anchor], q: Vec2) -> Vec<Vec2> {
-    let inside = (0.0..=1.0).contains(&along_segment(anchors, q));
+    let inside = (0.0..=1.0).contains(&project_onto_segment(anchors, q));
     let slope = if inside { segment_slope(anchors) } else { Vec2::ZERO };
     (0..anchors.len()).map(|i| [-slope, slope].get(i).copied().unwrap_or(Vec2::ZERO)).collect()
 }
 
 /// The projection of q on the line through the first two anchors: 0 at the first, 1 at the second.
-fn along_segment(anchors: &[Anchor], q: Vec2) -> f32 {
+fn project_onto_segment(anchors: &[Anchor], q: Vec2) -> f32 {
     anchors.first().map_or(0.0, |first| (q - first.at).dot(segment_slope(anchors)))
 }
 
-/// Gradient of [`along_segment`]: (q_1 − q_0) / |q_1 − q_0|², 0 where there is no segment.
+/// Gradient of [`project_onto_segment`]: (q_1 − q_0) / |q_1 − q_0|², 0 where there is no segment.
 pub(super) fn segment_slope(anchors: &[Anchor]) -> Vec2 {
     match anchors {
         [first, second, ..] if first.at != second.at => {
@@ -162,7 +162,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn anchors(at: &[(f32, f32)]) -> Vec<Anchor> {
-        at.iter().map(|&(x, y)| Anchor::fixed(vec2(x, y))).collect()
+        at.iter().map(|&(x, y)| Anchor::pin(vec2(x, y))).collect()
     }
 
     #[test]
@@ -208,7 +208,7 @@ mod tests {
             let many = anchors(&[(0.0, 0.0), (17.0, 3.0), (-20.0, 44.0)]);
             let q = vec2(x, y);
             prop_assume!(many.iter().all(|a| a.at.distance(q) > 3.0));
-            let t = along_segment(&many, q);
+            let t = project_onto_segment(&many, q);
             prop_assume!(t.abs() > 0.02 && (t - 1.0).abs() > 0.02);
             for weights in [Weights::Shepard { power: 2.0 }, Weights::Shepard { power: 3.0 }, Weights::Segment] {
                 let gradients = weights.gradients(&many, q);

@@ -98,7 +98,7 @@ impl SeedGrid {
     fn nearest(&self, pixel: (usize, usize)) -> (i32, i32) {
         let middle = vec2(pixel.0 as f32 + 0.5, pixel.1 as f32 + 0.5);
         let (mut best, mut least) = ((0, 0), f32::MAX);
-        for cell in around((self.cell(pixel.0), self.cell(pixel.1))) {
+        for cell in neighboring_cells((self.cell(pixel.0), self.cell(pixel.1))) {
             let away = square(self.seed_of(cell) - middle);
             if away < least {
                 (best, least) = (cell, away);
@@ -120,7 +120,7 @@ fn square(v: Vec2) -> f32 {
 }
 
 /// A cell and its neighbors, row by row.
-fn around((i, j): (i32, i32)) -> [(i32, i32); 9] {
+fn neighboring_cells((i, j): (i32, i32)) -> [(i32, i32); 9] {
     std::array::from_fn(|k| (i + k as i32 % 3 - 1, j + k as i32 / 3 - 1))
 }
 
@@ -337,7 +337,7 @@ impl BallPlaces {
     }
 
     /// The place that the neighbor of a bit shows at (x, y): its own, moved there; in steps.
-    pub fn beside(&self, x: usize, y: usize, bit: usize) -> [f32; 2] {
+    pub fn place_beside(&self, x: usize, y: usize, bit: usize) -> [f32; 2] {
         let (dx, dy) = SEAM_STEPS[bit & 7];
         let step = self.seam_px as i32;
         let at = self.places.at_clamped(x as i32 + dx * step, y as i32 + dy * step);
@@ -374,7 +374,7 @@ impl Surface {
                     let whole = front.map(|front| front.ball_places(settings));
                     let of = |pixel: &super::ContourPixel| {
                         let other = pixel.nearest_other().zip(whole.as_ref());
-                        other.map_or([0; 2], |(other, whole)| whole.moved(other, pixel))
+                        other.map_or([0; 2], |(other, whole)| whole.place_after_move(other, pixel))
                     };
                     BallPlaces::without_seams(far.map(self.size(), of), settings)
                 },
@@ -390,7 +390,7 @@ impl BallPlaces {
     }
 
     /// The place of one pixel, moved to another.
-    fn moved(&self, from: (i32, i32), to: &super::ContourPixel) -> [u16; 2] {
+    fn place_after_move(&self, from: (i32, i32), to: &super::ContourPixel) -> [u16; 2] {
         let [x, y] = self.places.at_clamped(from.0, from.1);
         let most = self.ball_px * self.steps;
         let step = |at: u16, by: i32| (f32::from(at) + by as f32 * self.steps).max(0.0).min(most);

@@ -236,11 +236,8 @@ mod tests {
     fn combining_changes_normals_alone() {
         let size = Size::new(20, 10);
         let depth = Plane::from_fn(size, |x, _| x as f32 / 19.0);
-        let maps = Maps {
-            normals: Plane::filled(size, Vec3::Z),
-            depth,
-            coverage: Plane::filled(size, 255),
-        };
+        let maps =
+            Maps { normals: Plane::full(size, Vec3::Z), depth, coverage: Plane::full(size, 255) };
         let base = Arc::new(Surface::new(maps).unwrap());
         let lean = vec3(0.6, 0.0, 0.8);
         let next = base.combined(|x, _| (x >= 10).then_some((lean, 1.0)));

@@ -63,7 +63,7 @@ impl ContourPixel {
         if self.own_turn == Vec2::ZERO || center.z <= 0.0 {
             return center;
         }
-        let nbar = continued::within_rim(vec2(center.x, -center.y) + self.own_turn);
+        let nbar = continued::shorten_to_rim(vec2(center.x, -center.y) + self.own_turn);
         vec3(nbar.x, -nbar.y, continued::nz_of(nbar))
     }
 

@@ -38,7 +38,7 @@ impl Sharpness {
 /// * `nbar`: n̄_x, n̄_y.
 pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u8>> {
     let maps = NormalSteps { links, nbar };
-    let mut steps = Plane::filled(links.size(), 0u8);
+    let mut steps = Plane::full(links.size(), 0u8);
     let width = links.width().max(1);
     steps
         .values_mut()
@@ -196,7 +196,7 @@ impl NormalSteps<'_> {
                 let turns = |next| self.nbar(at).distance(self.nbar(next)) >= CERTAIN.least;
                 if !is_cut(steps, at, axis)
                     && [start, (x + 1, y + 1)].into_iter().all(|end| is_at_crease(steps, end))
-                    && self.after(at, axis).is_some_and(turns)
+                    && self.pixel_after(at, axis).is_some_and(turns)
                 {
                     closed.push((at, CREASE << axis.shift()));
                 }
@@ -229,13 +229,13 @@ impl NormalSteps<'_> {
         vec2(self.nbar[0].at(x, y), self.nbar[1].at(x, y))
     }
 
-    fn after(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
+    fn pixel_after(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
         let bit = if axis == Axis::Across { links::RIGHT } else { links::DOWN };
         let next = if axis == Axis::Across { (x + 1, y) } else { (x, y + 1) };
         (self.links.at(x, y) & bit != 0).then_some(next)
     }
 
-    fn before(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
+    fn pixel_before(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
         let bit = if axis == Axis::Across { links::LEFT } else { links::UP };
         let last =
             if axis == Axis::Across { (x.wrapping_sub(1), y) } else { (x, y.wrapping_sub(1)) };
@@ -244,15 +244,15 @@ impl NormalSteps<'_> {
 
     /// Whether the step after a pixel crosses a crease, or is likely to.
     fn flags(&self, at: (usize, usize), axis: Axis) -> u8 {
-        let Some(next) = self.after(at, axis) else { return 0 };
+        let Some(next) = self.pixel_after(at, axis) else { return 0 };
         let (here, there) = (self.nbar(at), self.nbar(next));
         let step = here.distance(there);
         // Half of a mixed step may be shorter than the whole.
         if step < LIKELY.least {
             return 0;
         }
-        let before = self.before(at, axis).map(|at| (at, self.nbar(at)));
-        let after = self.after(next, axis).map(|at| (at, self.nbar(at)));
+        let before = self.pixel_before(at, axis).map(|at| (at, self.nbar(at)));
+        let after = self.pixel_after(next, axis).map(|at| (at, self.nbar(at)));
         let sharp = |step: f32, beside: [Option<f32>; 2]| {
             let longest = beside.into_iter().flatten().reduce(f32::max);
             match longest {
@@ -272,11 +272,11 @@ impl NormalSteps<'_> {
         };
         let from_before = before.map(|b| b.1.distance(here));
         let ahead = after.map_or(0, |(at, nbar)| {
-            let beyond = self.after(at, axis).map(|at| self.nbar(at).distance(nbar));
+            let beyond = self.pixel_after(at, axis).map(|at| self.nbar(at).distance(nbar));
             over(here, there, nbar, [from_before, beyond])
         });
         let behind = before.map_or(0, |(at, nbar)| {
-            let earlier = self.before(at, axis).map(|at| self.nbar(at).distance(nbar));
+            let earlier = self.pixel_before(at, axis).map(|at| self.nbar(at).distance(nbar));
             over(nbar, here, there, [earlier, after.map(|a| a.1.distance(there))])
         });
         let all = alone | ahead | behind;
@@ -325,7 +325,7 @@ mod tests {
                     + if (x + y) % 3 == 0 { 0.12 } else { 0.0 }
             })
         };
-        let (links, nx, ny) = (Plane::filled(SIZE, 15u8), value(1), value(2));
+        let (links, nx, ny) = (Plane::full(SIZE, 15u8), value(1), value(2));
         let links = links.updated(|x, y, all| {
             let off = |bit: u8, is: bool| if is { bit } else { 0 };
             all & !(off(links::LEFT, x == 0)

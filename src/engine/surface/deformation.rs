@@ -81,13 +81,13 @@ impl<'a> Deformation<'a> {
     /// nearest surface values, so that a stroke continues over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         // The many dabs that nothing bends allocate no memory.
-        let pinned = [Anchor::fixed(at)];
+        let pinned = [Anchor::pin(at)];
         let anchors = if surface.is_none() || operator.is_identity() { &[][..] } else { &pinned };
         Self::pin_anchors(
             surface,
             size,
             (operator, Weights::default(), anchors),
-            Surface::near_point,
+            Surface::values_near,
         )
         .with_planes(|surface, settings, anchors| {
             LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at))
@@ -197,7 +197,7 @@ impl<'a> Deformation<'a> {
     pub fn at(&self, x: i32, y: i32) -> Vec2 {
         let q = self.center(x, y);
         if let Some((planes, (_, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
-            return self.within_reach(q, planes.at(x, y));
+            return self.limit_to_reach(q, planes.at(x, y));
         }
         let weights = self.weights.at(&self.anchors(), q);
         let moved: Vec2 = self
@@ -206,10 +206,10 @@ impl<'a> Deformation<'a> {
             .zip(weights)
             .map(|(pin, w)| w * (self.offset(pin, q, x, y) + (pin.anchor.source - pin.anchor.at)))
             .sum();
-        self.within_reach(q, q + moved)
+        self.limit_to_reach(q, q + moved)
     }
 
-    fn within_reach(&self, q: Vec2, d: Vec2) -> Vec2 {
+    fn limit_to_reach(&self, q: Vec2, d: Vec2) -> Vec2 {
         self.reach.map_or(d, |reach| reach.limit(q, d))
     }
 
@@ -374,7 +374,7 @@ fn sane(weights: Weights) -> Weights {
 
 /// What an anchor reads.
 fn at_anchor(surface: &Surface, at: Vec2) -> MapValues {
-    surface.at_point(at).unwrap_or(MapValues::BACKGROUND)
+    surface.values_at(at).unwrap_or(MapValues::BACKGROUND)
 }
 
 fn map_values(surface: &Surface, x: usize, y: usize) -> MapValues {

@@ -143,9 +143,9 @@ mod tests {
     fn whatever_is_computed_is_counted_and_cleared() {
         let size = Size::new(96, 80);
         let maps = Maps {
-            normals: Plane::filled(size, Vec3::new(0.3, 0.1, 0.9)),
+            normals: Plane::full(size, Vec3::new(0.3, 0.1, 0.9)),
             depth: Plane::from_fn(size, |x, _| x as f32 / 96.0),
-            coverage: Plane::filled(size, 255),
+            coverage: Plane::full(size, 255),
         };
         let surface = Arc::new(Surface::new(maps).unwrap());
         let before = surface.cached_bytes();

@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn an_operator_that_moves_nothing_flows_nowhere() {
         let surface = sphere();
-        let anchors = vec![Anchor::fixed(vec2(50.5, 50.5))];
+        let anchors = vec![Anchor::pin(vec2(50.5, 50.5))];
         let bend = |operator| Bend { operator, anchors: anchors.clone(), ..Bend::default() };
         let still =
             FlowField::of_deformation(Some(&surface), surface.size(), &bend(Operator::None));

@@ -117,7 +117,7 @@ mod tests {
             Plane::from_fn(size, |x, y| vec3(x as f32 - 31.5, 23.5 - y as f32, 40.0).normalize());
         let asked = std::cell::Cell::new(0);
         let go_on = || asked.replace(asked.get() + 1) < 2;
-        assert!(depth_from_normals_while(&normals, &Plane::filled(size, true), &go_on).is_none());
+        assert!(depth_from_normals_while(&normals, &Plane::full(size, true), &go_on).is_none());
         assert_eq!(
             asked.get(),
             4,
@@ -152,14 +152,13 @@ mod tests {
     fn flat_normals_and_holes_give_flat_finite_depth() {
         let size = Size::new(40, 30);
         let inside = Plane::from_fn(size, |x, y| (x / 7 + y / 5) % 2 == 0);
-        let found = depth_from_normals(&Plane::filled(size, Vec3::Z), &inside).unwrap();
+        let found = depth_from_normals(&Plane::full(size, Vec3::Z), &inside).unwrap();
         for (z, i) in found.depth.values().iter().zip(inside.values()) {
             assert_eq!(z.is_nan(), !i);
             assert!(!i || z.abs() < 1e-5);
         }
         assert!(
-            depth_from_normals(&Plane::filled(size, Vec3::Z), &Plane::filled(size, false))
-                .is_none()
+            depth_from_normals(&Plane::full(size, Vec3::Z), &Plane::full(size, false)).is_none()
         );
     }
 }

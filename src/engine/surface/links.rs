@@ -81,7 +81,7 @@ pub fn find(
     depth_range_px: f32,
 ) -> Plane<u8> {
     let maps = StepMaps { nbar: [nbar_x, nbar_y], nz, depth, coverage, depth_range_px };
-    let mut jumps = Plane::filled(depth.size(), 0u8);
+    let mut jumps = Plane::full(depth.size(), 0u8);
     let width = depth.width().max(1);
     jumps
         .values_mut()
@@ -142,7 +142,7 @@ pub fn joined_neighbors(linked: &Plane<u8>, (x, y): (usize, usize)) -> [bool; 9]
 
 /// Removes the links between pixels of different pieces.
 pub fn cut(links: &mut Plane<u8>, piece: impl Fn(usize, usize) -> u32 + Sync) {
-    let whole = std::mem::replace(links, Plane::filled(links.size(), 0));
+    let whole = std::mem::replace(links, Plane::full(links.size(), 0));
     let (w, h) = (whole.width(), whole.height());
     *links = whole.updated(|x, y, linked| {
         let here = piece(x, y);
@@ -238,24 +238,24 @@ impl StepMaps<'_> {
     }
 
     /// The pixel after one, to the right (axis 0) or below (1).
-    fn after(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
+    fn pixel_after(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
         let next = if axis == 0 { (x + 1, y) } else { (x, y + 1) };
         (next.0 < self.depth.width() && next.1 < self.depth.height()).then_some(next)
     }
 
-    fn before(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
+    fn pixel_before(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
         if axis == 0 { Some((x.checked_sub(1)?, y)) } else { Some((x, y.checked_sub(1)?)) }
     }
 
     /// Both ends of the step after a pixel are on a surface.
     fn are_covered(&self, at: (usize, usize), axis: usize) -> bool {
         let covered = |(x, y): (usize, usize)| self.coverage.at(x, y) > 0;
-        covered(at) && self.after(at, axis).is_some_and(covered)
+        covered(at) && self.pixel_after(at, axis).is_some_and(covered)
     }
 
     /// The step of depth after a pixel, px; `None` where one of its ends is no surface.
     fn step(&self, at: (usize, usize), axis: usize) -> Option<f32> {
-        let next = self.after(at, axis).filter(|_| self.are_covered(at, axis))?;
+        let next = self.pixel_after(at, axis).filter(|_| self.are_covered(at, axis))?;
         Some((self.depth.at(next.0, next.1) - self.depth.at(at.0, at.1)) * self.depth_range_px)
     }
 
@@ -271,26 +271,28 @@ impl StepMaps<'_> {
     /// also jump relative to the steps before and after. The tolerance is half a slope plus 1.5 px,
     /// for curvature and coarse depth.
     fn excess(&self, at: (usize, usize), axis: usize) -> f32 {
-        let (Some(step), Some(next)) = (self.step(at, axis), self.after(at, axis)) else {
+        let (Some(step), Some(next)) = (self.step(at, axis), self.pixel_after(at, axis)) else {
             return 0.0;
         };
         let (here, there) = (self.slope(at, axis), self.slope(next, axis));
-        let by_normals = beyond(step, here, there) / (1.5 + 0.5 * here.abs().max(there.abs()));
+        let by_normals =
+            excess_beyond(step, here, there) / (1.5 + 0.5 * here.abs().max(there.abs()));
         if by_normals <= LIKELY {
             return 0.0;
         }
-        let before = self.before(at, axis).and_then(|at| self.step(at, axis));
+        let before = self.pixel_before(at, axis).and_then(|at| self.step(at, axis));
         let after = self.step(next, axis);
         let Some((before, after)) = before.or(after).zip(after.or(before)) else {
             return by_normals;
         };
         // The tolerance of the flatter side counts: the other may itself be a jump.
-        by_normals.min(beyond(step, before, after) / (1.5 + 0.5 * before.abs().min(after.abs())))
+        by_normals
+            .min(excess_beyond(step, before, after) / (1.5 + 0.5 * before.abs().min(after.abs())))
     }
 }
 
 /// How far a value lies outside of the range that two others span.
-fn beyond(value: f32, a: f32, b: f32) -> f32 {
+fn excess_beyond(value: f32, a: f32, b: f32) -> f32 {
     (a.min(b) - value).max(value - a.max(b)).max(0.0)
 }
 
@@ -348,7 +350,7 @@ mod tests {
         let depth =
             Plane::from_fn(size, |x, y| (high - height(at(x, y).0, at(x, y).1)) / (high - low));
         let normals = Plane::from_fn(size, |x, y| normal(at(x, y).0, at(x, y).1));
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
+        Surface::new(Maps { normals, depth, coverage: Plane::full(size, 255) }).unwrap()
     }
 
     /// Rows of which the link from column 29 to column 30 is broken.

@@ -21,7 +21,7 @@ impl Maps {
             .updated(|_, _, n| if n.is_finite() { n.normalize_or_zero() } else { Vec3::ZERO });
         let inside = unit.map(|n| n != Vec3::ZERO);
         let depth = depth_from_normals(&unit, &inside).map(|found| found.depth);
-        let depth = depth.unwrap_or_else(|| Plane::filled(unit.size(), f32::NAN));
+        let depth = depth.unwrap_or_else(|| Plane::full(unit.size(), f32::NAN));
         Self { coverage: inside.map(|inside| if inside { 255 } else { 0 }), normals: unit, depth }
     }
 
@@ -81,10 +81,10 @@ mod tests {
     fn maps_without_a_surface_are_refused_by_it() {
         let bad = [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY];
         for normal in bad {
-            let maps = Maps::from_normals(Plane::filled(Size::new(4, 3), normal));
+            let maps = Maps::from_normals(Plane::full(Size::new(4, 3), normal));
             assert_eq!(Surface::new(maps).err(), Some(SurfaceError::Empty), "{normal}");
         }
-        let maps = Maps::from_depth(Plane::filled(Size::new(4, 3), f32::NAN), 10.0);
+        let maps = Maps::from_depth(Plane::full(Size::new(4, 3), f32::NAN), 10.0);
         assert_eq!(Surface::new(maps).err(), Some(SurfaceError::Empty));
     }
 }

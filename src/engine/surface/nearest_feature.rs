@@ -162,7 +162,7 @@ mod tests {
         let near = nearest(&valid).unwrap();
         assert_eq!(near.at(0, 0), 10);
         assert_eq!(near.at(8, 6), 5 * 9 + 7);
-        assert!(nearest(&Plane::filled(size, false)).is_none());
+        assert!(nearest(&Plane::full(size, false)).is_none());
     }
 
     #[test]
@@ -178,10 +178,10 @@ mod tests {
             assert!(found == nearest(&valid(seed)).unwrap(), "{seed}");
             known.keep(&valid(seed), found);
         }
-        let marked = Plane::filled(Size::new(30, 20), 7);
+        let marked = Plane::full(Size::new(30, 20), 7);
         known.keep(&valid(1), marked.clone());
         assert!(known.take(&valid(1)) == Some(marked), "it is not sought again");
-        assert!(known.take(&Plane::filled(Size::new(3, 2), false)).is_none());
+        assert!(known.take(&Plane::full(Size::new(3, 2), false)).is_none());
     }
 
     /// The same sweeps pixel by pixel.
@@ -189,7 +189,7 @@ mod tests {
         const NONE: u32 = u32::MAX;
         let size = valid.size();
         let (w, h) = (valid.width(), valid.height());
-        let mut near = Plane::filled(size, NONE);
+        let mut near = Plane::full(size, NONE);
         for (i, &v) in valid.values().iter().enumerate() {
             if v {
                 near.values_mut()[i] = i as u32;

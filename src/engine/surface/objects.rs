@@ -20,7 +20,7 @@ pub struct Objects {
     /// 0 where there is no surface, else one more than the object's place in `rects`.
     labels: Plane<u32>,
     rects: Vec<Rect>,
-    /// As [`Objects::around_blocks`] gives them.
+    /// As [`Objects::objects_of_blocks`] gives them.
     blocks: OnceLock<Plane<u32>>,
 }
 
@@ -59,7 +59,7 @@ impl Objects {
     /// One object for each part that is seen.
     fn of_parts(surface: &Surface, parts: &Plane<u32>) -> Self {
         let mut numbers = BTreeMap::new();
-        let (mut labels, mut rects) = (Plane::filled(surface.size(), 0), Vec::new());
+        let (mut labels, mut rects) = (Plane::full(surface.size(), 0), Vec::new());
         let width = parts.width();
         let seen = parts.values().iter().zip(surface.coverage_plane().values()).enumerate();
         for (i, (part, _)) in seen.filter(|(_, (part, covered))| **part > 0 && **covered > 0) {
@@ -86,7 +86,7 @@ impl Objects {
 
     /// The object that covers all pixels of each block of the canvas and the ring around it; 0
     /// where there is none.
-    pub(in crate::surface) fn around_blocks(&self) -> &Plane<u32> {
+    pub(in crate::surface) fn objects_of_blocks(&self) -> &Plane<u32> {
         once(&self.blocks, || {
             let (w, h) = (self.labels.width(), self.labels.height());
             let size = Size::new(w.div_ceil(BLOCK) as u32, h.div_ceil(BLOCK) as u32);
@@ -188,7 +188,7 @@ impl PieceForest {
     }
 
     fn number_objects(mut self, surface: &Surface) -> Objects {
-        let mut labels = Plane::filled(surface.size(), 0);
+        let mut labels = Plane::full(surface.size(), 0);
         let mut rects: Vec<Rect> = Vec::new();
         for i in 0..self.parent.len() {
             if surface.coverage_plane().values()[i] == 0 {

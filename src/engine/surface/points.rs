@@ -53,13 +53,13 @@ impl Surface {
     }
 
     /// What the maps hold at a point; `None` off the surface.
-    pub fn at_point(&self, q: Vec2) -> Option<MapValues> {
+    pub fn values_at(&self, q: Vec2) -> Option<MapValues> {
         let (surface, at) = self.read_at(q);
-        (surface.is_on(at)).then(|| self.near_point(q))
+        (surface.is_on(at)).then(|| self.values_near(q))
     }
 
     /// The same; off the surface, what it holds nearest to the point: maps are grown outward.
-    pub fn near_point(&self, q: Vec2) -> MapValues {
+    pub fn values_near(&self, q: Vec2) -> MapValues {
         let (surface, at) = self.read_at(q);
         let values = surface.interpolate_maps(at);
         let depth = match self.points.as_ref().is_none_or(|points| points.has_same_depths) {
@@ -71,7 +71,7 @@ impl Surface {
 
     /// The maps between the pixels of this surface itself.
     fn interpolate_maps(&self, q: Vec2) -> MapValues {
-        let mut around = self.linked_pixels_around(q);
+        let mut around = self.linked_pixels(q);
         let (x, y) = match (around.next(), around.next()) {
             (Some(_), Some(_)) => {
                 let of = |x: usize, y: usize| self.normal(x, y).extend(self.depth(x, y));
@@ -89,14 +89,14 @@ impl Surface {
         MapValues { depth: self.depth(x, y), nbar: self.nbar(x, y), nz: self.normal(x, y).z }
     }
 
-    /// A value of each pixel between pixels: the mean over [`Surface::linked_pixels_around`]; where none is
+    /// A value of each pixel between pixels: the mean over [`Surface::linked_pixels`]; where none is
     /// covered, at the pixel that holds the point.
     pub fn interpolate<T: Add<Output = T> + Mul<f32, Output = T>>(
         &self,
         q: Vec2,
         of: impl Fn(usize, usize) -> T,
     ) -> T {
-        let parts = self.linked_pixels_around(q).map(|(x, y, share)| of(x, y) * share);
+        let parts = self.linked_pixels(q).map(|(x, y, share)| of(x, y) * share);
         parts.reduce(|sum, part| sum + part).unwrap_or_else(|| {
             let (x, y) = self.pixel_of(q);
             of(x, y)
@@ -106,10 +106,7 @@ impl Surface {
     /// The pixels whose centers lie around a point of the map and which links join, without
     /// crossing a contour, to the one that holds it, or to the covered one nearest to it; and their
     /// bilinear shares, which add up to 1. None where none is covered.
-    pub fn linked_pixels_around(
-        &self,
-        q: Vec2,
-    ) -> impl Iterator<Item = (usize, usize, f32)> + use<> {
+    pub fn linked_pixels(&self, q: Vec2) -> impl Iterator<Item = (usize, usize, f32)> + use<> {
         let AroundPoint { pixels, mut shares } = AroundPoint::of(self, q);
         let covered = pixels.map(|(x, y)| self.coverage(x, y) > 0);
         // Of equal shares the last: a point between pixels is held by the one to its right and

@@ -232,7 +232,12 @@ impl PoissonSolver {
         let w = self.grid.w;
         let bands = out.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
-                residual_row(self.grid.row(y), around(v, w, y), &b[y * w..(y + 1) * w], out);
+                residual_row(
+                    self.grid.row(y),
+                    neighboring_rows(v, w, y),
+                    &b[y * w..(y + 1) * w],
+                    out,
+                );
                 constraints
                     .each_in(y * w..(y + 1) * w, |i, stiffness| out[i - y * w] -= stiffness * v[i]);
             }
@@ -259,7 +264,7 @@ impl PoissonSolver {
         let bands = pulled.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
             let mut sum = 0.0;
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
-                rows::apply_row(self.grid.row(y), around(direction, w, y), out);
+                rows::apply_row(self.grid.row(y), neighboring_rows(direction, w, y), out);
                 constraints.each_in(y * w..(y + 1) * w, |i, stiffness| {
                     out[i - y * w] += stiffness * direction[i]
                 });
@@ -306,7 +311,13 @@ impl PoissonSolver {
         };
         let relax = |step: f32, from: &[f32], to: &mut [f32]| {
             rows_of(to, &|y, out| {
-                relax_row(self.grid.row(y), around(from, w, y), &b[y * w..(y + 1) * w], step, out);
+                relax_row(
+                    self.grid.row(y),
+                    neighboring_rows(from, w, y),
+                    &b[y * w..(y + 1) * w],
+                    step,
+                    out,
+                );
                 constraints.each_in(y * w..(y + 1) * w, |i, stiffness| {
                     let (sum, pull) = self.grid.pull(from, i);
                     out[i - y * w] = from[i] + step * ((b[i] + pull) / (sum + stiffness) - from[i]);
@@ -362,7 +373,7 @@ impl ConjugateSystem for PoissonSystem<'_> {
 }
 
 /// A row of values with those above and below; none beyond the grid.
-fn around(v: &[f32], w: usize, y: usize) -> [&[f32]; 3] {
+fn neighboring_rows(v: &[f32], w: usize, y: usize) -> [&[f32]; 3] {
     let row = |y: usize| v.get(y * w..(y + 1) * w).unwrap_or(&[]);
     [if y == 0 { &[] } else { row(y - 1) }, row(y), row(y + 1)]
 }

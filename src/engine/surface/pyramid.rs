@@ -74,7 +74,7 @@ impl<T: Join> Pyramid<T> {
             .map(&mut leaf)
             .collect();
         let mut levels: Vec<Plane<T>> = Plane::from_values(blocks, leaves).into_iter().collect();
-        let tiles = levels.first().map(by_tiles).unwrap_or_default();
+        let tiles = levels.first().map(join_by_tiles).unwrap_or_default();
         while let Some(last) = levels.last()
             && (levels.len() <= TILE_LEVEL || last.size().area() > 1)
         {
@@ -105,7 +105,7 @@ impl Pyramid<TurnSpan> {
     }
 }
 
-fn by_tiles<T: Join>(leaves: &Plane<T>) -> Vec<BlockFigures> {
+fn join_by_tiles<T: Join>(leaves: &Plane<T>) -> Vec<BlockFigures> {
     let across = leaves.width().div_ceil(TILE_BLOCKS);
     let figures =
         if leaves.size().area() > 0 { leaves.at(0, 0).figures().as_ref().len() } else { 0 };

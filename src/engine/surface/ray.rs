@@ -98,8 +98,8 @@ impl RayMap {
     fn of(surface: &Surface) -> Self {
         let size = surface.size();
         let mut map = Self {
-            nearness: Plane::filled(size, NOWHERE),
-            blocks: BLOCKS.map(|side| Plane::filled(blocks_of(size, side), NOWHERE)),
+            nearness: Plane::full(size, NOWHERE),
+            blocks: BLOCKS.map(|side| Plane::full(blocks_of(size, side), NOWHERE)),
             nearest: NOWHERE,
             farthest: -NOWHERE,
             thickness: THICKNESS * size.longer_side(),
@@ -131,7 +131,7 @@ impl RayMap {
         let flat = vec2(step.x, -step.y);
         match self.near {
             None => flat,
-            Some(near) => (flat + near.beside_at(at) * step.z) * (nearness / near.focal_px()),
+            Some(near) => (flat + near.offset_at(at) * step.z) * (nearness / near.focal_px()),
         }
     }
 
@@ -174,7 +174,7 @@ impl RayMap {
     /// The step from which on a line has left the block that it is in after `i` steps, and whether
     /// it passes in front of all of that block.
     #[inline(always)]
-    fn ahead(&self, line: &RayLine, i: usize) -> (usize, bool) {
+    fn step_out_of_block(&self, line: &RayLine, i: usize) -> (usize, bool) {
         let at = line.at(i as f32);
         let mut next = i + 1;
         for (side, blocks) in BLOCKS.into_iter().zip(&self.blocks) {
@@ -199,7 +199,7 @@ impl RayMap {
         let (mut i, mut checked) = (1, 0);
         while i <= line.steps {
             if i >= checked {
-                let (next, is_clear) = self.ahead(line, i);
+                let (next, is_clear) = self.step_out_of_block(line, i);
                 if is_clear {
                     (place, i) = (RayPlace::Before, next);
                     continue;

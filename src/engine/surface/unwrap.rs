@@ -101,7 +101,7 @@ impl Unwrapping {
     ) -> Self {
         let whole = front.map(|front| front.unwrapping(settings));
         let [x, y] = [0, 1].map(|axis| {
-            far.continued(size, |x, y| {
+            far.continue_map(size, |x, y| {
                 whole.as_ref().map_or(0.0, |whole| whole.planes()[axis].at(x, y))
             })
         });
@@ -188,7 +188,7 @@ impl Metric {
                     metric::stretch_in_perspective(
                         nbar,
                         nz,
-                        near.beside(x, y),
+                        near.offset_of_pixel(x, y),
                         near.farness(surface.depth(x, y)),
                         amount,
                     )
@@ -212,7 +212,7 @@ fn couplings(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> Poisso
     let facing = |i: usize| {
         let facing = near.map_or(nz[i], |near| {
             let (x, y) = (rect.x0 as usize + i % w, rect.y0 as usize + i / w);
-            metric::facing_in_perspective(vec2(nx[i], ny[i]), nz[i], near.beside(x, y))
+            metric::facing_in_perspective(vec2(nx[i], ny[i]), nz[i], near.offset_of_pixel(x, y))
         });
         facing.max(metric::STEEPEST_NZ).min(1.0)
     };

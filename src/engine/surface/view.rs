@@ -66,7 +66,7 @@ impl Eye {
     ///
     /// * `from_middle`: map px.
     #[inline(always)]
-    pub fn toward(self, from_middle: Vec2) -> Vec3 {
+    pub fn direction_to_eye(self, from_middle: Vec2) -> Vec3 {
         match self {
             Eye::Afar => Vec3::Z,
             Eye::At { focal_px, beside } => {
@@ -95,7 +95,7 @@ impl Surface {
     #[inline(always)]
     pub fn view(&self, x: usize, y: usize) -> Vec3 {
         let (at, size) = (self.canvas_pixel(x as i32, y as i32), self.canvas_size());
-        self.eye.toward(Vec2::new(at.0 as f32 + 0.5, at.1 as f32 + 0.5) - size.center())
+        self.eye.direction_to_eye(Vec2::new(at.0 as f32 + 0.5, at.1 as f32 + 0.5) - size.center())
     }
 
     /// n·v of a pixel: 1 faces the eye, 0 is seen edge-on.
@@ -141,16 +141,20 @@ mod tests {
     #[test]
     fn views_open_as_wide_as_the_field_of_view() {
         let eye = Eye::of_fov(Some(90.0), Size::new(200, 100));
-        assert!((eye.toward(vec2(100.0, 0.0)) - vec3(-1.0, 0.0, 1.0).normalize()).length() < 1e-6);
         assert!(
-            (eye.toward(vec2(0.0, 100.0)) - vec3(0.0, 1.0, 1.0).normalize()).length() < 1e-6,
+            (eye.direction_to_eye(vec2(100.0, 0.0)) - vec3(-1.0, 0.0, 1.0).normalize()).length()
+                < 1e-6
+        );
+        assert!(
+            (eye.direction_to_eye(vec2(0.0, 100.0)) - vec3(0.0, 1.0, 1.0).normalize()).length()
+                < 1e-6,
             "y is down"
         );
-        assert_eq!(eye.toward(Vec2::ZERO), Vec3::Z);
+        assert_eq!(eye.direction_to_eye(Vec2::ZERO), Vec3::Z);
         for none in [None, Some(0.0), Some(180.0), Some(f32::NAN), Some(-40.0)] {
             assert_eq!(Eye::of_fov(none, Size::new(200, 100)), Eye::Afar);
         }
-        assert_eq!(Eye::Afar.toward(vec2(70.0, 3.0)), Vec3::Z);
+        assert_eq!(Eye::Afar.direction_to_eye(vec2(70.0, 3.0)), Vec3::Z);
     }
 
     #[test]
@@ -171,9 +175,9 @@ mod tests {
     fn a_surface_is_seen_as_before_at_another_size() {
         let size = Size::new(64, 48);
         let maps = Maps {
-            normals: Plane::filled(size, vec3(0.6, 0.0, 0.8)),
-            depth: Plane::filled(size, 0.5),
-            coverage: Plane::filled(size, 255),
+            normals: Plane::full(size, vec3(0.6, 0.0, 0.8)),
+            depth: Plane::full(size, 0.5),
+            coverage: Plane::full(size, 255),
         };
         let surface = Surface::new(maps).unwrap().with_eye(Eye::of_fov(Some(60.0), size));
         let double = surface.stretched(Size::new(128, 96)).unwrap();
@@ -192,18 +196,18 @@ mod tests {
     fn points_are_read_between_the_covered_pixels_around_them() {
         let size = Size::new(8, 8);
         let maps = Maps {
-            normals: Plane::filled(size, Vec3::Z),
-            depth: Plane::filled(size, 0.5),
+            normals: Plane::full(size, Vec3::Z),
+            depth: Plane::full(size, 0.5),
             coverage: Plane::from_fn(size, |x, _| if x < 4 { 255 } else { 0 }),
         };
         let surface = Surface::new(maps).unwrap();
-        let shares: Vec<_> = surface.linked_pixels_around(vec2(2.75, 3.0)).collect();
+        let shares: Vec<_> = surface.linked_pixels(vec2(2.75, 3.0)).collect();
         assert_eq!(shares, [(2, 2, 0.375), (3, 2, 0.125), (2, 3, 0.375), (3, 3, 0.125)]);
         assert_eq!(
-            surface.linked_pixels_around(vec2(3.75, 3.5)).collect::<Vec<_>>(),
+            surface.linked_pixels(vec2(3.75, 3.5)).collect::<Vec<_>>(),
             [(3, 3, 1.0)],
             "what is bare does not count"
         );
-        assert_eq!(surface.linked_pixels_around(vec2(7.0, 3.0)).count(), 0);
+        assert_eq!(surface.linked_pixels(vec2(7.0, 3.0)).count(), 0);
     }
 }

@@ -76,9 +76,9 @@ fn brush(settings: &mut MyPaintSettings) -> Brush {
     let custom = settings.custom().within(0.0, 0.0);
     let radius_log = settings.take_added("radius_logarithmic", 2.0);
     let base = settings.base("radius_logarithmic", 2.0);
-    let here = dab::hardness(settings, radius_log.base.exp()).halfway();
+    let here = dab::hardness(settings, radius_log.base.exp()).middle_value();
     let radius = DabSmoothing::new(settings, here).radius_log_here(radius_log.clone());
-    let shrunk = (radius_log.halfway() - radius.halfway()).exp().max(0.2).min(5.0);
+    let shrunk = (radius_log.middle_value() - radius.middle_value()).exp().max(0.2).min(5.0);
     // A constant is part of the size.
     let size = (2.0 * radius.base.max(-2.0).min(6.9).exp()).max(0.1);
     let lengths = Lengths { radius: base.max(-2.0).min(6.9).exp(), size, shrunk };

@@ -83,7 +83,7 @@ pub fn encode(
         pixels.chunks_exact(canvas.width as usize).skip(rect.y0 as usize).take(rect.height());
     let part = rows.flat_map(|row| row.iter().skip(rect.x0 as usize).take(rect.width()));
     let under = options.background.map_or([0.0; 4], |color| color.premultiplied());
-    let part: Vec<[f32; 4]> = part.map(|&[r, g, b, a]| over([r, g, b, a], under)).collect();
+    let part: Vec<[f32; 4]> = part.map(|&[r, g, b, a]| compose_over([r, g, b, a], under)).collect();
     match format {
         ExportFormat::Png => {
             let values: Vec<u8> =
@@ -108,7 +108,7 @@ pub fn encode(
 }
 
 /// A premultiplied pixel over a color.
-fn over(p: [f32; 4], under: [f32; 4]) -> [f32; 4] {
+fn compose_over(p: [f32; 4], under: [f32; 4]) -> [f32; 4] {
     std::array::from_fn(|c| p[c] + under[c] * (1.0 - p[3]))
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use std::{ops::RangeInclusive, path::Path};
 
 /// The path of a key below another: `layers[2]` and `operator` make `layers[2].operator`.
-pub fn below(path: &str, key: &str) -> String {
+pub fn child_path(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
@@ -232,17 +232,17 @@ impl<'a> Fields<'a> {
         let former = former_name(name).filter(is_there).filter(|_| !is_there(&name));
         let name = former.unwrap_or(name);
         self.known.push(name);
-        self.map.get(name).map(|value| self.below(name, value))
+        self.map.get(name).map(|value| self.child(name, value))
     }
 
     /// A field that has no default.
     pub fn require(&mut self, name: &'static str) -> Result<JsonNode<'a>> {
         let found = self.get(name);
-        found.ok_or_else(|| self.below(name, &Value::Null).refusal("is missing"))
+        found.ok_or_else(|| self.child(name, &Value::Null).refusal("is missing"))
     }
 
-    fn below(&self, name: &str, value: &'a Value) -> JsonNode<'a> {
-        JsonNode { path: below(&self.node.path, name), value, ..self.node }
+    fn child(&self, name: &str, value: &'a Value) -> JsonNode<'a> {
+        JsonNode { path: child_path(&self.node.path, name), value, ..self.node }
     }
 
     /// A number within a range, or the default where it is absent.
@@ -293,7 +293,7 @@ impl<'a> Fields<'a> {
             Some(known) => format!("is unknown; did you mean “{known}”?"),
             None => format!("is unknown; the known ones are {}", self.known.join(", ")),
         };
-        Err(self.below(name, value).refusal(reason))
+        Err(self.child(name, value).refusal(reason))
     }
 }
 

@@ -151,7 +151,7 @@ fn path_of(open: &[OpenBracket]) -> String {
     for step in open {
         match step {
             OpenBracket::List { index } => path += &format!("[{index}]"),
-            OpenBracket::Object { key, .. } => path = super::fields::below(&path, key),
+            OpenBracket::Object { key, .. } => path = super::fields::child_path(&path, key),
         }
     }
     path

@@ -50,7 +50,7 @@ impl FilledEdge {
     /// What [`constant`] finds, if anything.
     pub fn of(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<Self> {
         let texel = constant(stored, coverage)?;
-        let mut holds = Plane::filled(stored.size, true);
+        let mut holds = Plane::full(stored.size, true);
         for (channel, number) in stored.channels.iter().zip(texel) {
             channel.keep_where(&mut holds, |v| is_same_number(v, number, stored.lossy));
         }

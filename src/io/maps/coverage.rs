@@ -60,7 +60,7 @@ const SHARE_OF_ONE_DEPTH: f32 = 0.5;
 /// that have its normal are, also within a ring or a handle.
 fn not_flat(normal: &StoredMap, depth: Option<&StoredMap>) -> Plane<u8> {
     let holds_edge = |map: &StoredMap| FilledEdge::of(map, None).map(|edge| edge.holds);
-    let Some(flat) = holds_edge(normal) else { return Plane::filled(normal.size, 255) };
+    let Some(flat) = holds_edge(normal) else { return Plane::full(normal.size, 255) };
     let outside = border::connected_to_border(normal.size, |i| flat.values()[i]);
     let far = depth.filter(|depth| depth.size == normal.size).and_then(holds_edge);
     let count = |is: &dyn Fn(usize) -> bool| {

@@ -171,7 +171,7 @@ fn range(values: &Plane<f32>, covered: impl Fn(usize) -> bool + Sync) -> Option<
 }
 
 /// The polarity as far as it is known without normals: from the convention, then from the encoding.
-pub fn near_override(overrides: &DepthConvention, raw: &RawDepth) -> Option<bool> {
+pub fn polarity_override(overrides: &DepthConvention, raw: &RawDepth) -> Option<bool> {
     match (overrides.near, overrides.encoding) {
         (Near::Low, _) => Some(false),
         (Near::High, _) => Some(true),

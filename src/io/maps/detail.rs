@@ -43,7 +43,7 @@ pub fn read(
     let flip =
         [overrides.flip_x.or(Some(false)), overrides.flip_y, overrides.flip_z.or(Some(false))];
     let fixed = FixedAxes { order: Some(order), flip, ..FixedAxes::default() };
-    let everywhere = Plane::filled(stored.size, true);
+    let everywhere = Plane::full(stored.size, true);
     let axes = orientation::find(&vectors, &everywhere, None, &fixed).axes;
     Ok(vectors.map(|n| axes.apply(n)))
 }

@@ -195,7 +195,7 @@ mod tests {
     }
 
     fn handedness_of(vectors: &Plane<Vec3>, flip_y: bool) -> f32 {
-        let all = ReducedMap::all(vectors, &Plane::filled(vectors.size(), true));
+        let all = ReducedMap::all(vectors, &Plane::full(vectors.size(), true));
         ReducedMap::handedness(
             &all,
             AxisMapping { flip: [false, flip_y, false], ..AxisMapping::PLAIN },
@@ -221,8 +221,7 @@ mod tests {
         let size = Size::new(64, 64);
         let rim: Vec<(usize, Vec2)> = (0..64).map(|i| (i * 64, vec2(-1.0, 0.0))).collect();
         let of = |lean: f32| {
-            let vectors =
-                Plane::filled(size, crate::math::vec3(-lean, 0.0, 1.0).normalize_or_zero());
+            let vectors = Plane::full(size, crate::math::vec3(-lean, 0.0, 1.0).normalize_or_zero());
             AxisEvidence::gather(&vectors, &[], &rim, &[], None, AxisMapping::PLAIN).rim.x
         };
         assert!(of(0.1) == 0.0 && of(2.0) > 0.9, "{} {}", of(0.1), of(2.0));

@@ -258,7 +258,7 @@ fn space(
     if let Some(found) = aligned.map(|a| a.free).filter(|r| r.fit > 0.8 && sound(r)) {
         // Depth of unknown polarity leaves half a turn about the view axis open; the rim settles
         // it.
-        let matrix = upright(found.matrix, by_rim.as_ref());
+        let matrix = turn_upright(found.matrix, by_rim.as_ref());
         findings.add_detected("normal.space", "world", (found.fit * 2.0 - 1.0).max(0.1));
         findings.note(format!(
             "the normals are in world space; the rotation to the camera ({:.0}°) was found from \
@@ -283,7 +283,7 @@ fn space(
 }
 
 /// The matrix or its half turn about the view axis, whichever fits the silhouette better.
-fn upright(matrix: Mat3, by_rim: Option<&world::FittedRotation>) -> Mat3 {
+fn turn_upright(matrix: Mat3, by_rim: Option<&world::FittedRotation>) -> Mat3 {
     let Some(rim) = by_rim else { return matrix };
     let likeness =
         |m: Mat3| (m.transpose() * rim.matrix).to_cols_array().iter().step_by(4).sum::<f32>();

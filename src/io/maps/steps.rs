@@ -76,7 +76,7 @@ mod tests {
         let size = Size::new(64, 4);
         let ramp = |x: usize| x as f32 / 640.0 + if x >= 32 { 0.5 } else { 0.0 };
         let stored = Plane::from_fn(size, |x, _| (ramp(x) * 255.0).round() / 255.0);
-        let smooth = smooth(&stored, 1.0 / 255.0, &Plane::filled(size, true));
+        let smooth = smooth(&stored, 1.0 / 255.0, &Plane::full(size, true));
         let worst =
             |p: &Plane<f32>| (4..60).map(|x| (p.at(x, 1) - ramp(x)).abs()).fold(0.0, f32::max);
         assert!(

@@ -128,7 +128,7 @@ impl LoadedMaps<'_> {
     ) -> (Option<Plane<Vec3>>, Option<Plane<f32>>) {
         let Self { normal, depth, overrides, .. } = *self;
         let near_override =
-            raw_depth.as_ref().and_then(|d| depth::near_override(&overrides.depth, d));
+            raw_depth.as_ref().and_then(|d| depth::polarity_override(&overrides.depth, d));
         let leaning = raw_depth.as_ref().map_or(0.0, |d| d.near_high_leaning);
         let near = orientation::FixedAxes {
             near_high: near_override,
@@ -224,7 +224,7 @@ impl UnderstoodMaps {
     ) -> Maps {
         let UnderstoodMaps { normals, planar, inside, mut coverage, is_masked, fov_degrees } = self;
         let size = inside.size();
-        let nothing = || Plane::filled(size, f32::NAN);
+        let nothing = || Plane::full(size, f32::NAN);
         let normalized = planar.and_then(|p| depth::normalize(p, &inside, &coverage, findings));
         findings.depth_range = normalized.as_ref().map(|n| (n.near, n.far));
         let (normals, depth) = match (normals, normalized) {
@@ -250,7 +250,7 @@ impl UnderstoodMaps {
                 ));
                 (differentiate::normals_from_depth(&n.depth, range_px), n.depth)
             }
-            (None, None) => (Plane::filled(size, Vec3::ZERO), nothing()),
+            (None, None) => (Plane::full(size, Vec3::ZERO), nothing()),
         };
         if is_masked {
             drop_unknown(&mut coverage, &normals, findings);

@@ -24,7 +24,7 @@ pub fn decode_paint(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) 
     if let Some(painted) = pixels::decode_tiles(bytes, x, y, budget) {
         return Ok(painted);
     }
-    let bitmap = super::upright(file, bytes, budget)?;
+    let bitmap = super::decode_upright(file, bytes, budget)?;
     let warning = bitmap.warning;
     let gathered = GatheredTiles::new(
         file,
@@ -115,7 +115,7 @@ impl<'a> GatheredTiles<'a> {
         if let Some(icc) = bitmap.icc.as_deref() {
             let bytes = (size_of::<[u16; 4]>() * self.size.area()) as u64;
             self.ask(bytes)?;
-            profiled = super::through_profile(&bitmap.image, icc);
+            profiled = super::convert_by_profile(&bitmap.image, icc);
             self.beside_bytes += if profiled.is_some() { bytes } else { 0 };
         }
         let mut add = |texels: &[[u16; 4]]| {

@@ -148,7 +148,7 @@ fn our_own_profile_is_one_that_strict_readers_take() {
     let places = (0..number(128)).map(|i| number(132 + 12 * i + 4));
     assert!(places.into_iter().all(|at| at % 4 == 0 && at < profile.len()));
     assert!(ColorProfile::new_from_slice(&profile).unwrap().description.is_some());
-    assert!(through_profile(&opaque(), &profile).is_none());
+    assert!(convert_by_profile(&opaque(), &profile).is_none());
 }
 
 #[test]

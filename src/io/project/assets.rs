@@ -55,7 +55,7 @@ pub struct StoredPixels<'a> {
 
 impl AssetList {
     /// Starts with what was encoded for an earlier version of the document.
-    pub fn again(made: MadeFiles) -> Self {
+    pub fn continue_from(made: MadeFiles) -> Self {
         Self { made, ..Self::default() }
     }
 

@@ -5,7 +5,7 @@ use super::MERGED;
 use super::manifest::Manifest;
 use super::png_header::{PNG_HEADER, png_size};
 use super::reader::ProjectReader;
-use super::repair::{alone, layer_mut, name_of, without_layers};
+use super::repair::{isolate, layer_mut, name_of, without_layers};
 use super::stack::{self, ElementContent, StackElement, StackXml};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};
 use crate::math::Size;
@@ -69,7 +69,7 @@ fn fit_together(
                 let area = |size: Size| u64::from(size.width) * u64::from(size.height);
                 used_px = used_px
                     .saturating_add(*sizes.entry(src).or_insert_with(|| begun().map_or(0, area)));
-                within(reading, used_px)?;
+                refuse_too_many_pixels(reading, used_px)?;
             }
         }
     }
@@ -77,7 +77,7 @@ fn fit_together(
 }
 
 /// Refuses more pixels than the pictures of a document may have together.
-fn within(reading: &ProjectReader, used_px: u64) -> Result<()> {
+fn refuse_too_many_pixels(reading: &ProjectReader, used_px: u64) -> Result<()> {
     if used_px > reading.budget.document_px {
         let reason =
             format!("its layers hold more than {} pixels together", reading.budget.document_px);
@@ -241,7 +241,7 @@ impl ForeignReader<'_, '_> {
         let bytes = self.reading.archive.bytes(src, self.reading.budget.file_bytes).ok()?;
         ((shown.x, shown.y) == (x, y) && crc32fast::hash(&bytes) == shown.crc).then_some(())?;
         let layer = layer_mut(&mut saved.value, &shown.layer)?.clone();
-        match self.reading.read_value(&alone(&saved.around, &layer)) {
+        match self.reading.read_value(&isolate(&saved.around, &layer)) {
             Ok(document) => document.layers.into_iter().next().map(Arc::unwrap_or_clone),
             Err(error) => {
                 self.reading.note_loss(format!("“{}” became pixels: {error}", name_of(&layer)));
@@ -268,7 +268,7 @@ impl ForeignReader<'_, '_> {
             }
         };
         self.used_px += decoded.size.area() as u64;
-        within(self.reading, self.used_px)?;
+        refuse_too_many_pixels(self.reading, self.used_px)?;
         self.used_bytes += decoded.tiles.bytes() as u64;
         self.reading.budget.room(self.reading.file, "what its layers hold", self.used_bytes)?;
         self.known.insert(key.clone(), decoded.tiles.clone());

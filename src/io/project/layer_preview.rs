@@ -91,7 +91,7 @@ impl<'d> SeenLayers<'d> {
         Self { document, moved: document.moved_layers(), others, singles }
     }
 
-    fn by(&self, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
+    fn layers_seen_by(&self, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
         std::iter::once(layer).chain(&self.others).cloned().collect()
     }
 
@@ -136,12 +136,13 @@ fn render_preview(
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
-    let preview = layer.cache.preview.get(&document.scene(), &seen.by(layer), &kind, || {
-        render().unwrap_or_else(|error| {
-            failed = Some(error);
-            None
-        })
-    });
+    let preview =
+        layer.cache.preview.get(&document.scene(), &seen.layers_seen_by(layer), &kind, || {
+            render().unwrap_or_else(|error| {
+                failed = Some(error);
+                None
+            })
+        });
     failed.map_or(Ok(preview), Err)
 }
 
@@ -185,7 +186,10 @@ pub fn cache_previews(document: &Document, previews: &BTreeMap<LayerId, EncodedP
                 continue;
             }
             let kind = PreviewKind { masked: true, whole_rim: false, effects: false };
-            layer.cache.preview.get(&scene, &seen.by(layer), &kind, || Some(encoded.clone()));
+            layer
+                .cache
+                .preview
+                .get(&scene, &seen.layers_seen_by(layer), &kind, || Some(encoded.clone()));
             // Nothing hides any of its pixels, so they are its preview.
             if bare.is_some() {
                 layer

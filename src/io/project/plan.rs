@@ -123,7 +123,7 @@ impl Planner<'_> {
         let above = last.map_or(0, |last| last + 1);
         for runs in runs[above..].chunk_by(|a, b| are_on_surface(a) == are_on_surface(b)) {
             items.extend(
-                self.within_edge(runs)
+                self.plan_within_edge(runs)
                     .unwrap_or_else(|| runs.iter().flat_map(|run| self.run(run)).collect()),
             );
         }
@@ -132,7 +132,7 @@ impl Planner<'_> {
 
     /// Runs of layers on the surface in a group whose mask is its edge; `None` where each layer may
     /// as well have the edge itself.
-    fn within_edge(&self, runs: &[&[Arc<Layer>]]) -> Option<Vec<PlanItem>> {
+    fn plan_within_edge(&self, runs: &[&[Arc<Layer>]]) -> Option<Vec<PlanItem>> {
         let edge = self.edge.clone().filter(|_| runs.iter().all(|run| are_on_surface(run)))?;
         let bare = Planner { edge: None, ..*self };
         let items: Vec<PlanItem> =

@@ -126,7 +126,7 @@ pub fn without_layers(document: &Value) -> Value {
 }
 
 /// A document of one layer alone, with the selections that its strokes name.
-pub fn alone(around: &Value, layer: &Value) -> Value {
+pub fn isolate(around: &Value, layer: &Value) -> Value {
     let strokes = || layer["strokes"].as_array().into_iter().flatten();
     let is_named =
         |selection: &&Value| strokes().any(|stroke| stroke.get("selection") == selection.get("id"));
@@ -146,7 +146,7 @@ fn trouble(reading: &ProjectReader, around: &Value, layer: &Value) -> Option<cra
     {
         fields.shift_remove("layers");
     }
-    reading.read_value(&alone(around, &layer)).err()
+    reading.read_value(&isolate(around, &layer)).err()
 }
 
 /// Replaces a layer by its picture, or by an empty one; its blending stays.

@@ -79,9 +79,9 @@ pub fn read(json: &Value, files: &dyn Files) -> Document {
 /// after column.
 pub fn soft_surface(size: Size) -> Arc<Surface> {
     let coverage = Plane::from_fn(size, |x, _| [0, 64, 128, 191, 255][x % 5]);
-    let normals = Plane::filled(size, vec3(0.6, 0.0, 0.8));
+    let normals = Plane::full(size, vec3(0.6, 0.0, 0.8));
     Arc::new(
-        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage })
+        Surface::new(Maps { normals, depth: Plane::full(size, 0.5), coverage })
             .unwrap_or_else(|e| panic!("{e}")),
     )
 }

@@ -163,9 +163,9 @@ impl Colors<'_> {
         match self.mode {
             Mode::Bitmap | Mode::Duotone => pixels(&|i| [value(0, i); 3]),
             Mode::Multichannel if self.channels < 3 => pixels(&|i| [value(0, i); 3]),
-            Mode::Gray => self.through_profile(size, pixels(&|i| [value(0, i); 3])),
+            Mode::Gray => self.convert_by_profile(size, pixels(&|i| [value(0, i); 3])),
             Mode::Rgb => {
-                self.through_profile(size, pixels(&|i| [value(0, i), value(1, i), value(2, i)]))
+                self.convert_by_profile(size, pixels(&|i| [value(0, i), value(1, i), value(2, i)]))
             }
             Mode::Indexed => {
                 let mut rgba = pixels(&|i| self.look_up(value(0, i)));
@@ -204,7 +204,7 @@ impl Colors<'_> {
         self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc))
     }
 
-    fn through_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {
+    fn convert_by_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {
         match self.profile() {
             Some(icc) => picture::to_srgb(size, rgba, self.mode == Mode::Gray, icc),
             None => rgba,

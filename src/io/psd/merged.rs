@@ -57,8 +57,8 @@ pub fn read_merged<T: ColorValue>(
     let mut pixels = T::pixels(*colors, header.size, &slots, alpha.as_deref());
     // Photoshop blends the colors with white as far as they are transparent; some programs do not.
     if has_alpha && count.is_some() && is_on_white(&pixels.rgba) {
-        off_white(pixels.rgba.as_chunks_mut().0);
-        off_white(&mut pixels.rgba16);
+        remove_white(pixels.rgba.as_chunks_mut().0);
+        remove_white(&mut pixels.rgba16);
     }
     // Since the number of its version: whether the picture is real.
     let is_real = resource(resources, VERSION_INFO).is_none_or(|data| data.get(4) != Some(&0));
@@ -110,7 +110,7 @@ fn is_on_white(rgba: &[u8]) -> bool {
 
 /// Removes the white beneath colors as far as they are transparent; fully transparent pixels keep
 /// no color.
-pub fn off_white<T: ChannelValue + TryFrom<i64>>(texels: &mut [[T; 4]])
+pub fn remove_white<T: ChannelValue + TryFrom<i64>>(texels: &mut [[T; 4]])
 where
     i64: From<T>,
 {
@@ -132,14 +132,14 @@ mod tests {
     fn white_beneath_what_is_transparent_is_taken_away() {
         let mut rgba: Vec<u8> =
             [[255, 127, 127, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat();
-        off_white(rgba.as_chunks_mut().0);
+        remove_white(rgba.as_chunks_mut().0);
         assert_eq!(
             rgba,
             [[255, 0, 0, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat()
         );
         let mut rgba16: [[u16; 4]; 3] =
             [[65535, 32767, 32767, 32768], [65535, 60000, 59999, 6000], [65535, 65535, 65535, 0]];
-        off_white(&mut rgba16);
+        remove_white(&mut rgba16);
         assert_eq!(
             rgba16,
             [[65535, 0, 0, 32768], [65535, 5079, 5068, 6000], [65535, 65535, 65535, 0]]

@@ -386,7 +386,7 @@ fn numbers_of_colors_become_colors() {
 
 #[test]
 fn selections_kept_by_name_are_channels_for_other_programs() {
-    let coverage = |x: i32| CoverageGrid::filled(Rect::new(x, 3, x + 20, 90));
+    let coverage = |x: i32| CoverageGrid::full(Rect::new(x, 3, x + 20, 90));
     let named = |name: &str, coverage| NamedSelection {
         name: name.into(),
         selection: Arc::new(Selection::new(coverage)),

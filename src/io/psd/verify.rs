@@ -1,7 +1,7 @@
 //! Reads a Photoshop file that was just made, like any file, and compares it with its source.
 //! Floor 5. Not here: the check of projects (`project::read_back`).
 
-use super::merged::off_white;
+use super::merged::remove_white;
 use super::parse::{ParsedPsd, parse};
 use super::tree::restore;
 use super::{LayerRecord, RecordSection};
@@ -77,7 +77,7 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
     let mut expected = meant.merged.clone();
     if !meant.records.is_empty() {
         // As the reader takes the white away: no two pixels become the same by that.
-        off_white::<u8>(expected.as_chunks_mut().0);
+        remove_white::<u8>(expected.as_chunks_mut().0);
     }
     let Some(read) = parsed.merged.take() else { return Some("the picture of all layers".into()) };
     if !read.is_real || read.pixels.rgba != expected {

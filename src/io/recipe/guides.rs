@@ -78,7 +78,7 @@ mod tests {
 
     fn back(text: &str) -> Result<Document> {
         let (file, files, budget) =
-            (Path::new("r.json"), RecipeFolder::beside(Path::new("r.json")), Budget::default());
+            (Path::new("r.json"), RecipeFolder::folder_of(Path::new("r.json")), Budget::default());
         recipe::read(
             text.as_bytes(),
             recipe::RecipeSource { file, files: &files, budget: &budget, onto: None },

@@ -102,7 +102,7 @@ impl LayerReader<'_> {
 pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
     match operator {
         Operator::None => Vec::new(),
-        _ => vec![Anchor::fixed(center)],
+        _ => vec![Anchor::pin(center)],
     }
 }
 

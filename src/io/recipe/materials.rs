@@ -67,7 +67,7 @@ impl PartMaterial {
                 next.layers.remove(place);
                 place
             }
-            None => next.below_top_ink(),
+            None => next.layers_below_top_ink(),
         };
         let id = layer.id;
         next.layers.insert(place, Arc::new(layer));

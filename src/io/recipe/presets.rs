@@ -123,7 +123,7 @@ pub fn brush_to_json(brush: &Brush) -> Value {
 /// A preset in a file of its own; its pictures are next to it.
 pub fn load_preset(file: &Path, budget: &Budget) -> Result<BrushPreset> {
     let text = files::read_file(file, budget.json_bytes)?;
-    let folder = RecipeFolder::beside(file);
+    let folder = RecipeFolder::folder_of(file);
     let source = RecipeSource { file, files: &folder as &dyn Files, budget, onto: None };
     let mut pictures = PictureCache::default();
     let mut picture = |node: &JsonNode| pictures.source(source, node, Adjust::default());

@@ -42,7 +42,7 @@ impl LayerReader<'_> {
             let selection = match fields.get("mask") {
                 Some(mask) => Arc::new(self.selection(&mask, scene)?),
                 // A selection without bounds.
-                None => Arc::new(Selection::new(CoverageGrid::filled(self.size.rect()))),
+                None => Arc::new(Selection::new(CoverageGrid::full(self.size.rect()))),
             };
             fields.finish()?;
             let known = (selection.clone(), name.as_ref().map(|(name, _)| name.clone()));
@@ -243,7 +243,7 @@ mod tests {
     use std::path::Path;
 
     fn square(x0: i32) -> Selection {
-        Selection::new(CoverageGrid::filled(Rect::new(x0, 20, 90, 110)))
+        Selection::new(CoverageGrid::full(Rect::new(x0, 20, 90, 110)))
     }
 
     /// Two kept, one of them active, and strokes in another, in the active one moved, and in none.

@@ -114,7 +114,7 @@ pub fn write_strokes<'a>(
     let mut before: Option<JsonObject> = None;
     list.strokes.iter().map(move |stroke| {
         let brush = write_brush(stroke.brush());
-        let shortened = before.as_ref().and_then(|before| as_before(&brush, before));
+        let shortened = before.as_ref().and_then(|before| difference_from(&brush, before));
         let value = write(stroke, shortened.as_ref().unwrap_or(&brush));
         let value = with_selection(value, &write_of_stroke(stroke, selections));
         before = Some(brush);
@@ -145,7 +145,7 @@ fn write(stroke: &Stroke, brush: &JsonObject) -> Value {
 
 /// The difference of a brush from the one before it, if it is only that; a plain brush needs no
 /// fields.
-fn as_before(brush: &JsonObject, before: &JsonObject) -> Option<JsonObject> {
+fn difference_from(brush: &JsonObject, before: &JsonObject) -> Option<JsonObject> {
     let shared = |brush: &JsonObject| -> Vec<(String, Value)> {
         let fields = brush.fields().iter().filter(|(name, _)| !OWN.contains(&name.as_str()));
         fields.map(|(name, value)| (name.clone(), value.clone())).collect()

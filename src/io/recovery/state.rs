@@ -46,7 +46,7 @@ pub fn write(
 ) -> Result<()> {
     let DrawingVersion { document, aside } = version;
     let (pixels, shared) = (BTreeMap::new(), BTreeMap::new());
-    let mut assets = AssetList::again(std::mem::take(&mut known.made));
+    let mut assets = AssetList::continue_from(std::mem::take(&mut known.made));
     let renamed =
         assets.rename(file, document, &StoredPixels { pixels: &pixels, shared: &shared })?;
     let bare = Document {

@@ -99,7 +99,7 @@ fn selections_come_back_with_the_strokes_in_them_and_selecting_writes_no_stroke_
     use crate::raster::CoverageGrid;
     let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
-    let square = |x0| Selection::new(CoverageGrid::filled(crate::math::Rect::new(x0, 3, 40, 30)));
+    let square = |x0| Selection::new(CoverageGrid::full(crate::math::Rect::new(x0, 3, 40, 30)));
     let empty = Document::empty(Size::new(48, 40)).with_selection(Some(square(5)));
     let own = empty.stroke_selection().map(|own| own.moved(crate::math::vec2(1.5, 0.0)));
     let other = StrokeSelection::new(Arc::new(square(20)));

@@ -39,7 +39,7 @@ pub(super) fn of_lines(text: &Text, lines: &[Line]) -> String {
 }
 
 /// A drawing whose picture is a rectangle of its plane; `None` for something else than an SVG.
-pub(super) fn within(drawing: &str, bounds: Rect) -> Option<String> {
+pub(super) fn drawing_within(drawing: &str, bounds: Rect) -> Option<String> {
     let start = drawing.find("<svg")?;
     let end = start + drawing[start..].find('>')?;
     let (width, height) = (bounds.width(), bounds.height());

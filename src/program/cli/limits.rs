@@ -91,8 +91,8 @@ mod tests {
     #[test]
     fn a_given_ceiling_is_for_the_document_and_for_painting_it() {
         let size = Size::new(512, 512);
-        let depth = Plane::filled(size, 0.0);
-        let (normals, coverage) = (Plane::filled(size, Vec3::Z), Plane::filled(size, 255));
+        let depth = Plane::full(size, 0.0);
+        let (normals, coverage) = (Plane::full(size, Vec3::Z), Plane::full(size, 255));
         let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
         let document = Document { surface: Some(Arc::new(surface)), ..Document::empty(size) };
         let (held, painting) = (MemoryUse::of(&document).total(), document.flattening_bytes());

@@ -25,7 +25,7 @@ pub struct ObjectArgs {
     #[arg(long, value_name = "WORD", default_value = "auto", requires = "normal", value_parser = convention)]
     convention: NormalConvention,
     /// Which end of its depth is near: auto (detected), low or high
-    #[arg(long, value_name = "END", default_value = "auto", requires = "depth", value_parser = near)]
+    #[arg(long, value_name = "END", default_value = "auto", requires = "depth", value_parser = parse_near)]
     near: Near,
     /// The other object's mask
     #[arg(long, value_name = "FILE", requires = "maps")]
@@ -37,7 +37,7 @@ fn convention(word: &str) -> std::result::Result<NormalConvention, String> {
         .ok_or_else(|| format!("one of {}", NormalConvention::WORDS.join(", ")))
 }
 
-fn near(word: &str) -> std::result::Result<Near, String> {
+fn parse_near(word: &str) -> std::result::Result<Near, String> {
     Near::from_name(word).ok_or_else(|| {
         format!("one of {}", Near::ALL.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", "))
     })
@@ -84,7 +84,7 @@ pub fn load_object(
         let (document, notes) = read(&budget)?;
         return Ok(LoadedDocument { document, notes, reads: given.read_paths() });
     };
-    let files = TrackedFiles::new(RecipeFolder::beside(file));
+    let files = TrackedFiles::new(RecipeFolder::folder_of(file));
     let bytes = read_file(file, budget.file_bytes)?;
     let mut reads = vec![file.to_owned()];
     let (document, notes) = match FileKind::of(&bytes) {

@@ -81,21 +81,21 @@ fn presets() -> impl TypedValueParser<Value = Inflation> {
     })
 }
 
-fn within(text: &str, range: &Range) -> std::result::Result<f32, String> {
+fn parse_within(text: &str, range: &Range) -> std::result::Result<f32, String> {
     let number = text.parse().ok().filter(|v| range.contains(v));
     number.ok_or_else(|| format!("it must be between {} and {}", range.start(), range.end()))
 }
 
 fn puff(text: &str) -> std::result::Result<f32, String> {
-    within(text, &Inflation::PUFF)
+    parse_within(text, &Inflation::PUFF)
 }
 
 fn profile(text: &str) -> std::result::Result<f32, String> {
-    within(text, &Inflation::PROFILE)
+    parse_within(text, &Inflation::PROFILE)
 }
 
 fn rim(text: &str) -> std::result::Result<f32, String> {
-    within(text, &Inflation::RIM)
+    parse_within(text, &Inflation::RIM)
 }
 
 pub fn run(args: &ShapeArgs) -> Result<()> {

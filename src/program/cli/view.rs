@@ -195,7 +195,7 @@ fn open(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
         [recipe]
             if !loose && recipe.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) =>
         {
-            let files = TrackedFiles::new(RecipeFolder::beside(recipe));
+            let files = TrackedFiles::new(RecipeFolder::folder_of(recipe));
             let text = read_file(recipe, budget.json_bytes)?;
             let read = |budget: &Budget| {
                 recipe::read(

@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(shown(&session), Some([200, 20, 20]));
         fill(&mut session, srgb::Color::rgb(20, 200, 20));
         assert_eq!(shown(&session), Some([20, 200, 20]));
-        assert_eq!(session.open_documents[0].history.past().len(), 1);
+        assert_eq!(session.open_documents[0].history.past_names().len(), 1);
         assert!(!session.active().unwrap().is_dirty(), "the figure keeps the paint");
         // A stroke less on the ball is a stroke less on the figure.
         Action::Edit(EditAction::Undo {}).apply(&mut session).unwrap();

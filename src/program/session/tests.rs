@@ -88,7 +88,7 @@ fn a_slider_shows_as_it_moves_and_is_one_step_when_it_is_let_go() {
         .replay(Path::new("story"), &format!("{}\n{}", set(0.4, false), set(0.5, true)))
         .unwrap();
     assert_eq!(
-        session.active().unwrap().history.past().collect::<Vec<_>>(),
+        session.active().unwrap().history.past_names().collect::<Vec<_>>(),
         ["Brush stroke", "Opacity"]
     );
     assert_eq!(session.active().unwrap().document().layers[1].opacity, 0.5);
@@ -235,7 +235,7 @@ fn what_cannot_be_done_changes_nothing() {
         {"in":"file","do":"tab","index":9}"#;
     session.replay(Path::new("story"), hopeless).unwrap();
     assert!(is_same(&before, session.active().unwrap().document()));
-    assert_eq!(session.active().unwrap().history.past().len(), 0);
+    assert_eq!(session.active().unwrap().history.past_names().len(), 0);
     let wrong = session
         .replay(Path::new("story"), "{\"in\":\"layer\",\"do\":\"paint it black\"}")
         .unwrap_err();
@@ -268,7 +268,7 @@ fn strokes_are_selected_restyled_ordered_copied_and_baked_by_replay() {
         (pixel(&session, 100, 70), pixel(&session, 112, 123)),
         ([0xc0, 0x20, 0x10, 255], [0, 0, 255, 255])
     );
-    let past: Vec<&str> = session.active().unwrap().history.past().collect();
+    let past: Vec<&str> = session.active().unwrap().history.past_names().collect();
     assert_eq!(past[1..], ["Duplicate stroke", "Restyle stroke", "Move stroke"]);
     let rest = r#"
         {"in":"stroke","do":"take","layer":"1","stroke":1}

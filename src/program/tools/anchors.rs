@@ -270,7 +270,7 @@ mod tests {
 
     #[test]
     fn a_near_miss_takes_the_anchor_and_adds_none() {
-        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
+        let pinned = document(vec![Anchor::pin(vec2(30.0, 30.0))]);
         let anchors =
             dragged(&pinned, ModifierKeys::default(), vec2(46.0, 30.0), vec2(56.0, 40.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(40.0, 40.0), source: vec2(30.0, 30.0) }]);
@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn dragging_an_anchor_takes_its_content_along() {
-        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
+        let pinned = document(vec![Anchor::pin(vec2(30.0, 30.0))]);
         let anchors =
             dragged(&pinned, ModifierKeys::default(), vec2(33.0, 30.0), vec2(53.0, 40.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(50.0, 40.0), source: vec2(30.0, 30.0) }]);
@@ -298,7 +298,7 @@ mod tests {
 
     #[test]
     fn dragging_content_leaves_the_anchor_where_it_is() {
-        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
+        let pinned = document(vec![Anchor::pin(vec2(30.0, 30.0))]);
         let keys = ModifierKeys { ctrl: true, ..ModifierKeys::default() };
         let anchors = dragged(&pinned, keys, vec2(30.0, 30.0), vec2(35.0, 32.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(30.0, 30.0), source: vec2(25.0, 28.0) }]);
@@ -323,8 +323,7 @@ mod tests {
 
     #[test]
     fn alt_takes_an_anchor_away_and_nothing_else() {
-        let pinned =
-            document(vec![Anchor::fixed(vec2(30.0, 30.0)), Anchor::fixed(vec2(60.0, 30.0))]);
+        let pinned = document(vec![Anchor::pin(vec2(30.0, 30.0)), Anchor::pin(vec2(60.0, 30.0))]);
         let keys = ModifierKeys { alt: true, ..ModifierKeys::default() };
         assert_eq!(dragged(&pinned, keys, vec2(61.0, 30.0), vec2(61.0, 30.0)).unwrap().len(), 1);
         assert_eq!(dragged(&pinned, keys, vec2(10.0, 70.0), vec2(10.0, 70.0)), None);

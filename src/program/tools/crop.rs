@@ -123,12 +123,14 @@ impl CropGesture {
         let at = pen.place();
         let Some(area) = self.area.filter(|_| self.handle != TransformHandle::Outside) else {
             let ratio = self.ratio.or(pen.keys.shift.then_some(1.0));
-            return between(self.from, at, ratio);
+            return area_between(self.from, at, ratio);
         };
         let ratio =
             self.ratio.or(pen.keys.shift.then(|| area.width() as f32 / area.height() as f32));
         match self.handle {
-            TransformHandle::Corner(corner) => between(corners(area)[(corner + 2) % 4], at, ratio),
+            TransformHandle::Corner(corner) => {
+                area_between(corners(area)[(corner + 2) % 4], at, ratio)
+            }
             TransformHandle::Edge(side) => with_side(area, side, at, ratio),
             TransformHandle::Inside | TransformHandle::Outside | TransformHandle::Pivot => {
                 let by = place(at - self.from);
@@ -148,7 +150,7 @@ fn place(at: Vec2) -> (i32, i32) {
 
 /// The area from a fixed corner to the pen, at least a pixel; with an aspect it is as large as the
 /// farther side needs.
-fn between(fixed: Vec2, at: Vec2, ratio: Option<f32>) -> Rect {
+fn area_between(fixed: Vec2, at: Vec2, ratio: Option<f32>) -> Rect {
     let by = at - fixed;
     let (mut w, mut h) = (by.x.abs().max(1.0), by.y.abs().max(1.0));
     if let Some(ratio) = ratio.filter(|ratio| ratio.is_finite() && *ratio > 0.0) {
@@ -173,7 +175,7 @@ fn with_side(area: Rect, side: usize, at: Vec2, ratio: Option<f32>) -> Rect {
     }
     let (low, high) = (low.min(high), low.max(high));
     let size = (high - low).max(Vec2::ONE);
-    let Some(ratio) = ratio else { return between(low, low + size, None) };
+    let Some(ratio) = ratio else { return area_between(low, low + size, None) };
     let middle = (low + high) * 0.5;
     let is_upright = side.is_multiple_of(2);
     let size = if is_upright { vec2(size.y * ratio, size.y) } else { vec2(size.x, size.x / ratio) };
@@ -182,7 +184,7 @@ fn with_side(area: Rect, side: usize, at: Vec2, ratio: Option<f32>) -> Rect {
     } else {
         vec2(low.x, middle.y - 0.5 * size.y)
     };
-    between(low.round(), low.round() + size.round(), None)
+    area_between(low.round(), low.round() + size.round(), None)
 }
 
 impl Gesture for CropGesture {

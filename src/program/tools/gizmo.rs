@@ -97,7 +97,7 @@ impl TransformGizmo {
         let is_mesh =
             document.layer(layer)?.transform.as_ref().is_some_and(|own| own.mesh().is_some());
         // The points of a mesh lie where the mesh moved them.
-        let plane = if is_mesh { map.outside_own() } else { map.plane };
+        let plane = if is_mesh { map.map_outside_own() } else { map.plane };
         Self::new(document.frame_box(layer)?, plane, map.filter)
     }
 
@@ -255,7 +255,7 @@ impl GizmoMemory {
     }
 
     /// The gizmo around layers or the shape, with what is kept if they are the same ones.
-    pub fn around(&self, document: &Document, content: GizmoContent) -> Option<TransformGizmo> {
+    pub fn gizmo_for(&self, document: &Document, content: GizmoContent) -> Option<TransformGizmo> {
         let known = Some(self).filter(|kept| kept.is_of(content));
         let layers = content.layers();
         let turned =

@@ -101,7 +101,7 @@ impl NewGradientGesture {
 /// multiple of 45° and to nothing.
 fn end_at(snap: &SnapTargets, from: Vec2, pen: &PenSample) -> (Vec2, SnapLines) {
     if pen.keys.shift {
-        return (upright(from, pen.place()), SnapLines::default());
+        return (snap_to_compass(from, pen.place()), SnapLines::default());
     }
     let found = snap.point(pen.place());
     (found.at, found.lines)
@@ -132,7 +132,7 @@ impl Gesture for NewGradientGesture {
 }
 
 /// The nearest of the eight directions of the compass.
-fn upright(from: Vec2, to: Vec2) -> Vec2 {
+fn snap_to_compass(from: Vec2, to: Vec2) -> Vec2 {
     let step = std::f32::consts::FRAC_PI_4;
     let turn = ((to - from).to_angle() / step).round() * step;
     from + Vec2::from_angle(turn) * from.distance(to)
@@ -186,7 +186,7 @@ impl Gesture for GradientEndGesture {
             if self.end == GradientEnd::From { self.gradient.to } else { self.gradient.from };
         let found = self.snap.point(pen.place());
         let (at, lines) = match pen.keys.shift {
-            true => (upright(fixed, pen.place()), SnapLines::default()),
+            true => (snap_to_compass(fixed, pen.place()), SnapLines::default()),
             false => (found.at, found.lines),
         };
         self.lines = lines;

@@ -49,7 +49,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
                 settings,
                 document.scene(),
                 selection.clone(),
-                map.outside_own(),
+                map.map_outside_own(),
                 at,
             ),
         )

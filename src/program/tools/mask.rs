@@ -44,7 +44,7 @@ pub fn press_on_selection(
     let size = context.document.size;
     let mask = match context.document.active_coverage() {
         Some(selected) => selected.to_plane(size.rect()),
-        None => Plane::filled(size, 255),
+        None => Plane::full(size, 255),
     };
     let sees = Document { surface: context.document.surface.clone(), ..Document::empty(size) };
     paint(context, (pen, purpose), MaskTarget::Selection, Arc::new(mask), sees)
@@ -208,7 +208,7 @@ mod tests {
     fn masked(value: u8) -> Document {
         let size = Size::new(200, 130);
         let kind =
-            MaskKind::File { file: "m.png".into(), coverage: Arc::new(Plane::filled(size, value)) };
+            MaskKind::File { file: "m.png".into(), coverage: Arc::new(Plane::full(size, value)) };
         let fill = Layer::new("fill", Content::Fill(Color { r: 200, g: 10, b: 10, a: 255 }));
         let layer = Layer { mask: Some(LayerMask::new(kind)), ..fill };
         Document { layers: vec![Arc::new(layer)], ..Document::empty(size) }

@@ -48,7 +48,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if !of_shape && let Some(begun) = mesh::press(context, pen) {
         return begun;
     }
-    let Some(gizmo) = context.gizmo.around(document, content) else {
+    let Some(gizmo) = context.gizmo.gizmo_for(document, content) else {
         return (
             None,
             Outcome::Refused("The layer is empty: there is nothing to transform.".into()),

@@ -14,7 +14,7 @@ const HANDLE_PT: f32 = 9.0;
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(area) = session.tools.crop.area else { return };
     let corners = crop::corners(area);
-    outside(painter, session, corners, to_screen);
+    darken_outside(painter, session, corners, to_screen);
     let seen = corners.map(to_screen);
     let look = |width: f32, color: Color32| Stroke::new(width, color);
     let at = |u: f32, v: f32| to_screen(corners[0] + (corners[2] - corners[0]) * vec2(u, v));
@@ -40,7 +40,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
 }
 
 /// Darkens the canvas outside the area: four pieces around it, however the view is turned.
-fn outside(
+fn darken_outside(
     painter: &Painter,
     session: &Session,
     area: [Vec2; 4],

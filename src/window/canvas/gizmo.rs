@@ -23,7 +23,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
             .and_then(|layer| mesh::points_of(open.shown_document(), layer))
     {
         let Some(map) = open.shown_document().map_of(one) else { return };
-        let at = |p: Vec2| to_screen(map.outside_own().to_canvas(mesh.at(p).0).unwrap_or(p));
+        let at = |p: Vec2| to_screen(map.map_outside_own().to_canvas(mesh.at(p).0).unwrap_or(p));
         grid(painter, &mesh, &at);
         for (k, point) in points.into_iter().enumerate() {
             let is_selected = session.tools.transform.mesh_points.contains(&k);

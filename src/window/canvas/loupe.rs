@@ -69,7 +69,10 @@ fn pixel_mesh(at: Pos2, pixel: Vec2, grid: &TileGrid) -> Mesh {
             if middle.distance(at) < RADIUS_PT {
                 let square = Rect::from_center_size(middle, vec2(PIXEL_PT, PIXEL_PT));
                 let (x, y) = (x.saturating_add(dx), y.saturating_add(dy));
-                mesh.add_colored_rect(square, over_checker(grid.pixel(x, y), (x ^ y) & 1 == 0));
+                mesh.add_colored_rect(
+                    square,
+                    compose_over_checker(grid.pixel(x, y), (x ^ y) & 1 == 0),
+                );
             }
         }
     }
@@ -77,7 +80,7 @@ fn pixel_mesh(at: Pos2, pixel: Vec2, grid: &TileGrid) -> Mesh {
 }
 
 /// A premultiplied pixel over a square of the checkerboard.
-fn over_checker(pixel: [u8; 4], is_light: bool) -> Color32 {
+fn compose_over_checker(pixel: [u8; 4], is_light: bool) -> Color32 {
     let mut straight = [0; 4];
     unpremultiply(&pixel, &mut straight);
     let ground = CHECKER[usize::from(!is_light)].r();
@@ -93,10 +96,10 @@ mod tests {
     #[test]
     fn a_pixel_covers_the_checkerboard_by_its_alpha() {
         let [light, dark] = CHECKER;
-        assert_eq!(over_checker([0; 4], true), light);
-        assert_eq!(over_checker([0; 4], false), dark);
-        assert_eq!(over_checker([9, 80, 200, 255], true), Color32::from_rgb(9, 80, 200));
-        let half = over_checker([0, 0, 0, 128], true).r();
+        assert_eq!(compose_over_checker([0; 4], true), light);
+        assert_eq!(compose_over_checker([0; 4], false), dark);
+        assert_eq!(compose_over_checker([9, 80, 200, 255], true), Color32::from_rgb(9, 80, 200));
+        let half = compose_over_checker([0, 0, 0, 128], true).r();
         assert!(half.abs_diff(light.r() / 2) <= 1, "{half}");
     }
 

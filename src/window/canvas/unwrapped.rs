@@ -178,7 +178,7 @@ mod tests {
         let size = Size::new(200, 100);
         let normals = Plane::from_fn(size, |_, _| vec3(0.6, 0.0, 0.8).normalize_or(Vec3::Z));
         let depth = Plane::from_fn(size, |x, _| x as f32 / 199.0);
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
+        Surface::new(Maps { normals, depth, coverage: Plane::full(size, 255) }).unwrap()
     }
 
     #[test]

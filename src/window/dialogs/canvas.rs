@@ -77,12 +77,12 @@ impl CanvasSides {
         } else if self.keeps_aspect && taller {
             self.width = held(self.height as f32 * w / h);
         }
-        ui.weak(about(self.from, self.size()));
+        ui.weak(describe(self.from, self.size()));
     }
 }
 
 /// What a size means.
-fn about(from: Size, to: Size) -> String {
+fn describe(from: Size, to: Size) -> String {
     let cm = |px: u32| px as f32 / PRINT_PPI * 2.54;
     let millions = to.area() as f32 / 1e6;
     let (w, h) = (cm(to.width), cm(to.height));
@@ -196,7 +196,7 @@ impl TurnDialog {
                 DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
             begin_with(&ui.add(angle).labelled_by(label.id));
         });
-        ui.weak(about(self.size, CanvasChange::turn(self.size, f64::from(self.degrees)).size()));
+        ui.weak(describe(self.size, CanvasChange::turn(self.size, f64::from(self.degrees)).size()));
         answer(ui, requests, "Turn", CanvasAction::Turn { degrees: self.degrees })
     }
 }

@@ -4,7 +4,7 @@
 use super::{DialogAnswer, close};
 use eframe::egui::Ui;
 
-pub fn about(ui: &mut Ui) -> DialogAnswer {
+pub fn show_about(ui: &mut Ui) -> DialogAnswer {
     ui.set_width(360.0);
     ui.heading("Rilievo");
     ui.label(format!("Version {}", crate::io::version()));

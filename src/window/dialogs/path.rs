@@ -67,7 +67,7 @@ impl PathDialog {
         if self.listed.folder != self.folder {
             self.listed = FolderListing::of(&self.folder, self.purpose);
         }
-        self.above(ui, context.settings);
+        self.show_folder(ui, context.settings);
         let room_pt = (ui.ctx().content_rect().height() - 210.0).max(120.0).min(LIST_PT);
         let mut chosen = None;
         let size = vec2(ui.available_width(), room_pt);
@@ -76,7 +76,7 @@ impl PathDialog {
                 ui.set_width(PLACES_PT);
                 let area = ScrollArea::vertical().id_salt("places");
                 let area = area.max_height(room_pt).min_scrolled_height(room_pt);
-                area.show(ui, |ui| self.beside(ui, context.settings));
+                area.show(ui, |ui| self.show_places(ui, context.settings));
             });
             ui.separator();
             ui.vertical(|ui| chosen = self.rows(ui, room_pt, context.pictures));
@@ -118,7 +118,7 @@ impl PathDialog {
     }
 
     /// The folder, the one that it is in, and whether it is marked.
-    fn above(&mut self, ui: &mut Ui, settings: &mut Settings) {
+    fn show_folder(&mut self, ui: &mut Ui, settings: &mut Settings) {
         ui.horizontal(|ui| {
             let up = self.folder.parent().map(Path::to_owned);
             if ui.add_enabled(up.is_some(), Button::new("Up")).clicked() {
@@ -135,7 +135,7 @@ impl PathDialog {
     }
 
     /// Folders to go to: the user's own, marked ones, and those of recent files.
-    fn beside(&mut self, ui: &mut Ui, settings: &Settings) {
+    fn show_places(&mut self, ui: &mut Ui, settings: &Settings) {
         let mut recent: Vec<PathBuf> = Vec::new();
         for folder in settings.recent.iter().filter_map(|file| file.parent()) {
             if recent.len() < MOST_RECENT && !recent.iter().any(|known| known == folder) {

@@ -28,7 +28,7 @@ pub fn points(curve: &Curve, span: f32) -> Vec<Vec2> {
 }
 
 /// The curve through points of the square, of the kind of another.
-fn through(like: &Curve, points: Vec<Vec2>, span: f32) -> Option<Curve> {
+fn curve_through(like: &Curve, points: Vec<Vec2>, span: f32) -> Option<Curve> {
     if like.is_additive() {
         Curve::additive(points.iter().map(|p| vec2(p.x, (2.0 * p.y - 1.0) * span)).collect())
     } else {
@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<V
         line: &|points| points.to_vec(),
     };
     let changed = square.show(ui, points(curve, span))?;
-    through(curve, changed.to, span).map(|to| ValueChange { to, done: changed.done })
+    curve_through(curve, changed.to, span).map(|to| ValueChange { to, done: changed.done })
 }
 
 /// A square in which points are added, moved and removed.
@@ -191,7 +191,7 @@ mod tests {
         let curve = Curve::additive(vec![vec2(0.0, -2.0), vec2(1.0, 4.0)]).unwrap();
         let span = span_of(&curve);
         assert_eq!((span, points(&curve, span)), (5.0, vec![vec2(0.0, 0.3), vec2(1.0, 0.9)]));
-        let Some(Curve::Added(back)) = through(&curve, points(&curve, span), span) else {
+        let Some(Curve::Added(back)) = curve_through(&curve, points(&curve, span), span) else {
             panic!("it adds")
         };
         assert!(back.iter().zip([-2.0f32, 4.0]).all(|(p, y)| (p.y - y).abs() < 1e-5), "{back:?}");

@@ -10,7 +10,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ui.weak("No document is open.");
         return;
     };
-    let done = open.history.past().len() as i32;
+    let done = open.history.past_names().len() as i32;
     let opened = std::iter::once(("Opened".to_owned(), -done));
     let past = open
         .history

@@ -69,7 +69,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         }
         Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
         Content::Adjustment(live) => {
-            let histogram = beneath(ui, session, layer);
+            let histogram = histogram_beneath(ui, session, layer);
             let answer = adjustment::show(ui, live.params(), histogram.as_deref());
             setter.take(answer.changed.map(|c| c.map(|to| Property::Adjustment { to })));
             if answer.asks_for_table {
@@ -101,7 +101,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
 }
 
 /// The tones beneath an adjustment, counted again when other layers change.
-fn beneath(ui: &Ui, session: &Session, layer: &Layer) -> Option<Arc<Histogram>> {
+fn histogram_beneath(ui: &Ui, session: &Session, layer: &Layer) -> Option<Arc<Histogram>> {
     let document = session.active()?.document();
     let other = |(_, other): &(_, &Arc<Layer>)| {
         // A group is another one whenever what is in it changes.

@@ -88,7 +88,7 @@ fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     let mut to = None;
     for (tool, word) in SculptTool::ALL {
         let button = Button::selectable(now.tool == tool, sentence(word));
-        if ui.add(button).on_hover_text(about(tool)).clicked() {
+        if ui.add(button).on_hover_text(describe(tool)).clicked() {
             to = Some(ShapeSettings { tool, ..now });
         }
     }
@@ -127,7 +127,7 @@ fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     changed.or(to)
 }
 
-fn about(tool: SculptTool) -> &'static str {
+fn describe(tool: SculptTool) -> &'static str {
     match tool {
         SculptTool::Raise => "Builds the surface up (Ctrl lowers)",
         SculptTool::Lower => "Digs into it (Ctrl raises)",

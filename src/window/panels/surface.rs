@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             let is_on = session.overlay.as_deref() == Some(view.name());
             if ui
                 .add(Button::selectable(is_on, sentence(view.name())))
-                .on_hover_text(about(view))
+                .on_hover_text(describe(view))
                 .clicked()
             {
                 requests.act(Action::View(ViewAction::Overlay { view: Some(view.name().into()) }));
@@ -77,7 +77,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     });
 }
 
-fn about(view: SurfaceView) -> &'static str {
+fn describe(view: SurfaceView) -> &'static str {
     match view {
         SurfaceView::Normals => "Red to the right, green up, blue toward you",
         SurfaceView::Depth => "Black near, white far",

@@ -89,16 +89,16 @@ impl MainWindow {
                 let corner = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
                 let window = window.default_pos(corner).min_size([230.0, 300.0]);
                 let window = window.default_size([self.settings.layout.width_pt, 640.0]);
-                return drop(window.show(ui.ctx(), |ui| self.together(ui, requests)));
+                return drop(window.show(ui.ctx(), |ui| self.show_panels(ui, requests)));
             }
         };
         let beside = beside.default_size(self.settings.layout.width_pt).size_range(WIDTHS_PT);
-        let shown = beside.show(ui, |ui| self.together(ui, requests));
+        let shown = beside.show(ui, |ui| self.show_panels(ui, requests));
         self.settings.layout.width_pt = shown.response.rect.width().round();
     }
 
     /// The color, the panel in front, the layers below.
-    fn together(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
+    fn show_panels(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let floating = &self.settings.layout.floating;
         let shown = |is_below: bool| -> Vec<_> {
             let among = PanelKind::ALL.into_iter();
@@ -150,13 +150,18 @@ impl MainWindow {
         if has_below {
             CentralPanel::no_frame().show(ui, |ui| {
                 ui.add_space(2.0);
-                self.below(ui, &below, requests);
+                self.show_lower_panels(ui, &below, requests);
             });
         }
     }
 
     /// The layers or the shape.
-    fn below(&mut self, ui: &mut Ui, strip: &[(PanelKind, &str)], requests: &mut UiRequests) {
+    fn show_lower_panels(
+        &mut self,
+        ui: &mut Ui,
+        strip: &[(PanelKind, &str)],
+        requests: &mut UiRequests,
+    ) {
         let known =
             strip.iter().find(|(panel, _)| *panel == self.settings.layout.below).or(strip.first());
         let Some(&(front, _)) = known else { return };

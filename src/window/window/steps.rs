@@ -44,7 +44,9 @@ fn has_bent_stroke(session: &Session) -> bool {
 
 fn has_moved(session: &Session) -> bool {
     let moves = ["Move anchor", "Add anchor", "Move stroke", "Move layer"];
-    session.active().is_some_and(|open| open.history.past().any(|label| moves.contains(&label)))
+    session
+        .active()
+        .is_some_and(|open| open.history.past_names().any(|label| moves.contains(&label)))
 }
 
 impl MainWindow {

@@ -73,7 +73,7 @@ fn image() -> Layer {
         outside: Outside::Mirror,
         bend: Bend {
             operator: NORMAL,
-            anchors: vec![Anchor::fixed(AT + vec2(0.5, 0.5))],
+            anchors: vec![Anchor::pin(AT + vec2(0.5, 0.5))],
             ..Bend::default()
         },
         filter: ImageFilter::Bilinear,
@@ -291,7 +291,7 @@ fn a_stroke_with_its_own_attachment_moves_with_it_and_its_neighbors_stay() {
     let both = document(vec![flat]).with_part(other);
     let id = both.layers[0].id;
     let eye = [vec2(170.0, 60.0), vec2(190.0, 62.5)].map(Sample::at).to_vec();
-    let selection = Selection::new(CoverageGrid::filled(crate::math::Rect::new(150, 40, 186, 90)));
+    let selection = Selection::new(CoverageGrid::full(crate::math::Rect::new(150, 40, 186, 90)));
     let eye =
         Stroke::new(Brush { size: 10.0, ..Brush::default() }, Operator::None, Color::WHITE, eye)
             .within(Some(StrokeSelection::new(Arc::new(selection))));

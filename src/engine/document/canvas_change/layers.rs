@@ -44,7 +44,7 @@ impl Carrier<'_> {
                 return self.carried(&shown, &self.frame_of(&shown));
             }
             if !shown.content.is_shaping_surface() {
-                return self.carried(&under_its_mask(layer, self.change.from), &self.change.map);
+                return self.carried(&group_under_mask(layer, self.change.from), &self.change.map);
             }
         }
         self.carried(layer, &self.frame_of(layer))
@@ -286,7 +286,7 @@ fn is_mesh(layer: &Layer) -> bool {
 }
 
 /// A layer without its mask, in a group whose mask is that one as it lies on the canvas.
-fn under_its_mask(layer: &Arc<Layer>, canvas: Size) -> Layer {
+fn group_under_mask(layer: &Arc<Layer>, canvas: Size) -> Layer {
     let bare = Layer {
         mask: None,
         opacity: 1.0,

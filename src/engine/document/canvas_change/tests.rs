@@ -100,7 +100,7 @@ fn strokes(operator: Operator) -> Layer {
     let brush =
         Brush { size: 26.0, tip: Tip::Ellipse { ratio: 0.3 }, rotation: 30.0, ..Brush::default() };
     let mut stroke = Stroke::new(brush, operator, Color { r: 250, g: 240, b: 20, a: 255 }, samples);
-    let inside = CoverageGrid::filled(Rect::new(10, 20, 88, 70));
+    let inside = CoverageGrid::full(Rect::new(10, 20, 88, 70));
     stroke = stroke.within(Some(StrokeSelection::new(Arc::new(Selection::new(inside)))));
     Layer::new(
         "strokes",
@@ -343,7 +343,7 @@ fn selections_go_along_once_for_all_that_share_them() {
     });
     assert_eq!(off.count(), 0);
     let away = CanvasChange::crop(SIZE, Rect::new(60, 60, 100, 90)).unwrap();
-    let square = Arc::new(Selection::new(CoverageGrid::filled(Rect::new(0, 0, 20, 20))));
+    let square = Arc::new(Selection::new(CoverageGrid::full(Rect::new(0, 0, 20, 20))));
     let gone = Document { active_selection: Some(square), ..start }.on_other_canvas(&away).unwrap();
     assert!(gone.active_selection.is_none(), "nothing of it is on the canvas");
 }

@@ -65,10 +65,8 @@ fn what_leaves_a_range_is_refused_with_the_layers_name() {
     };
     says(gradient(vec![stop(0.5), stop(0.2)]), "the stops of the gradient must go from 0 to 1");
     says(gradient(vec![]), "at least one");
-    let mask = MaskKind::File {
-        file: String::new(),
-        coverage: Arc::new(Plane::filled(Size::new(2, 2), 1)),
-    };
+    let mask =
+        MaskKind::File { file: String::new(), coverage: Arc::new(Plane::full(Size::new(2, 2), 1)) };
     says(
         Layer { mask: Some(LayerMask::new(mask)), ..fill() },
         "the mask has 2 × 2 pixels, the canvas 64 × 64",

@@ -48,7 +48,7 @@ fn picture(layers: Vec<Layer>) -> TileGrid {
 fn half_a_surface() -> Arc<Surface> {
     let coverage =
         Plane::from_fn(SIZE, |x, _| [255, 128, 0][(x >= 50) as usize + (x > 50) as usize]);
-    let normals = Plane::filled(SIZE, vec3(0.6, 0.0, 0.8));
+    let normals = Plane::full(SIZE, vec3(0.6, 0.0, 0.8));
     let depth = Plane::from_fn(SIZE, |x, _| x as f32 / 100.0);
     Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
 }
@@ -80,14 +80,14 @@ fn a_tile_that_one_opaque_layer_fills_is_its_very_own_and_what_composing_gives()
         PreparedDocument::new(&document(layers), &Progress::default()).unwrap()
     };
     let alone = prepared(vec![fill("#203040"), opaque.clone()]);
-    let own = alone.alone_in_tile(first).unwrap();
+    let own = alone.sole_tile(first).unwrap();
     assert!(alone.compose_tile(first, None).quantize().unwrap().bytes() == own.bytes());
-    assert!(alone.alone_in_tile(second).is_none(), "the canvas ends within the tile");
+    assert!(alone.sole_tile(second).is_none(), "the canvas ends within the tile");
     let faint = with(opaque.clone(), |layer| layer.opacity = 0.5);
     let clipped = with(fill("#ffffff"), |layer| layer.clip_below = true);
     for layers in [vec![faint], vec![opaque.clone(), left_of(30, "#ff0000")], vec![opaque, clipped]]
     {
-        assert!(prepared(layers).alone_in_tile(first).is_none());
+        assert!(prepared(layers).sole_tile(first).is_none());
     }
 }
 
@@ -366,10 +366,10 @@ fn the_brightest_pixel_is_sought_on_the_surface_only() {
     let adjustment =
         Layer::new("rs", Content::RadianceScaling(crate::shading::RadianceScaling::default()));
     // Half a pixel column (x = 50) of surface shows white; without a surface it counts, too.
-    let slope = Plane::filled(SIZE, Vec3::Z);
+    let slope = Plane::full(SIZE, Vec3::Z);
     let coverage = Plane::from_fn(SIZE, |x, _| if x < 50 { 255 } else { 0 });
     let surface =
-        Surface::new(Maps { normals: slope, depth: Plane::filled(SIZE, 0.5), coverage }).unwrap();
+        Surface::new(Maps { normals: slope, depth: Plane::full(SIZE, 0.5), coverage }).unwrap();
     let doc = document(vec![lit, beyond, adjustment]);
     let on_surface = Document { surface: Some(Arc::new(surface)), ..doc.clone() };
     let reference = |doc: &Document| {

@@ -44,7 +44,7 @@ fn image(picture: Picture, size: Size, operator: Operator) -> Layer {
         source: PictureSource::new("a.png".into(), picture, Adjust::default()),
         placement: Placement::covering(size),
         outside: Outside::Mirror,
-        bend: Bend { operator, anchors: vec![Anchor::fixed(size.center())], ..Bend::default() },
+        bend: Bend { operator, anchors: vec![Anchor::pin(size.center())], ..Bend::default() },
         filter: ImageFilter::Antialias,
         frame: Default::default(),
     };

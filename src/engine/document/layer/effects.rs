@@ -213,7 +213,7 @@ impl EffectTiles {
     }
 
     fn matte(&self, rect: Rect, cover: &dyn Fn(TileAt) -> CoverTile) -> Matte {
-        let mut matte = Matte::filled(rect, 0.0);
+        let mut matte = Matte::full(rect, 0.0);
         for at in TileAt::covering(rect) {
             self.cover_tile(at, cover).write(at, &mut matte);
         }

@@ -59,13 +59,13 @@ impl LayerMap {
             .as_ref()
             .and_then(|transform| transform.map(self.canvas))
             .unwrap_or_default();
-        let plane = own.then(&self.outside(layer.on.as_ref()));
+        let plane = own.then(&self.map_outside(layer.on.as_ref()));
         let filter = layer.transform.as_ref().map_or(self.filter, |transform| transform.filter);
         Self { plane, filter, own, around: self.without_attachments(), ..*self }
     }
 
     /// What takes the frame of a layer inside, after its own transform, to the canvas.
-    pub(in crate::document) fn outside(&self, attachment: Option<&Attachment>) -> PlaneMap {
+    pub(in crate::document) fn map_outside(&self, attachment: Option<&Attachment>) -> PlaneMap {
         match attachment {
             Some(attachment) => attachment.map().then(&self.without_attachments()),
             None => self.plane,
@@ -74,11 +74,11 @@ impl LayerMap {
 
     /// The map of the list that holds the layer.
     pub fn of_list(&self) -> Self {
-        Self { plane: self.outside_own(), own: PlaneMap::IDENTITY, ..*self }
+        Self { plane: self.map_outside_own(), own: PlaneMap::IDENTITY, ..*self }
     }
 
     /// What takes the list that holds the layer to the canvas.
-    pub fn outside_own(&self) -> PlaneMap {
+    pub fn map_outside_own(&self) -> PlaneMap {
         if self.own == PlaneMap::IDENTITY {
             self.plane
         } else {

@@ -27,7 +27,14 @@ pub(in crate::document) trait Marks {
     }
 
     /// Renders tiles that cost less together than one by one, if they do.
-    fn together(&self, _scene: &Scene, _tiles: &[TileAt], _progress: &Progress, _done: &Done) {}
+    fn render_together(
+        &self,
+        _scene: &Scene,
+        _tiles: &[TileAt],
+        _progress: &Progress,
+        _done: &Done,
+    ) {
+    }
 }
 
 /// Takes a rendered tile.

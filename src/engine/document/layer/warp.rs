@@ -94,7 +94,7 @@ impl LayerWarp {
             && !matches!(map.filter, Resampling::Linear | Resampling::Nearest);
         let filter = if is_kept { Resampling::Sharp } else { map.filter };
         let mesh = mesh.map(|mesh| mesh.backward(map.canvas()));
-        Some(Self { canvas: map.canvas(), outside: map.outside_own(), mesh, liquify, filter })
+        Some(Self { canvas: map.canvas(), outside: map.map_outside_own(), mesh, liquify, filter })
     }
 
     /// What a mesh takes from beyond the canvas is nothing; liquify continues the picture's border.
@@ -133,7 +133,7 @@ impl LayerWarp {
             }
             let point = |k: usize| {
                 let (q, first) = self.outside.from_canvas(middle(k))?;
-                let (p, inner) = self.aside(q);
+                let (p, inner) = self.displaced_point(q);
                 let last = self.outside.stretch_at(p)?;
                 Some((self.outside.to_canvas(p)?, last * inner * first))
             };
@@ -167,7 +167,7 @@ impl LayerWarp {
     }
 
     /// The point that shows at a point of the list, and its derivative.
-    fn aside(&self, q: Vec2) -> (Vec2, Mat2) {
+    fn displaced_point(&self, q: Vec2) -> (Vec2, Mat2) {
         let (mut p, mut jacobian) = (q, Mat2::IDENTITY);
         for lattice in [&self.liquify, &self.mesh].into_iter().flatten() {
             let u = lattice.at(p);
@@ -178,8 +178,10 @@ impl LayerWarp {
 
     /// The point of the unwarped layer that shows at a point of the canvas.
     pub fn source_of(&self, q: Vec2) -> Vec2 {
-        let source =
-            self.outside.from_canvas(q).and_then(|(q, _)| self.outside.to_canvas(self.aside(q).0));
+        let source = self
+            .outside
+            .from_canvas(q)
+            .and_then(|(q, _)| self.outside.to_canvas(self.displaced_point(q).0));
         source.unwrap_or(q)
     }
 
@@ -192,7 +194,7 @@ impl LayerWarp {
         let shows = |at: &TileAt| match self.tile_map(*at, &PlaneMap::IDENTITY) {
             None => source.contains(at),
             Some(map) => {
-                let shown = self.within(map.source_rect(at.rect()));
+                let shown = self.rect_within_border(map.source_rect(at.rect()));
                 let meets = |from: &TileAt| !from.rect().intersect(shown).is_empty();
                 !around.intersect(shown).is_empty() && source.iter().any(meets)
             }
@@ -202,7 +204,7 @@ impl LayerWarp {
     }
 
     /// What is read for a rectangle: where the border is continued, the border.
-    fn within(&self, rect: Rect) -> Rect {
+    fn rect_within_border(&self, rect: Rect) -> Rect {
         if !self.has_continued_border() {
             return rect;
         }
@@ -279,7 +281,7 @@ pub(in crate::document) fn displaced_mask(
     let MaskKind::File { file, coverage } = &mask.kind else { return mask.clone() };
     let canvas = coverage.size().rect();
     let mut wanted: Vec<TileAt> = TileAt::covering(canvas).collect();
-    let mut out: Plane<u8> = Plane::filled(coverage.size(), 0);
+    let mut out: Plane<u8> = Plane::full(coverage.size(), 0);
     if let Some(last) = last
         && let MaskKind::File { coverage: seen, .. } = &last.seen.kind
         && let Some(other) = LayerWarp::changed_tiles(last.warp, Some(warp))

@@ -102,10 +102,10 @@ pub fn joined_rim(own: &Outline, met: &[PlacedOutline]) -> Option<Plane<bool>> {
     if met.is_empty() {
         return None;
     }
-    let (corner, inside) = (own.corner(), own.inside());
+    let (corner, inside) = (own.corner(), own.inside_pixels());
     let covers = |other: &PlacedOutline, x: i32, y: i32| {
         let (ox, oy) = other.corner();
-        other.outline.inside().get(x + corner.0 - ox, y + corner.1 - oy).unwrap_or(false)
+        other.outline.inside_pixels().get(x + corner.0 - ox, y + corner.1 - oy).unwrap_or(false)
     };
     let free = Plane::from_fn(own.size(), |x, y| {
         let (x, y) = (x as i32, y as i32);
@@ -136,7 +136,7 @@ pub fn solve_form(body: &SolvedOutline, inflation: Inflation) -> Form {
         (Some(pillow), _) if inflation.profile <= 0.0 => form(pillow),
         (_, Some(tube)) => form(tube),
         (Some(pillow), None) => form(pillow),
-        (None, None) => form(&Plane::filled(body.outline.size(), 0.0)),
+        (None, None) => form(&Plane::full(body.outline.size(), 0.0)),
     }
 }
 

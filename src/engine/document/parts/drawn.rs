@@ -52,7 +52,8 @@ impl DrawnLayer {
             attachment.zip(body).is_some_and(|(attachment, body)| attachment.id == body.id);
         let map = if is_attached_alike { map.unattached() } else { map };
         let warped = document.is_displaced(layer.id).then(|| {
-            let layers = alone(&document.layers, layer.id, is_attached_alike).into_iter().collect();
+            let layers =
+                isolate(&document.layers, layer.id, is_attached_alike).into_iter().collect();
             let alone = Document { layers, ..Document::empty(document.size) };
             Box::new(WarpedLayer { warps: alone.warps_of(layer.id), alone })
         });
@@ -194,7 +195,7 @@ fn has_surface_selections(layer: &Layer) -> bool {
 /// is not in this list.
 ///
 /// * `is_attached_alike`: what is seen of it is where it would be if no part carried it.
-fn alone(layers: &[Arc<Layer>], id: LayerId, is_attached_alike: bool) -> Option<Arc<Layer>> {
+fn isolate(layers: &[Arc<Layer>], id: LayerId, is_attached_alike: bool) -> Option<Arc<Layer>> {
     layers.iter().find_map(|layer| {
         let on = layer.on.clone().filter(|_| !is_attached_alike);
         let bare = || Layer {
@@ -213,7 +214,7 @@ fn alone(layers: &[Arc<Layer>], id: LayerId, is_attached_alike: bool) -> Option<
                 Layer { on: on.clone(), ..Layer::clone(layer) }
             }));
         }
-        let inner = alone(&layer.content.group()?.layers, id, is_attached_alike)?;
+        let inner = isolate(&layer.content.group()?.layers, id, is_attached_alike)?;
         let content = Content::Group(Group { layers: vec![inner], pass_through: true });
         // What is kept of the whole group is of no use.
         Some(Arc::new(Layer { content, cache: LayerCache::default(), ..bare() }))

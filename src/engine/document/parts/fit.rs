@@ -26,7 +26,9 @@ impl Document {
             }
             let lay = before.and_then(|before| before.parts.part(&part.id)).map(|part| part.on());
             if lay != Some(part.on()) {
-                self.parts.astray(part).map_or(Ok(()), |why| Err(format!("“{shown}” {why}.")))?;
+                self.parts
+                    .refusal_of_attachment(part)
+                    .map_or(Ok(()), |why| Err(format!("“{shown}” {why}.")))?;
             }
             if let Some(OutlineSource::Selection(name)) = part.outline()
                 && !self.selections.iter().any(|kept| kept.name == *name)
@@ -50,7 +52,9 @@ impl Document {
     /// A sentence about the parts that lie on none with a form of its own, so that they change
     /// nothing.
     pub fn note_of_astray(&self) -> Option<String> {
-        let one = |part: &Arc<Part>| Some(format!("“{}” {}", part.name, self.parts.astray(part)?));
+        let one = |part: &Arc<Part>| {
+            Some(format!("“{}” {}", part.name, self.parts.refusal_of_attachment(part)?))
+        };
         let all: Vec<String> = self.parts.list.iter().filter_map(one).collect();
         (!all.is_empty()).then(|| format!("{}, and so changes nothing.", all.join("; ")))
     }
@@ -59,7 +63,7 @@ impl Document {
 impl Parts {
     /// Why a part lies on none with a form of its own, if it lies on another: the rest of a
     /// sentence that begins with its name.
-    fn astray(&self, part: &Part) -> Option<String> {
+    fn refusal_of_attachment(&self, part: &Part) -> Option<String> {
         let on = part.on()?;
         if on == part.id {
             return Some("lies on itself".into());

@@ -117,7 +117,7 @@ fn places(flats: &Flats, rect: Rect) -> FlatAreas {
     let mut left_out = flats.omitted_colors();
     let mut all = Vec::new();
     let mostly = flats.mostly();
-    let mut labels = Plane::filled(mostly.size(), 0u32);
+    let mut labels = Plane::full(mostly.size(), 0u32);
     for color in flats.colors() {
         let found = ColorPlaces::of(flats, color);
         let large = found.large();

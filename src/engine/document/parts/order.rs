@@ -194,12 +194,12 @@ fn share_around(labels: &Plane<u16>, radius: usize, is_own: impl Fn(u16) -> bool
             })
             .collect()
     };
-    let mut rows = Plane::filled(labels.size(), 0.0f32);
+    let mut rows = Plane::full(labels.size(), 0.0f32);
     for y in 0..h {
         rows.row_mut(y)
             .copy_from_slice(&window(&|x| f32::from(u8::from(is_own(labels.at(x, y)))), w));
     }
-    let mut out = Plane::filled(labels.size(), 0.0f32);
+    let mut out = Plane::full(labels.size(), 0.0f32);
     for x in 0..w {
         window(&|y| rows.at(x, y), h).into_iter().enumerate().for_each(|(y, v)| out.set(x, y, v));
     }

@@ -56,7 +56,7 @@ fn sides_of(size: Size) -> Sides {
 }
 
 /// The box around some points, each with so much around it.
-fn around(points: impl Iterator<Item = (Vec2, f32)>) -> Sides {
+fn bound_points(points: impl Iterator<Item = (Vec2, f32)>) -> Sides {
     let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     for (p, reach) in points {
         (low, high) = (low.min(p - reach), high.max(p + reach));
@@ -113,7 +113,8 @@ impl Document {
             forms = forms.saturating_add(px * 2 * FORM_BYTES);
             if let Some(source) = part.outline() {
                 outlines = outlines.saturating_add(px * OUTLINE_BYTES);
-                let sought = self.outline_sides(source).map_or(0, |sides| self.within_reach(sides));
+                let sought =
+                    self.outline_sides(source).map_or(0, |sides| self.bytes_within_reach(sides));
                 let threads = rayon::current_num_threads() as u64;
                 let of_flats = matches!(source, OutlineSource::Layer { color: Some(_), .. });
                 flats = flats.max(
@@ -133,10 +134,10 @@ impl Document {
     fn box_px(&self, part: &Part) -> u64 {
         let own = match &part.kind {
             PartKind::Primitive(body) => {
-                Some(around([(body.center, body.reach() + 2.0)].into_iter()))
+                Some(bound_points([(body.center, body.reach() + 2.0)].into_iter()))
             }
             PartKind::Sweep { balls, .. } => {
-                Some(around(balls.iter().map(|ball| (ball.at, ball.radius + 2.0))))
+                Some(bound_points(balls.iter().map(|ball| (ball.at, ball.radius + 2.0))))
             }
             PartKind::Maps(_) => Some(sides_of(self.size)),
             PartKind::Profiles { outline: None, shadings } => {
@@ -145,11 +146,11 @@ impl Document {
             _ => part.outline().and_then(|source| self.outline_sides(source)),
         };
         own.map_or(0, |sides| {
-            self.within_reach(transformed_sides(split_whole_px(part.matrix).0, sides))
+            self.bytes_within_reach(transformed_sides(split_whole_px(part.matrix).0, sides))
         })
     }
 
-    fn within_reach(&self, [w, h]: Sides) -> u64 {
+    fn bytes_within_reach(&self, [w, h]: Sides) -> u64 {
         let px = (w + 3.0) * (h + 3.0);
         // Rounded up where it is made.
         if px <= 1.1 * self.most_px() as f64 { px as u64 } else { 0 }
@@ -171,7 +172,7 @@ impl Document {
                         let corners =
                             [corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)];
                         match corners.into_iter().collect::<Option<Vec<_>>>() {
-                            Some(corners) => around(corners.into_iter()),
+                            Some(corners) => bound_points(corners.into_iter()),
                             None => canvas,
                         }
                     }
@@ -184,7 +185,7 @@ impl Document {
                 let kept = &self.selections.iter().find(|kept| kept.name == *name)?.selection;
                 if kept.made.is_some() { canvas } else { sides(kept.coverage.covered_rect()) }
             }
-            OutlineSource::Path(points) => around(points.iter().map(|p| (*p, 1.0))),
+            OutlineSource::Path(points) => bound_points(points.iter().map(|p| (*p, 1.0))),
             OutlineSource::Object(_) => canvas,
         })
     }

@@ -140,8 +140,8 @@ fn bumpy() -> Document {
         |x: usize, y: usize, k: u32| 0.5 * (crate::math::hash::unit(x as u32, y as u32, k) - 0.5);
     let maps = Maps {
         normals: Plane::from_fn(SIZE, |x, y| vec3(lean(x, y, 1), lean(x, y, 2), 1.0)),
-        depth: Plane::filled(SIZE, 0.5),
-        coverage: Plane::filled(SIZE, 255),
+        depth: Plane::full(SIZE, 0.5),
+        coverage: Plane::full(SIZE, 255),
     };
     let mut document = document();
     document.surface = Some(Arc::new(Surface::new(maps).unwrap()));
@@ -151,7 +151,7 @@ fn bumpy() -> Document {
         match &mut next.content {
             Content::Image(live) => {
                 let mut image = live.params().clone();
-                image.bend.anchors = vec![Anchor::fixed(vec2(100.5, 70.5))];
+                image.bend.anchors = vec![Anchor::pin(vec2(100.5, 70.5))];
                 *live = Live::new(image);
             }
             Content::Gradient(live) => {

@@ -8,7 +8,7 @@ use crate::surface::{Maps, Operator, Surface};
 const SIZE: Size = Size::new(200, 130);
 
 fn square(x0: i32, x1: i32) -> Selection {
-    Selection::new(CoverageGrid::filled(Rect::new(x0, 20, x1, 90)))
+    Selection::new(CoverageGrid::full(Rect::new(x0, 20, x1, 90)))
 }
 
 /// A line across the canvas on a stroke layer, in a selection of columns 40 to 80.
@@ -38,7 +38,7 @@ fn roof(turned: bool) -> Arc<Surface> {
     let maps = Maps {
         normals,
         depth: Plane::from_fn(SIZE, |x, _| if turned { 1.0 - ridge(x) } else { ridge(x) }),
-        coverage: Plane::filled(SIZE, 255),
+        coverage: Plane::full(SIZE, 255),
     };
     Arc::new(Surface::new(maps).unwrap())
 }

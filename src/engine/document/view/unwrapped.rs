@@ -164,7 +164,7 @@ impl Painting {
     }
 
     /// Between four pixels.
-    fn between(&self, point: Vec2) -> [f32; 4] {
+    fn interpolate(&self, point: Vec2) -> [f32; 4] {
         let corner = (point - 0.5).floor();
         let (share, x, y) = (point - 0.5 - corner, corner.x as i32, corner.y as i32);
         let [a, b, c, d] =
@@ -186,7 +186,7 @@ fn pull_painting(painting: &Painting, view: &PlaneView, scale: u32) -> (Size, Ve
         for (x, pixel) in row.iter_mut().enumerate() {
             let p = corner + (vec2(x as f32, y as f32) + 0.5) / scale as f32;
             if let Some(point) = view.sample(p) {
-                *pixel = painting.between(point);
+                *pixel = painting.interpolate(point);
             }
         }
     });

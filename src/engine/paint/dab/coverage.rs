@@ -124,7 +124,7 @@ impl PlacedDab<'_> {
                 reach: &mut shares[part.range(span)],
             };
             match &field {
-                Some(field) => fill_bent_row(field.around(span), &tip, row, out),
+                Some(field) => fill_bent_row(field.span_neighbors(span), &tip, row, out),
                 None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, row, out),
             }
         }
@@ -141,7 +141,8 @@ impl PlacedDab<'_> {
         let tip_from_canvas = shape.tip_from_canvas(&self.dab);
         transform(tip_from_canvas, &mut deformed.x, &mut deformed.y);
         for span in part.spans() {
-            let around = self.around(span, part.area.grown(1), deformed, tip_from_canvas.matrix2);
+            let around =
+                self.span_neighbors(span, part.area.grown(1), deformed, tip_from_canvas.matrix2);
             shape.row(
                 falloff,
                 &self.dab,
@@ -152,7 +153,7 @@ impl PlacedDab<'_> {
         }
     }
 
-    fn around<'f>(
+    fn span_neighbors<'f>(
         &'f self,
         span: PixelSpan,
         rect: Rect,
@@ -164,7 +165,7 @@ impl PlacedDab<'_> {
         match self.bent_over {
             Some(surface) => {
                 let SpanNeighbors { above, row, below, linked } =
-                    DeformationField::new(surface, rect, d).around(span);
+                    DeformationField::new(surface, rect, d).span_neighbors(span);
                 shape::TipSpanNeighbors { above, row, below, linked, flat }
             }
             None => {

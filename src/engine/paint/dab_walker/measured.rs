@@ -12,8 +12,7 @@ fn leaning(slope: impl Fn(f32) -> f32 + Sync) -> Scene {
     let size = Size::new(300, 100);
     let normals =
         Plane::from_fn(size, |x, _| vec3(-slope(x as f32 + 0.5), 0.0, 1.0).normalize_or(Vec3::Z));
-    let maps =
-        Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+    let maps = Maps { normals, depth: Plane::full(size, 0.5), coverage: Plane::full(size, 255) };
     Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 

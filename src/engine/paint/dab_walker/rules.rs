@@ -153,7 +153,7 @@ impl DabRules {
             ..DabInputs::default()
         };
         let inputs = if self.reads_pen { self.of_pen(moment, inputs) } else { inputs };
-        self.over_surface(self.on_canvas(place.at), inputs)
+        self.with_surface_values(self.on_canvas(place.at), inputs)
     }
 
     /// A position on the canvas.
@@ -179,7 +179,7 @@ impl DabRules {
     }
 
     /// With the surface's values at a dab's center, between pixels.
-    fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
+    fn with_surface_values(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
         let flat = DabInputs::default();
         let nowhere =
             DabInputs { slope: flat.slope, curvature: flat.curvature, depth: flat.depth, ..inputs };
@@ -334,7 +334,7 @@ impl DabRules {
         let strayed = self.stray_position(moment, &inputs);
         let at = self.on_canvas(strayed);
         let inputs =
-            if strayed == moment.place.at { inputs } else { self.over_surface(at, inputs) };
+            if strayed == moment.place.at { inputs } else { self.with_surface_values(at, inputs) };
         let brush = &self.brush;
         let unit = |v: f32| v.max(0.0).min(1.0);
         let (larger, fainter) = self.chance_of_size(&inputs);

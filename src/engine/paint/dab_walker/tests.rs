@@ -212,8 +212,7 @@ fn hollows_read_low_and_ridges_high() {
     // Waves: x = 40 is a ridge's top (normals diverge), x = 80 a groove's.
     let normals =
         Plane::from_fn(size, |x, _| vec3(-(0.05 * (x as f32 + 0.5) * TAU / 4.0).cos(), 0.0, 1.0));
-    let maps =
-        Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+    let maps = Maps { normals, depth: Plane::full(size, 0.5), coverage: Plane::full(size, 255) };
     let scene = Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
     let at = |x: f32| {
         driven(Property::Flow, Input::Curvature, &scene, &[Sample::at(vec2(x, 32.0))])[0].flow

@@ -118,7 +118,7 @@ impl Walk {
     }
 
     /// Along the curve from one sample to the next.
-    pub fn along(
+    pub fn follow_curve(
         &mut self,
         curve: &CurveSegment,
         to: CurvePoint,

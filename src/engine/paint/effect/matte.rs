@@ -175,7 +175,7 @@ impl LayerEffect {
         let value = |x: i32, y: i32| {
             let fall = surface.map_or(0.0, |surface| depth_at(surface, x, y) * depth_px * per_px);
             let by = first + away * fall.min(MOST_FALL_PX);
-            tone(soft.between(x as f32 - by.x, y as f32 - by.y))
+            tone(soft.interpolate(x as f32 - by.x, y as f32 - by.y))
         };
         Amounts::of(rect, value)
     }
@@ -210,7 +210,9 @@ impl LayerEffect {
         let soft = matte.blurred(s.size);
         Amounts::of(rect, |x, y| {
             let (x, y) = (x as f32, y as f32);
-            tone((soft.between(x + by.x, y + by.y) - soft.between(x - by.x, y - by.y)).abs())
+            tone(
+                (soft.interpolate(x + by.x, y + by.y) - soft.interpolate(x - by.x, y - by.y)).abs(),
+            )
         })
     }
 
@@ -273,7 +275,7 @@ impl LayerEffect {
         let shine = |v: f32| gloss.as_ref().map_or(v, |curve| curve.at(v.max(0.0).min(1.0)));
         let level = shine(up);
         let rect = height.rect();
-        let mut out = Matte::filled(rect, 0.0);
+        let mut out = Matte::full(rect, 0.0);
         for y in rect.y0 + 1..rect.y1 - 1 {
             let row = out.row_mut(y).iter_mut().zip(rect.x0..).skip(1);
             for (v, x) in row.take(rect.width().saturating_sub(2)) {

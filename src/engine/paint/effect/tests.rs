@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 /// A square of ten by ten pixels in the middle of a tile.
 fn square(rect: Rect) -> Matte {
-    let mut matte = Matte::filled(rect, 0.0);
+    let mut matte = Matte::full(rect, 0.0);
     for y in 27.max(rect.y0)..37.min(rect.y1) {
         let row = matte.row_mut(y).iter_mut().zip(rect.x0..);
         row.filter(|(_, x)| (27..37).contains(x)).for_each(|(v, _)| *v = 1.0);

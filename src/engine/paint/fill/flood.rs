@@ -127,7 +127,7 @@ fn is_like(a: [u8; 4], b: [u8; 4], tolerance: u8) -> bool {
 /// The pixels that were reached, in the smallest rectangle of whole tiles that holds them.
 pub(super) fn pixels(flooded: &Flooded) -> PixelSet {
     let rect = flooded.rect();
-    let mut pixels = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
+    let mut pixels = Plane::full(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
     for (at, tile) in flooded.tiles() {
         let area = at.rect().intersect(rect);
         for y in area.y0..area.y1 {

@@ -265,7 +265,7 @@ impl RunningSums {
     }
 
     /// The sum up to a place between readings; each is a step wide.
-    fn up_to(&self, at: f32) -> [f32; 4] {
+    fn sum_up_to(&self, at: f32) -> [f32; 4] {
         let at = (at + 0.5).max(0.0).min((self.0.len() - 1) as f32);
         let whole = (at as usize).min(self.0.len() - 2);
         mix(self.0[whole], self.0[whole + 1], at - whole as f32)
@@ -273,7 +273,8 @@ impl RunningSums {
 
     /// The mean of some readings around a place.
     fn mean(&self, middle: f32, width: f32) -> [f32; 4] {
-        let (low, high) = (self.up_to(middle - 0.5 * width), self.up_to(middle + 0.5 * width));
+        let (low, high) =
+            (self.sum_up_to(middle - 0.5 * width), self.sum_up_to(middle + 0.5 * width));
         // Sums end at the last reading.
         let last = (self.0.len() - 1) as f32;
         let held = |v: f32| (v + 0.5).max(0.0).min(last);

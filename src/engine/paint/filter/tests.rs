@@ -196,7 +196,7 @@ fn shaped(depth: impl Fn(usize) -> f32 + Sync, normal: impl Fn(usize) -> f32 + S
             vec3(nx, 0.0, (1.0 - nx * nx).sqrt())
         }),
         depth: Plane::from_fn(size, |x, _| depth(x)),
-        coverage: Plane::filled(size, 255),
+        coverage: Plane::full(size, 255),
     };
     Scene { size, surface: Some(Arc::new(crate::surface::Surface::new(maps).unwrap())) }
 }

@@ -16,7 +16,7 @@ fn roof() -> Scene {
     let side = |y: usize| if y < 60 { 1.0 } else { -1.0 };
     let normals = Plane::from_fn(size, |_, y| vec3(0.0, 0.6 * side(y), 0.8));
     let depth = Plane::from_fn(size, |_, y| 0.005 * (y as f32 + 0.5 - 60.0).abs());
-    let coverage = Plane::filled(size, 255);
+    let coverage = Plane::full(size, 255);
     let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
     Scene { size, surface: Some(Arc::new(surface)) }
 }
@@ -83,8 +83,8 @@ fn turning() -> Scene {
         let turn = (x as f32 / 384.0 - 0.5) * 1.8;
         vec3(-turn.sin(), 0.0, turn.cos())
     });
-    let depth = Plane::filled(size, 0.5);
-    let coverage = Plane::filled(size, 255);
+    let depth = Plane::full(size, 0.5);
+    let coverage = Plane::full(size, 255);
     let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
     Scene { size, surface: Some(Arc::new(surface)) }
 }
@@ -110,7 +110,7 @@ fn hatching_covers_what_the_tone_asks() {
         let FormPattern::Hatching(settings) = &drawing.pattern else { panic!("hatching") };
         let tone = hatched::FormTone::of(scene.surface.as_deref().unwrap(), settings);
         let strokes = drawing.strokes(&scene);
-        let mut coverage = Plane::filled(scene.size, 0.0f32);
+        let mut coverage = Plane::full(scene.size, 0.0f32);
         for at in TileAt::covering(scene.size.rect()) {
             let Some(tile) = stroke::render_tile(&strokes, &scene, at) else { continue };
             let corner = at.rect();

@@ -121,8 +121,8 @@ mod tests {
         };
         let maps = Maps {
             normals: Plane::from_fn(size, |x, y| slope(x, y).normalize_or_zero()),
-            depth: Plane::filled(size, 0.5),
-            coverage: Plane::filled(size, 255),
+            depth: Plane::full(size, 0.5),
+            coverage: Plane::full(size, 255),
         };
         let scene = Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
         let byte = |i: u32, c: u32| {
@@ -139,7 +139,7 @@ mod tests {
                 let mut image = PlacedImage { filter, ..placed(picture.clone(), size) };
                 image.bend = Bend {
                     operator,
-                    anchors: vec![Anchor::fixed(vec2(30.5, 20.5))],
+                    anchors: vec![Anchor::pin(vec2(30.5, 20.5))],
                     ..Bend::default()
                 };
                 let apart = greatest_difference(&image, &scene);

@@ -95,7 +95,7 @@ fn an_angular_map_that_covers_the_mirror_leaves_no_holes() {
     let holes = |placement: Placement| {
         let bend = Bend {
             operator: Operator::Reflection { alpha: 1.0, detail: 0.0 },
-            anchors: vec![Anchor::fixed(at)],
+            anchors: vec![Anchor::pin(at)],
             ..Bend::default()
         };
         let image = PlacedImage { placement, bend, ..placed(map.clone(), size) };
@@ -135,7 +135,7 @@ fn scene(
             vec3(n.x, -n.y, (1.0 - n.length_squared()).sqrt())
         }),
         depth: Plane::from_fn(size, |x, _| depth(x)),
-        coverage: Plane::filled(size, 255),
+        coverage: Plane::full(size, 255),
     };
     Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
@@ -154,7 +154,7 @@ fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel()
     let mut image = placed(picture, size);
     image.outside = Outside::Mirror;
     image.bend.operator = Operator::Normal { alpha, beta, detail: 0.0 };
-    image.bend.anchors = vec![Anchor::fixed(center)];
+    image.bend.anchors = vec![Anchor::pin(center)];
 
     let map = image.placement.texels_from_canvas(size, Size::new(192, 192));
     let sample = |q: Vec2| {
@@ -196,7 +196,7 @@ fn nothing_bleeds_across_a_silhouette() {
     let mut image = placed(noise(size), size);
     image.outside = Outside::Mirror;
     image.bend.operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
-    image.bend.anchors = vec![Anchor::fixed(vec2(10.5, 30.5))];
+    image.bend.anchors = vec![Anchor::pin(vec2(10.5, 30.5))];
     let bilinear = rendered(&image, &plates);
     image.filter = ImageFilter::Antialias;
     let antialias = rendered(&image, &plates);

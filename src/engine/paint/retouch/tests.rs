@@ -29,8 +29,7 @@ fn waves() -> Scene {
         let n = nbar(vec2(x as f32 + 0.5, y as f32 + 0.5));
         vec3(n.x, -n.y, (1.0 - n.length_squared()).sqrt())
     });
-    let maps =
-        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals, depth: Plane::full(SIZE, 0.5), coverage: Plane::full(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 
@@ -38,7 +37,7 @@ fn waves() -> Scene {
 fn plates() -> Scene {
     let depth = Plane::from_fn(SIZE, |x, _| if x < 100 { 0.1 } else { 0.9 });
     let maps =
-        Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage: Plane::filled(SIZE, 255) };
+        Maps { normals: Plane::full(SIZE, Vec3::Z), depth, coverage: Plane::full(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 const BEND: Operator = Operator::Normal { alpha: 0.3, beta: 0.0, detail: 0.0 };

@@ -161,7 +161,7 @@ mod tests {
             vec3((0.05 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0)
         });
         let maps =
-            Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+            Maps { normals, depth: Plane::full(SIZE, 0.5), coverage: Plane::full(SIZE, 255) };
         Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
     }
 

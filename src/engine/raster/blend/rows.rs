@@ -195,7 +195,7 @@ fn blend_row(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
             separable(d, s, mix, |s, d, as_, ab| greatest(d * as_ - s * ab, 0.0))
         }
         BlendMode::Dissolve => separable(d, s, mix, |s, _, _, ab| s * ab),
-        _ => by_formula(d, s, mix),
+        _ => blend_by_formula(d, s, mix),
     }
 }
 
@@ -221,21 +221,21 @@ macro_rules! formula {
         sum($d, $s, $mix, spec::$b)
     };
 }
-macro_rules! by_formula {
+macro_rules! blend_by_formula {
     ($(
         $(#[$meta:meta])*
         $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);
     )+) => {
         /// Modes without a twin of their own, from the formula of the table.
         #[inline(always)]
-        fn by_formula(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
+        fn blend_by_formula(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
             match mix.mode {
                 $(BlendMode::$mode => formula!($kind, $b, d, s, mix),)+
             }
         }
     };
 }
-blend_modes!(by_formula);
+blend_modes!(blend_by_formula);
 
 /// A formula of straight components.
 #[inline(always)]
@@ -313,10 +313,10 @@ fn sum(d: &mut PixelRow, s: &PixelRow, mix: Mix, sum: impl Fn(f32, f32) -> f32 +
 #[inline(always)]
 fn in_linear_light(d: &mut PixelRow, s: &mut PixelRow, mix: Mix) {
     let before = *d;
-    through_straight(d, srgb::decode_fast);
-    through_straight(s, srgb::decode_fast);
+    apply_to_straight(d, srgb::decode_fast);
+    apply_to_straight(s, srgb::decode_fast);
     blend_row(d, s, mix);
-    through_straight(d, srgb::encode_fast);
+    apply_to_straight(d, srgb::encode_fast);
     for (d, before) in d.rgb.iter_mut().zip(&before.rgb) {
         for x in 0..TILE {
             d[x] = if s.a[x] > 0.0 { d[x] } else { before[x] };
@@ -326,7 +326,7 @@ fn in_linear_light(d: &mut PixelRow, s: &mut PixelRow, mix: Mix) {
 
 /// Applies a transfer curve to the straight colors of a premultiplied row.
 #[inline(always)]
-fn through_straight(row: &mut PixelRow, curve: impl Fn(f32) -> f32) {
+fn apply_to_straight(row: &mut PixelRow, curve: impl Fn(f32) -> f32) {
     for channel in &mut row.rgb {
         for (v, &a) in channel.iter_mut().zip(&row.a) {
             *v = curve(least(*v * reciprocal(a), 1.0)) * a;
@@ -334,11 +334,11 @@ fn through_straight(row: &mut PixelRow, curve: impl Fn(f32) -> f32) {
     }
 }
 
-/// One pixel of [`by_formula`], for modes that otherwise take another path.
+/// One pixel of [`blend_by_formula`], for modes that otherwise take another path.
 #[cfg(test)]
 pub(super) fn pixel_by_formula(mix: Mix, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
     let [mut d, s] = [backdrop, source]
         .map(|[r, g, b, a]| PixelRow { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] });
-    by_formula(&mut d, &s, mix);
+    blend_by_formula(&mut d, &s, mix);
     d.pixel(TILE - 1)
 }

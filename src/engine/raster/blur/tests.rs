@@ -1,7 +1,7 @@
 use super::*;
 
 fn impulse(size: Size) -> Plane<f32> {
-    let mut plane = Plane::filled(size, 0.0);
+    let mut plane = Plane::full(size, 0.0);
     plane.set(size.width as usize / 2, size.height as usize / 2, 1.0);
     plane
 }

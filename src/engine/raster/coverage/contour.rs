@@ -52,7 +52,7 @@ pub fn tiles(grid: &CoverageGrid) -> impl Iterator<Item = TileAt> {
 /// Outlines with the same key are the same as long as their grids live.
 pub fn key(grid: &CoverageGrid, at: TileAt, level: u32) -> RunsKey {
     let address = |at: TileAt| grid.tile(at).map_or(0, |tile| Arc::as_ptr(tile) as usize);
-    RunsKey { at, level, tiles: [at, left_of(at), above(at)].map(address) }
+    RunsKey { at, level, tiles: [at, tile_at_left(at), tile_above(at)].map(address) }
 }
 
 /// The outline left of and above the pixels of a tile.
@@ -64,8 +64,8 @@ pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
     let n = TILE >> level;
     let here = bits(grid, at, level, 0);
     // The last row of blocks of the tile above, and the last column of the tile on the left.
-    let above_here = bits(grid, above(at), level, n - 1)[n - 1];
-    let left = last_column(grid, left_of(at), level);
+    let above_here = bits(grid, tile_above(at), level, n - 1)[n - 1];
+    let left = last_column(grid, tile_at_left(at), level);
     let mut vertical = [0u64; TILE];
     let mut out = Vec::new();
     let (corner, step) = (at.rect(), 1 << level);
@@ -89,11 +89,11 @@ pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
     out
 }
 
-fn left_of(at: TileAt) -> TileAt {
+fn tile_at_left(at: TileAt) -> TileAt {
     TileAt::new(at.col - 1, at.row)
 }
 
-fn above(at: TileAt) -> TileAt {
+fn tile_above(at: TileAt) -> TileAt {
     TileAt::new(at.col, at.row - 1)
 }
 
@@ -202,23 +202,22 @@ mod tests {
 
     #[test]
     fn coarser_outlines_go_round_the_blocks_that_hold_something() {
-        let mut plane = Plane::filled(Size::new(130, 130), 0u8);
+        let mut plane = Plane::full(Size::new(130, 130), 0u8);
         plane.set(70, 9, 255);
         let grid = CoverageGrid::from_plane(&plane, 0, 0);
         let run = |x, y, is_vertical| Run { x, y, length: 8, is_vertical };
         let square = [run(64, 8, false), run(64, 16, false), run(64, 8, true), run(72, 8, true)];
         assert_eq!(all(&grid, 3), square);
-        let whole = CoverageGrid::filled(Rect::new(0, 0, 128, 128));
+        let whole = CoverageGrid::full(Rect::new(0, 0, 128, 128));
         let length: i32 = all(&whole, COARSEST + 3).iter().map(|run| run.length).sum();
         assert_eq!(length, 4 * 128);
     }
 
     #[test]
     fn the_outline_of_a_tile_is_known_again_while_the_tiles_about_it_stay() {
-        let grid = CoverageGrid::filled(Rect::new(0, 0, 300, 300));
+        let grid = CoverageGrid::full(Rect::new(0, 0, 300, 300));
         let (far, near) = (TileAt::new(4, 4), TileAt::new(1, 1));
-        let cut =
-            grid.combined(&CoverageGrid::filled(Rect::new(64, 64, 70, 70)), u8::saturating_sub);
+        let cut = grid.combined(&CoverageGrid::full(Rect::new(64, 64, 70, 70)), u8::saturating_sub);
         assert!(
             key(&grid, far, 0) == key(&cut, far, 0)
                 || grid.tile(far).is_some_and(|tile| !tile.is_whole())

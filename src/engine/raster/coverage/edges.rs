@@ -42,7 +42,7 @@ pub fn moved(marked: &Plane<u8>, grow_px: f32, antialias: bool) -> Plane<u8> {
 /// Its edge moved outward (negative: inward), px.
 pub fn grown(grid: &CoverageGrid, px: f32, canvas: Rect) -> CoverageGrid {
     let px = px.max(-*DISTANCE_PX.end()).min(*DISTANCE_PX.end());
-    let Some((rect, plane)) = around(grid, px.abs().ceil() as i32 + 2, canvas) else {
+    let Some((rect, plane)) = padded_coverage(grid, px.abs().ceil() as i32 + 2, canvas) else {
         return CoverageGrid::default();
     };
     let marked = plane.map(|c| u8::from(c >= 128));
@@ -79,7 +79,9 @@ fn blurred(
     const REACH: f32 = 3.0;
     let sigma_px = sigma_px.max(0.0).min(*SOFTNESS_PX.end());
     let reach = (REACH * sigma_px).ceil() as i32 + 1;
-    let Some((rect, plane)) = around(grid, reach, canvas) else { return CoverageGrid::default() };
+    let Some((rect, plane)) = padded_coverage(grid, reach, canvas) else {
+        return CoverageGrid::default();
+    };
     let soft = blur::gaussian(&plane.map(|c| f32::from(c) / 255.0), sigma_px);
     let bytes = soft.map(|v| (share(v).max(0.0).min(1.0) * 255.0).round() as u8);
     CoverageGrid::from_plane(&bytes, rect.x0, rect.y0)
@@ -87,7 +89,7 @@ fn blurred(
 
 /// The covered rectangle with this margin, within the canvas, and its coverage; `None` if it is
 /// empty.
-fn around(grid: &CoverageGrid, reach: i32, canvas: Rect) -> Option<(Rect, Plane<u8>)> {
+fn padded_coverage(grid: &CoverageGrid, reach: i32, canvas: Rect) -> Option<(Rect, Plane<u8>)> {
     let rect = grid.covered_rect().grown(reach).intersect(canvas);
     (!rect.is_empty()).then(|| (rect, grid.to_plane(rect)))
 }
@@ -155,7 +157,7 @@ mod tests {
 
     #[test]
     fn all_of_the_canvas_has_no_edge() {
-        let all = CoverageGrid::filled(CANVAS);
+        let all = CoverageGrid::full(CANVAS);
         for changed in
             [grown(&all, -9.0, CANVAS), feathered(&all, 9.0, CANVAS), smooth(&all, 9.0, CANVAS)]
         {

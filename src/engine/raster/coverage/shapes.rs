@@ -244,6 +244,6 @@ mod tests {
         assert!(polygon(&[Vec2::ZERO, vec2(f32::NAN, 3.0), vec2(9.0, 9.0)], CANVAS).is_empty());
         assert!(ellipse(Vec2::ZERO, vec2(f32::INFINITY, 3.0), CANVAS).is_empty());
         let huge = rectangle(vec2(-1e30, -1e30), vec2(1e30, 1e30), CANVAS);
-        assert!(huge.is_same(&CoverageGrid::filled(CANVAS)));
+        assert!(huge.is_same(&CoverageGrid::full(CANVAS)));
     }
 }

@@ -36,9 +36,9 @@ proptest! {
 
 #[test]
 fn the_whole_canvas_takes_no_memory_but_at_its_border() {
-    let whole = CoverageGrid::filled(Rect::new(0, 0, 4096, 4096));
+    let whole = CoverageGrid::full(Rect::new(0, 0, 4096, 4096));
     assert_eq!((whole.bytes(), whole.area_px()), (0, 4096.0 * 4096.0));
-    let odd = CoverageGrid::filled(Rect::new(0, 0, 1920, 1080));
+    let odd = CoverageGrid::full(Rect::new(0, 0, 1920, 1080));
     assert_eq!((odd.covered_rect(), odd.area_px()), (Rect::new(0, 0, 1920, 1080), 1920.0 * 1080.0));
     assert_eq!(odd.bytes(), 30 * (TILE_AREA + 64));
 }

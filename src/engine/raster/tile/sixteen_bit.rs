@@ -50,7 +50,7 @@ pub fn put(row: &mut Row16, x: usize, [r, g, b, a]: [u16; 4]) {
 
 /// How far a value lies from the nearest one that a byte has.
 #[inline(always)]
-fn off_byte(v: u16) -> u16 {
+fn distance_from_byte(v: u16) -> u16 {
     // 256 high + low = 257 high + (low − high).
     let off = (v >> 8).abs_diff(v & 255);
     off.min(LEVEL - off)
@@ -108,7 +108,7 @@ crate::widest! {
             (wide[0], wide[TILE + 1]) = (row[c][0], row[c][TILE - 1]);
             for x in 0..TILE {
                 let v = wide[x + 1];
-                off[x] = off[x].max(off_byte(v));
+                off[x] = off[x].max(distance_from_byte(v));
                 let beside = v.abs_diff(wide[x]).max(v.abs_diff(wide[x + 2]));
                 let beyond = v.abs_diff(above[c][x]).max(v.abs_diff(below[c][x]));
                 steps[x] = steps[x].max(beside.max(beyond));
@@ -194,7 +194,7 @@ mod tests {
     fn every_value_has_its_nearest_byte() {
         for v in 0..=u16::MAX {
             assert_eq!(u32::from(byte_of(v)), (u32::from(v) + 128) / 257, "{v}");
-            assert_eq!(off_byte(v), v.abs_diff(u16::from(byte_of(v)) * 257), "{v}");
+            assert_eq!(distance_from_byte(v), v.abs_diff(u16::from(byte_of(v)) * 257), "{v}");
         }
     }
 

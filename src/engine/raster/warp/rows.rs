@@ -137,13 +137,18 @@ impl SourceWindow {
             let reduces = scratch.sides.iter().any(|side| side.is_reduced(k));
             out[k] = match reduces {
                 true => self.patch(points, k, filter, scratch, taps),
-                false => self.under_cubic(points, k, &scratch.cubic),
+                false => self.interpolate_cubic(points, k, &scratch.cubic),
             };
         }
     }
 
     /// Like [`SourceWindow::cubic`], with known weights.
-    fn under_cubic(&self, points: &PointRow, k: usize, weights: &[[TileRow; 4]; 2]) -> [f32; 4] {
+    fn interpolate_cubic(
+        &self,
+        points: &PointRow,
+        k: usize,
+        weights: &[[TileRow; 4]; 2],
+    ) -> [f32; 4] {
         let (x, y) =
             ((points.x[k] - 0.5).floor() as i32 - 1, (points.y[k] - 0.5).floor() as i32 - 1);
         let mut sum = [0.0; 4];

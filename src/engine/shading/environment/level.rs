@@ -124,14 +124,14 @@ impl SphereLevel {
             // that the pole is unique.
             let is_cap = row == 0 || row + 1 == self.rows;
             let sin = ((row as f32 + 0.5) / self.rows as f32 * PI).sin();
-            around_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
+            average_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
         };
         SphereLevel::new(self.rows, (0..self.rows).into_par_iter().flat_map_iter(of_row).collect())
     }
 }
 
 /// The mean over `width` texels around each texel of a cyclic row.
-fn around_row(texels: &[Vec3A], width: f32) -> Vec<Vec3A> {
+fn average_row(texels: &[Vec3A], width: f32) -> Vec<Vec3A> {
     let n = texels.len();
     if width <= 1.0 {
         return texels.to_vec();

@@ -96,7 +96,7 @@ impl EnvironmentMap {
         let mut map = Self { picture, projection, brightest: 0.0, levels: Vec::new() };
         map.brightest = map.find_brightest();
         let rows = ((PI / map.texel_rad() * 0.5) as usize).next_power_of_two().max(FEWEST_ROWS);
-        let mut sums = map.resampled(rows);
+        let mut sums = map.resample(rows);
         loop {
             let halved = sums.halved();
             map.levels.push(sums.rounded_at_the_poles());
@@ -156,7 +156,7 @@ impl EnvironmentMap {
     fn texel(&self, i: i32, j: i32) -> Option<Vec3> {
         let (w, h) = (self.picture.size.width as i32, self.picture.size.height as i32);
         let (i, j) = match self.projection {
-            Projection::LatLong => across_the_poles(i, j, w, h),
+            Projection::LatLong => wrap_over_poles(i, j, w, h),
             _ => (i.clamp(0, w - 1), j.clamp(0, h - 1)),
         };
         let center = vec2(i as f32 + 0.5, j as f32 + 0.5) / vec2(w as f32, h as f32) - 0.5;
@@ -252,7 +252,7 @@ impl EnvironmentMap {
     }
 
     /// The picture as a latitude-longitude map, each texel the mean of several look-ups.
-    fn resampled(&self, rows: usize) -> SphereLevel {
+    fn resample(&self, rows: usize) -> SphereLevel {
         // A disc stretches what lies behind, so that more of its texels fall into one.
         let per_side = if self.projection.is_disc() { 4 } else { 2 };
         let columns = 2 * rows;
@@ -276,7 +276,7 @@ impl EnvironmentMap {
 /// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns wrap
 /// around, and beyond a pole the rows come back on the other side.
 #[inline(always)]
-fn across_the_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
+fn wrap_over_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
     let (i, j) = match j {
         j if j < 0 => (i + w / 2, -1 - j),
         j if j >= h => (i + w / 2, 2 * h - 1 - j),

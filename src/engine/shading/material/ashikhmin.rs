@@ -54,7 +54,7 @@ pub fn add_matt(
         &mut delta,
     );
     if diffuse.is_scaled() {
-        relief.turn(surface_row, lit.toward());
+        relief.turn(surface_row, lit.direction());
         lobes::scale(&mut rho, diffuse.scaling, relief.exponentials(diffuse.scaling), &delta);
     }
     lobes::add_lit(light, lobes::tint(kept, lit.radiance), &rho, lit);
@@ -73,7 +73,7 @@ fn add_glossy(
     glossy_row(normal, &direction, shading.nu, shading.nv, &mut row);
     let specular = &shading.specular;
     if specular.is_scaled() {
-        relief.turn(surface_row, lit.toward());
+        relief.turn(surface_row, lit.direction());
         lobes::scale(
             &mut row.rho,
             specular.scaling,

@@ -117,7 +117,7 @@ fn average_seams(
     for (x, bits) in row.iter().enumerate().filter(|(_, bits)| **bits > 0) {
         let mut sum = [shown[0][x], shown[1][x], shown[2][x]];
         for bit in (0..SEAM_STEPS.len()).filter(|bit| bits >> bit & 1 != 0) {
-            let [across, down] = places.beside(surface_row.x0 + x, surface_row.y, bit);
+            let [across, down] = places.place_beside(surface_row.x0 + x, surface_row.y, bit);
             let light = sphere.at(vec2(across * per_step - 1.0, down * per_step - 1.0));
             sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += light);
         }

@@ -104,7 +104,7 @@ impl PainterTerms {
                 lamp.seen[to..to + width].copy_from_slice(&shadow.seen[..width]);
             }
             if self.is_scaled {
-                let kappa = row.kappa(light.toward());
+                let kappa = row.kappa(light.direction());
                 lamp.kappa[to..to + width].copy_from_slice(&kappa[..width]);
             }
         }

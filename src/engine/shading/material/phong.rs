@@ -86,12 +86,12 @@ impl PhongTerms {
                     if let Some(zeta) = exponent {
                         lobes::flatten(rho, zeta);
                     }
-                    (&shading.diffuse, lights[i].toward())
+                    (&shading.diffuse, lights[i].direction())
                 }
                 Lobe::Glossy(i) => {
                     let direction = surface_row.in_pixel_frames(&lights[i].direction);
                     lobes::glossy(surface_row.seen_normal(), &direction, shading.shininess, rho);
-                    (&shading.specular, lights[i].toward())
+                    (&shading.specular, lights[i].direction())
                 }
             };
             if term.is_scaled() {

@@ -90,7 +90,7 @@ impl<'s> SecondLook<'s> {
         // What a pixel shows of the surface, along the view.
         let pixel = side_px * self.map.px_per_pixel(nearness);
         let mut moved = [vec3(pixel, 0.0, 0.0), vec3(0.0, -pixel, 0.0)]
-            .map(|step| onto_plane(step, normal, view, GRAZING));
+            .map(|step| project_onto_plane(step, normal, view, GRAZING));
         for _ in 0..self.bounces {
             let Some(hit) = self.front.trace(&self.map, &leaving) else { break };
             let r = leaving.direction;
@@ -98,7 +98,7 @@ impl<'s> SecondLook<'s> {
             let next = bend(hit.normal, -r);
             for (moved, change) in moved.iter_mut().zip(&mut changes) {
                 // Ray differentials (Igehy 1999), the last one by the difference itself.
-                *moved = onto_plane(*moved + *change * hit.length_px, hit.normal, r, 0.0);
+                *moved = project_onto_plane(*moved + *change * hit.length_px, hit.normal, r, 0.0);
                 let seen = self.map.seen_step(hit.at, hit.nearness, *moved);
                 let turned = hit.normal + hit.changes[0] * seen.x + hit.changes[1] * seen.y;
                 let beside = (r + *change).normalize_or(r);
@@ -112,7 +112,7 @@ impl<'s> SecondLook<'s> {
 }
 
 /// A step moved along a ray onto the plane with a normal; `grazing`: the least |n·r| that counts.
-fn onto_plane(step: Vec3, n: Vec3, r: Vec3, grazing: f32) -> Vec3 {
+fn project_onto_plane(step: Vec3, n: Vec3, r: Vec3, grazing: f32) -> Vec3 {
     let facing = n.dot(r);
     let held = facing.abs().max(grazing).max(1e-3);
     step - r * (n.dot(step) / if facing < 0.0 { -held } else { held })

@@ -38,7 +38,7 @@ fn add_tones(
     for (y, ((surface_row, here), light)) in rows.iter().zip(scaled).zip(light).enumerate() {
         let above = y.checked_sub(1).and_then(|y| scaled.get(y));
         let below = scaled.get(y + 1);
-        let linked = inside_links(surface_row, above.is_some(), below.is_some());
+        let linked = links_in_tile(surface_row, above.is_some(), below.is_some());
         let tones =
             tones([above.unwrap_or(here), here, below.unwrap_or(here)], &linked, bands as f32);
         lobes::add(light, tint, &tones);
@@ -46,7 +46,7 @@ fn add_tones(
 }
 
 /// The links of a row's pixels to neighbors that are in the tile.
-fn inside_links(surface_row: &SurfaceRow, has_above: bool, has_below: bool) -> [u8; TILE] {
+fn links_in_tile(surface_row: &SurfaceRow, has_above: bool, has_below: bool) -> [u8; TILE] {
     let mut linked = [0; TILE];
     let row = &mut linked[..surface_row.width];
     row.copy_from_slice(surface_row.links());

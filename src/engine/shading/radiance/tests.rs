@@ -9,8 +9,7 @@ const SIZE: Size = Size::new(100, 80);
 /// Waves: ridges and valleys along y.
 fn scene() -> Scene {
     let normals = Plane::from_fn(SIZE, |x, _| vec3((x as f32 * 0.3).sin(), 0.0, 1.0));
-    let maps =
-        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals, depth: Plane::full(SIZE, 0.5), coverage: Plane::full(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 
@@ -83,9 +82,9 @@ fn no_magnitude_changes_no_byte() {
 #[test]
 fn flat_ground_keeps_its_bytes() {
     let maps = Maps {
-        normals: Plane::filled(SIZE, Vec3::Z),
-        depth: Plane::filled(SIZE, 0.5),
-        coverage: Plane::filled(SIZE, 255),
+        normals: Plane::full(SIZE, Vec3::Z),
+        depth: Plane::full(SIZE, 0.5),
+        coverage: Plane::full(SIZE, 255),
     };
     let scene = Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
     let mut pixels = transparent_f32();

@@ -26,12 +26,12 @@ pub fn walk(
         ahead.push(start);
     }
     while let Some(at) = ahead.pop() {
-        ahead.extend(beside(at, size).filter(|(x, y)| enters(*x, *y)));
+        ahead.extend(side_neighbors(at, size).filter(|(x, y)| enters(*x, *y)));
     }
 }
 
 /// The pixels at the four sides of one.
-pub fn beside(
+pub fn side_neighbors(
     (x, y): (usize, usize),
     (w, h): (usize, usize),
 ) -> impl Iterator<Item = (usize, usize)> {
@@ -45,7 +45,7 @@ pub fn pixels((w, h): (usize, usize)) -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// Around all values of a plane that count.
-pub fn around_all<T: Copy>(plane: &Plane<T>, counts: impl Fn(T) -> bool) -> Rect {
+pub fn bound_all<T: Copy>(plane: &Plane<T>, counts: impl Fn(T) -> bool) -> Rect {
     let mut area = Rect::EMPTY;
     for y in 0..plane.height() {
         let (row, counts) = (plane.row(y), |value: &T| counts(*value));
@@ -57,7 +57,7 @@ pub fn around_all<T: Copy>(plane: &Plane<T>, counts: impl Fn(T) -> bool) -> Rect
 }
 
 /// A plane over an area of a larger one, of each pixel's place there and its index in the plane.
-pub fn over<T: Copy + Send + Sync + Default>(
+pub fn plane_over<T: Copy + Send + Sync + Default>(
     area: Rect,
     value: impl Fn(usize, usize, usize) -> T + Sync,
 ) -> Plane<T> {

@@ -1,7 +1,7 @@
 //! What a flat color covers unseen: its area goes on beneath nearer colors, as a face does
 //! beneath its eyes. Floor 3. Not here: which share of a visible pixel a color takes (`shares`).
 
-use super::areas::{self, around_all, beside, least_area, over, pixels, walk};
+use super::areas::{self, bound_all, least_area, pixels, plane_over, side_neighbors, walk};
 use super::shares::{FlatOwner, Flats, MOSTLY, REACH};
 use crate::math::Rect;
 use crate::math::srgb::Color;
@@ -35,7 +35,7 @@ const OWN: u16 = u16::MAX;
 /// than itself, which may hide how it goes on, and other areas inside of it. A hole, through which
 /// nothing or a farther color is seen, stays.
 pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], farther: &[Color]) {
-    let own = around_all(share, |share| share >= MOSTLY);
+    let own = bound_all(share, |share| share >= MOSTLY);
     let beyond = (LOOKED_BEYOND * own.width().max(own.height()) as f32) as i32 + 1;
     let around = own.grown(beyond).intersect(share.size().rect());
     let mut seen = what_is_seen(share, around, flats, nearer, farther);
@@ -46,7 +46,7 @@ pub fn fill_beneath(share: &mut Plane<u8>, flats: &Flats, nearer: &[Color], fart
     let (x0, y0) = (around.x0 as usize, around.y0 as usize);
     let is_inside = |x: usize, y: usize| seen.at(x, y) != OWN && !open.at(x, y);
     for start in pixels(size) {
-        let touches = || beside(start, size).any(|(x, y)| seen.at(x, y) == OWN);
+        let touches = || side_neighbors(start, size).any(|(x, y)| seen.at(x, y) == OWN);
         if is_inside(start.0, start.1) && share.at(start.0 + x0, start.1 + y0) < MOSTLY && touches()
         {
             walk(start, size, |x, y| {
@@ -80,7 +80,7 @@ fn what_is_seen(
         None => UNKNOWN,
     };
     let of: Vec<u16> = (0..flats.colors().len() as u16).map(of).collect();
-    over(area, |x, y, _| match flats.owner(x, y) {
+    plane_over(area, |x, y, _| match flats.owner(x, y) {
         _ if share.at(x, y) >= MOSTLY => OWN,
         FlatOwner::Color(number) => of.get(usize::from(number)).copied().unwrap_or(UNKNOWN),
         FlatOwner::Nothing => OPEN,
@@ -124,8 +124,9 @@ fn spread(seen: &mut Plane<u16>) {
     while !rim.is_empty() {
         let mut next = Vec::new();
         for at in rim {
-            for (x, y) in
-                beside(at, size).filter(|(x, y)| seen.at(*x, *y) == UNKNOWN).collect::<Vec<_>>()
+            for (x, y) in side_neighbors(at, size)
+                .filter(|(x, y)| seen.at(*x, *y) == UNKNOWN)
+                .collect::<Vec<_>>()
             {
                 seen.set(x, y, seen.at(at.0, at.1));
                 next.push((x, y));
@@ -143,7 +144,7 @@ fn what_is_open(seen: &Plane<u16>) -> Plane<bool> {
     let mut open = seen.map(|seen| seen == OPEN);
     let mut ahead: BTreeMap<u16, Vec<(usize, usize)>> = BTreeMap::new();
     for at in pixels(size).filter(|at| ![OPEN, OWN].contains(&seen.at(at.0, at.1))) {
-        if is_border(at, size) || beside(at, size).any(|(x, y)| seen.at(x, y) == OPEN) {
+        if is_border(at, size) || side_neighbors(at, size).any(|(x, y)| seen.at(x, y) == OPEN) {
             ahead.entry(seen.at(at.0, at.1)).or_default().push(at);
         }
     }

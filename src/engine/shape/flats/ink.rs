@@ -1,7 +1,7 @@
 //! Lines of a drawing that separate its areas, such as ink: they belong to what they run along.
 //! Floor 3. Not here: which of two areas takes a pixel of a line (`complete`).
 
-use super::areas::{beside, least_area, over, pixels, walk};
+use super::areas::{least_area, pixels, plane_over, side_neighbors, walk};
 use super::palette::{NONE, NOTHING};
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, distance};
@@ -68,7 +68,7 @@ pub fn color_pixels(of: &Plane<u16>, n: usize) -> Vec<ColorPixels> {
 
 /// Whether a pixel is beside one of another color.
 fn is_rim(of: &Plane<u16>, (x, y): (usize, usize)) -> bool {
-    beside((x, y), (of.width(), of.height())).any(|(x1, y1)| of.at(x1, y1) != of.at(x, y))
+    side_neighbors((x, y), (of.width(), of.height())).any(|(x1, y1)| of.at(x1, y1) != of.at(x, y))
 }
 
 /// The pixels of lines between areas in one color, if that is mostly such lines.
@@ -85,7 +85,7 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
     let reach = 2 * half + SOFT;
     let area = area.grown(reach as i32 + 1).intersect(of.size().rect());
     let least = least_area(of.size()).max(LEAST_THICK * half * half);
-    let of = &over(area, |x, y, _| of.at(x, y));
+    let of = &plane_over(area, |x, y, _| of.at(x, y));
     let mut thin = thin_pixels(of, color, half, least);
     let mut lines: Vec<(usize, usize)> = Vec::new();
     for start in pixels((of.width(), of.height())) {

@@ -179,7 +179,7 @@ impl<'a> Lifting<'a> {
         if !is_line && self.is_halo((x, y)) {
             return Some([NOTHING, drawn]);
         }
-        let (flat, ink) = self.beneath((x, y), drawn, tone).unwrap_or_default();
+        let (flat, ink) = self.color_beneath((x, y), drawn, tone).unwrap_or_default();
         if is_line && (flat[3] < 255 || color_distance(flat, tone) <= HARDLY_SEEN) {
             return Some([if flat[3] < 255 { NOTHING } else { flat }, drawn]);
         }
@@ -217,7 +217,12 @@ impl<'a> Lifting<'a> {
 
     /// The flat color under a pixel of a line, and how much of the pixel the ink takes, of 255:
     /// of the areas around, the one of which it is a mixture with the tone of the line.
-    fn beneath(&self, (x, y): (usize, usize), drawn: Pixel, tone: Pixel) -> Option<(Pixel, u8)> {
+    fn color_beneath(
+        &self,
+        (x, y): (usize, usize),
+        drawn: Pixel,
+        tone: Pixel,
+    ) -> Option<(Pixel, u8)> {
         let (x, y) = (x as i32, y as i32);
         let around = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)];
         let flats = around.into_iter().filter_map(|(dx, dy)| {

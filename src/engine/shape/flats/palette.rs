@@ -128,7 +128,7 @@ fn shade_of_each(
     is_flat: &Plane<bool>,
     shades: &[(Pixel, usize)],
 ) -> Plane<u16> {
-    let mut of = Plane::filled(pixels.size(), NONE);
+    let mut of = Plane::full(pixels.size(), NONE);
     let width = pixels.width().max(1);
     let rows = of.values_mut().par_chunks_mut(width).zip(pixels.values().par_chunks(width));
     rows.zip(is_flat.values().par_chunks(width)).for_each(|((row, pixels), is_flat)| {

@@ -49,7 +49,7 @@ impl FlatReading {
     /// The pixels of a rectangle.
     pub fn of(tiles: &TileGrid, rect: Rect) -> Self {
         let picture = FlatPicture::of(tiles, rect);
-        let between = picture.between_areas().into();
+        let between = picture.mixed_pixels().into();
         Self { picture: Arc::new(picture), between }
     }
 }
@@ -98,10 +98,10 @@ impl FlatPicture {
     }
 
     /// The mixed pixels that lie between two areas, row by row.
-    pub fn between_areas(&self) -> Vec<Between> {
+    pub fn mixed_pixels(&self) -> Vec<Between> {
         let row = |y: usize| {
             let mixed = (0..self.pixels.width()).filter(move |x| !self.is_flat.at(*x, y));
-            mixed.filter_map(move |x| self.between(x, y)).collect::<Vec<_>>()
+            mixed.filter_map(move |x| self.mixed_pixel(x, y)).collect::<Vec<_>>()
         };
         let rows: Vec<Vec<Between>> = (0..self.pixels.height()).into_par_iter().map(row).collect();
         rows.into_iter().flatten().collect()
@@ -125,7 +125,7 @@ impl FlatPicture {
         mixed.filter(|i| known.next_if_eq(i).is_none()).filter(is_line).collect()
     }
 
-    fn between(&self, x: usize, y: usize) -> Option<Between> {
+    fn mixed_pixel(&self, x: usize, y: usize) -> Option<Between> {
         let width = self.pixels.width();
         let mut beside: Vec<(Pixel, Option<usize>)> = Vec::new();
         for reach in 1..=REACH {

@@ -2,7 +2,7 @@
 //! meant. Floor 3. Not here: which share of a pixel a color takes (`shares`), the gap closing
 //! (`paint::fill`).
 
-use super::areas::{LEAST_SEEN, around_all, least_area, over, spread};
+use super::areas::{LEAST_SEEN, bound_all, least_area, plane_over, spread};
 use super::shares::{Flats, MOSTLY};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, Vec2, vec2};
@@ -29,10 +29,10 @@ impl ColorPlaces {
     pub fn of(flats: &Flats, color: Color) -> Self {
         let all = flats.share_of(color, &[]);
         let size = all.size();
-        let area = around_all(&all, |share| share > 0).grown(BESIDE).intersect(size.rect());
-        let share = over(area, |x, y, _| all.at(x, y));
+        let area = bound_all(&all, |share| share > 0).grown(BESIDE).intersect(size.rect());
+        let share = plane_over(area, |x, y, _| all.at(x, y));
         // What a line separates stays apart.
-        let inside = over(area, |x, y, _| all.at(x, y) >= MOSTLY && !flats.is_given(x, y));
+        let inside = plane_over(area, |x, y, _| all.at(x, y) >= MOSTLY && !flats.is_given(x, y));
         let mut labels = rooms(&inside, flats.gap_px());
         let least = least_area(size);
         let areas = areas(&labels);

@@ -3,7 +3,7 @@
 //! areas that touch leave no rim between them. Floor 3. Not here: which colors are parts
 //! (`flats`).
 
-use super::areas::{LEAST_SEEN, beside, least_area, pixels, walk};
+use super::areas::{LEAST_SEEN, least_area, pixels, side_neighbors, walk};
 use super::color_distance::is_near;
 use super::complete::{Given, complete};
 use super::ink::{color_pixels, lines};
@@ -162,7 +162,7 @@ impl Flats {
 
     /// The share of each pixel that a color takes together with others, 255 the whole.
     pub fn share_of(&self, color: Color, with: &[Color]) -> Plane<u8> {
-        let Some(own) = self.number_of(color) else { return Plane::filled(self.owner.size(), 0) };
+        let Some(own) = self.number_of(color) else { return Plane::full(self.owner.size(), 0) };
         let all: Vec<u16> = std::iter::once(own)
             .chain(with.iter().filter_map(|color| self.number_of(*color)))
             .collect();
@@ -181,7 +181,8 @@ impl Flats {
                 && all.contains(&self.owner.at(x, y));
             let is_own = |x: usize, y: usize| self.owner.at(x, y) == own && self.is_given.at(x, y);
             is_others
-                && beside((x, y), (shares.width(), shares.height())).any(|(x, y)| is_own(x, y))
+                && side_neighbors((x, y), (shares.width(), shares.height()))
+                    .any(|(x, y)| is_own(x, y))
         };
         match all.len() {
             1 => shares,
@@ -223,7 +224,7 @@ impl WithoutLines {
                 owner.values_mut()[index] = number as u16;
             }
         }
-        let lines = Plane::filled(owner.size(), NONE);
+        let lines = Plane::full(owner.size(), NONE);
         let mut read = Self { picture, colors, owner, between, is_line: Vec::new(), lines };
         read.take_out_lines();
         read
@@ -270,7 +271,7 @@ impl WithoutLines {
 /// are counted again.
 fn take_out_specks(owner: &mut Plane<u16>, colors: &mut [PaletteColor]) {
     let size = (owner.width(), owner.height());
-    let mut seen = Plane::filled(owner.size(), false);
+    let mut seen = Plane::full(owner.size(), false);
     colors.iter_mut().for_each(|color| color.pixels = 0);
     for start in pixels(size) {
         let color = owner.at(start.0, start.1);

@@ -75,7 +75,7 @@ impl WithoutLines {
         while let Some((x, y)) = ahead.pop_front() {
             let line = self.lines.at(x, y);
             let tone = self.colors[usize::from(line)].color;
-            for (x, y) in around((x, y), (width, height)) {
+            for (x, y) in neighbors((x, y), (width, height)) {
                 let index = y * width + x;
                 let goes_on = unknown.is_unknown.at(x, y)
                     && self.lines.at(x, y) == NONE
@@ -90,7 +90,7 @@ impl WithoutLines {
 }
 
 /// The pixels next to one, side by side before corner to corner.
-fn around(
+fn neighbors(
     (x, y): (usize, usize),
     (width, height): (usize, usize),
 ) -> impl Iterator<Item = (usize, usize)> {

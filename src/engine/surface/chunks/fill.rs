@@ -2,7 +2,8 @@
 //! `ChunkMaps::place_at`, in the module above.
 
 use super::{
-    BallPlace, BallPlaces, ChunkMaps, ChunkSettings, LOOKED_UP, Seed, SeedGrid, around, seams,
+    BallPlace, BallPlaces, ChunkMaps, ChunkSettings, LOOKED_UP, Seed, SeedGrid, neighboring_cells,
+    seams,
 };
 use crate::math::{Mat2, Rect, Vec2, fast, vec2};
 use crate::raster::{Plane, TILE};
@@ -16,7 +17,7 @@ const IN_LANES_PX: f32 = 8.0;
 /// Of every pixel of a surface.
 pub(super) fn places(maps: &ChunkMaps) -> BallPlaces {
     let size = maps.surface.size();
-    let mut places = Plane::filled(size, BallPlace::default());
+    let mut places = Plane::full(size, BallPlace::default());
     let width = places.width().max(1);
     places.values_mut().par_chunks_mut(width * TILE).enumerate().for_each(|(band, rows)| {
         let mut tile = PlaceTile::default();
@@ -189,7 +190,7 @@ const NOWHERE: Seed = Seed { at: Vec2::ZERO, offset: Vec2::splat(-1e6), bend: Ma
 
 impl CellBlock {
     fn of(maps: &ChunkMaps, grid: &SeedGrid, at: (i32, i32), part: u32, cell: Rect) -> Self {
-        let around = around(at).map(|cell| (cell, grid.seed_of(cell)));
+        let around = neighboring_cells(at).map(|cell| (cell, grid.seed_of(cell)));
         let (low, high) = (
             vec2(cell.x0 as f32 + 0.5, cell.y0 as f32 + 0.5),
             vec2(cell.x1 as f32 - 0.5, cell.y1 as f32 - 0.5),

@@ -18,7 +18,7 @@ pub(super) fn find_seams(maps: &ChunkMaps, places: Plane<BallPlace>) -> BallPlac
         return joined;
     }
     joined.seam_px = seam_px as usize;
-    let (mut seams, chunks) = (Plane::filled(places.size(), 0u8), places.map(|place| place.chunk));
+    let (mut seams, chunks) = (Plane::full(places.size(), 0u8), places.map(|place| place.chunk));
     let width = places.width().max(1);
     seams.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         find_borders(&chunks, y, joined.seam_px, row);
@@ -58,7 +58,7 @@ fn average(maps: &ChunkMaps, joined: &BallPlaces, (x, y): (usize, usize), bits: 
     let is_averaged = |bit: usize| {
         let (dx, dy) = SEAM_STEPS[bit];
         let other = ((x as i32 + dx * step) as usize, (y as i32 + dy * step) as usize);
-        let [px, py] = joined.beside(x, y, bit).map(|step| step / joined.steps);
+        let [px, py] = joined.place_beside(x, y, bit).map(|step| step / joined.steps);
         maps.settings.is_near(vec2(px, py), nbar, nz) && maps.ways.is_reached((x, y), other)
     };
     let is_kept = |bit: &usize| bits >> bit & 1 != 0 && is_averaged(*bit);

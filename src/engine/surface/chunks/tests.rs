@@ -94,7 +94,7 @@ fn flat(jump: f32) -> Surface {
     let size = Size::new(96, 64);
     let depth = Plane::from_fn(size, |x, _| if x < 48 { 0.0 } else { jump });
     let normals = Plane::from_fn(size, |x, _| vec3(if x < 48 { 0.01 } else { 0.02 }, 0.0, 1.0));
-    Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
+    Surface::new(Maps { normals, depth, coverage: Plane::full(size, 255) }).unwrap()
 }
 
 #[test]

@@ -17,7 +17,7 @@ impl WayCounts {
         let linked = surface.links_plane();
         let size = surface.size();
         let width = linked.width().max(1);
-        let (mut across, mut down) = (Plane::filled(size, 0u16), Plane::filled(size, 0u16));
+        let (mut across, mut down) = (Plane::full(size, 0u16), Plane::full(size, 0u16));
         let missing = |bits: u8, link: u8| u16::from(bits & link == 0);
         across.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
             let mut count = 0u16;

@@ -35,7 +35,7 @@ impl Continued {
     /// n̄ at a distance from the pixel's center, px, shortened to the disc where it leaves it.
     pub fn nbar(&self, from_center: Vec2) -> Vec2 {
         let [x, y] = self.nbar.map(|fit| fit.here + fit.slope.dot(from_center));
-        within_rim(vec2(x, y))
+        shorten_to_rim(vec2(x, y))
     }
 
     /// z at a distance from the pixel's center, `[0, 1]`.
@@ -56,7 +56,7 @@ pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_ce
 }
 
 /// n̄ shortened to the disc where it leaves it.
-pub fn within_rim(nbar: Vec2) -> Vec2 {
+pub fn shorten_to_rim(nbar: Vec2) -> Vec2 {
     let length = nbar.length();
     if length > RIM_NBAR { nbar * (RIM_NBAR / length) } else { nbar }
 }

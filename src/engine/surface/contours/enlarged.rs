@@ -2,7 +2,7 @@
 //! side of its line, and what that side reads (MATH 10). Floor 2. Not here: everywhere else, where
 //! maps are interpolated (`surface::fit`).
 
-use super::continued::{Continued, nz_of, within_rim};
+use super::continued::{Continued, nz_of, shorten_to_rim};
 use super::line::ContourLine;
 use super::maps::ContourMaps;
 use super::window::{CENTER, PixelWindow, REACH, SIDE};
@@ -97,7 +97,7 @@ impl<'m> EnlargedContours<'m> {
         let Some(pixel) = self.at(x, y) else { return f32::from(whole) / 255.0 };
         match pixel.line {
             Some(line) if pixel.is_shaded || pixel.own.is_some() != pixel.other.is_some() => {
-                let part = line.within(from_center, sides).near_share();
+                let part = line.within(from_center, sides).nearer_share();
                 if pixel.is_shaded || pixel.own.is_some() { part } else { 1.0 - part }
             }
             _ => f32::from(whole) / 255.0 + pixel.shades.dot(from_center),
@@ -150,7 +150,7 @@ impl<'m> EnlargedContours<'m> {
             };
             (nbar, depth) = (nbar + weight * n, depth + weight * z);
         }
-        let nbar = within_rim(nbar);
+        let nbar = shorten_to_rim(nbar);
         (vec3(nbar.x, -nbar.y, nz_of(nbar)), depth.clamp(0.0, 1.0))
     }
 }
@@ -246,7 +246,7 @@ mod tests {
             let toward_near = Vec2::from_angle(turn as f32 * 0.157 + 0.01);
             for share in [0.5, 0.6, 0.75, 0.9, 0.97] {
                 let line = ContourLine::of_share(share, toward_near);
-                let other_at = line.turned().near_middle();
+                let other_at = line.turned().nearer_centroid();
                 let pixel = ContourPixel {
                     x: 0,
                     y: 0,

@@ -136,7 +136,7 @@ impl FarSide {
     }
 
     /// A map of the canvas continued over the far side: as n̄ is.
-    pub fn continued(&self, size: Size, map: impl Fn(usize, usize) -> f32 + Sync) -> Plane<f32> {
+    pub fn continue_map(&self, size: Size, map: impl Fn(usize, usize) -> f32 + Sync) -> Plane<f32> {
         Plane::from_fn(size, |x, y| {
             let step = vec2((x & 1) as f32, (y & 1) as f32);
             self.contour_pixel(x, y)
@@ -183,11 +183,11 @@ struct FarMaps {
 
 impl FarMaps {
     fn empty(size: Size) -> Self {
-        let still = || Plane::filled(size, 0.0);
-        let (coverage, links) = (Plane::filled(size, 0), Plane::filled(size, 0));
+        let still = || Plane::full(size, 0.0);
+        let (coverage, links) = (Plane::full(size, 0), Plane::full(size, 0));
         Self {
             nbar: [still(), still()],
-            nz: Plane::filled(size, 1.0),
+            nz: Plane::full(size, 1.0),
             depth: still(),
             coverage,
             links,

@@ -158,7 +158,7 @@ struct Shared {
 impl Shared {
     fn by(line: ContourLine, own_is_near: bool) -> Self {
         let line = if own_is_near { line } else { line.turned() };
-        Self { own: line.near_share(), other_at: line.turned().near_middle() }
+        Self { own: line.nearer_share(), other_at: line.turned().nearer_centroid() }
     }
 }
 
@@ -174,11 +174,13 @@ impl Examined {
         }
         let linked = maps.links.at(x as usize, y as usize);
         if linked == 0
-            && let Some(between) = Self::between(&window, (x, y))
+            && let Some(between) = Self::examine_between(&window, (x, y))
         {
             return between;
         }
-        let Some(across) = across(&window, linked, mask.is_soft) else { return Self::default() };
+        let Some(across) = find_across(&window, linked, mask.is_soft) else {
+            return Self::default();
+        };
         let contour = contour_pixel(
             &window,
             share_pixel(&window, across),
@@ -205,8 +207,9 @@ impl Examined {
             [piece & window.whole, window.whole, piece].into_iter().find(|&members| members != 0);
         let continued = trusted.and_then(|members| Continued::from(window, members));
         let line = ContourLine::of_shades(maps.coverage, (x, y));
-        let [own_at, other_at] = line
-            .map_or([Vec2::ZERO; 2], |line| [line, line.turned()].map(ContourLine::near_middle));
+        let [own_at, other_at] = line.map_or([Vec2::ZERO; 2], |line| {
+            [line, line.turned()].map(ContourLine::nearer_centroid)
+        });
         let valid_count =
             maps.valid.is_none_or(|valid| valid.at(at.0, at.1)).then(|| window.nbar(CENTER));
         // Files hold a normal toward the viewer where there is no surface.
@@ -242,7 +245,7 @@ impl Examined {
 
     /// A pixel that continues none of its neighbors, at a depth between theirs: a renderer mixed
     /// both sides in it.
-    fn between(window: &PixelWindow, (x, y): (i32, i32)) -> Option<Self> {
+    fn examine_between(window: &PixelWindow, (x, y): (i32, i32)) -> Option<Self> {
         let mut beside: Vec<u32> = BESIDE
             .iter()
             .map(|beside| beside.bit)
@@ -263,7 +266,7 @@ impl Examined {
         });
         // Depth is mixed in the same shares.
         let by_depth = (back - here) / (back - front);
-        let own_is_near = line.map_or(by_depth, ContourLine::near_share) >= 0.5;
+        let own_is_near = line.map_or(by_depth, ContourLine::nearer_share) >= 0.5;
         let (own, others) = if own_is_near { (near, far) } else { (far, near) };
         let by_depth = Shared { own: by_depth.max(1.0 - by_depth), other_at: Vec2::ZERO };
         let shared = line.map_or(by_depth, |line| Shared::by(line, own_is_near));
@@ -273,7 +276,7 @@ impl Examined {
 }
 
 /// The piece that a covered pixel belongs to, and the largest that ends next to it.
-fn across(window: &PixelWindow, linked: u8, is_soft: bool) -> Option<Across> {
+fn find_across(window: &PixelWindow, linked: u8, is_soft: bool) -> Option<Across> {
     let center = 1u64 << CENTER;
     let mut found: Option<(u32, Across)> = None;
     for Beside { link, bit: i, .. } in BESIDE {
@@ -327,7 +330,7 @@ fn share_pixel(window: &PixelWindow, across: Across) -> Option<Shared> {
         };
         let guess = ContourLine::of_mask(across.own, window.inside).filter(is_edge)?;
         let line = ContourLine::of_depths(window, across.own, across.other)
-            .or_else(|| by_slopes(window, across))
+            .or_else(|| line_by_slopes(window, across))
             .unwrap_or(guess);
         return Some(Shared::by(line.with_center(true), true));
     }
@@ -340,7 +343,7 @@ fn share_pixel(window: &PixelWindow, across: Across) -> Option<Shared> {
 }
 
 /// The line of a crease by how steeply both its sides lie.
-fn by_slopes(window: &PixelWindow, Across { own, other, .. }: Across) -> Option<ContourLine> {
+fn line_by_slopes(window: &PixelWindow, Across { own, other, .. }: Across) -> Option<ContourLine> {
     let slope = |members: u64| {
         let nbar = Continued::from(window, members)?.nbar(Vec2::ZERO);
         Some(nbar / nz_of(nbar).max(0.05))

@@ -41,7 +41,7 @@ const WITHIN_WINDOW: f32 = 0.92;
 
 impl ContourLine {
     /// The area of the unit pixel on the nearer side, `[0, 1]`: exact (MATH 10).
-    pub fn near_share(self) -> f32 {
+    pub fn nearer_share(self) -> f32 {
         let (g, d) = (self.toward_near.abs(), self.distance_px);
         let (a, b) = (g.max_element(), g.min_element());
         let s = d.abs().min(0.5 * (a + b));
@@ -67,7 +67,7 @@ impl ContourLine {
 
     /// The centroid of the unit pixel's area on the nearer side, from the pixel's center, px; the
     /// center where there is no such area.
-    pub fn near_middle(self) -> Vec2 {
+    pub fn nearer_centroid(self) -> Vec2 {
         let corners = [vec2(-0.5, -0.5), vec2(0.5, -0.5), vec2(0.5, 0.5), vec2(-0.5, 0.5)];
         let mut outline: Vec<Vec2> = Vec::with_capacity(5);
         for (a, b) in std::iter::zip(corners, [corners[1], corners[2], corners[3], corners[0]]) {
@@ -201,7 +201,7 @@ impl ContourLine {
     }
 
     /// The component along the line.
-    pub fn along(self, v: Vec2) -> f32 {
+    pub fn component_along(self, v: Vec2) -> f32 {
         v.dot(self.toward_near.perp())
     }
 
@@ -211,7 +211,7 @@ impl ContourLine {
     /// * `place`: from the pixel's center, px.
     /// * `bend`: the circle's curvature, per px; positive where the nearer side is inside.
     pub fn distance_to(self, place: Vec2, bend: f32) -> f32 {
-        let (across, along) = (self.height(place), self.along(place));
+        let (across, along) = (self.height(place), self.component_along(place));
         let from_middle = vec2(1.0 - bend * across, bend * along).length();
         (2.0 * across - bend * (across * across + along * along)) / (1.0 + from_middle)
     }
@@ -291,7 +291,7 @@ mod tests {
             let toward_near = Vec2::from_angle(turn as f32 * 0.27);
             for d in [-0.8, -0.5, -0.31, -0.1, 0.0, 0.07, 0.4, 0.6, 0.75] {
                 let line = ContourLine { distance_px: d, toward_near };
-                let (share, counted) = (line.near_share(), counted(line));
+                let (share, counted) = (line.nearer_share(), counted(line));
                 assert!((share - counted).abs() < 0.012, "{line:?}: {share}, counted {counted}");
             }
         }
@@ -309,7 +309,7 @@ mod tests {
                 let near = near.fold(0, |set, i| set | 1 << i);
                 let found = ContourLine::of_mask(near, ALL).unwrap();
                 assert!(found.toward_near.dot(toward_near) > 0.93, "{found:?} for {true_line:?}");
-                sum += (found.with_center(true).near_share() - true_line.near_share()).abs();
+                sum += (found.with_center(true).nearer_share() - true_line.nearer_share()).abs();
                 count += 1.0;
             }
         }
@@ -359,7 +359,7 @@ mod tests {
             for slopes in [slopes, [slopes[1], slopes[0]]] {
                 let found = ContourLine::of_slopes(own, ALL & !own, slopes).unwrap();
                 assert!((found.toward_near - v).length() < 1e-5, "{found:?} for {line:?}");
-                let off = (found.near_share() - line.near_share()).abs();
+                let off = (found.nearer_share() - line.nearer_share()).abs();
                 assert!(off < 0.26, "{found:?} for {line:?}");
             }
             assert!(ContourLine::of_slopes(own, ALL & !own, [vec2(0.1, 0.3); 2]).is_none());

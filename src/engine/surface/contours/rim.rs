@@ -121,7 +121,7 @@ impl PieceNormals {
         let (mut zz, mut zs, mut ss, mut zn, mut sn) = (0.0, 0.0, PLACES_RIDGE, 0.0, 0.0);
         for pixel in self.pixels() {
             let (w, z) = (pixel.weight, pixel.nz_squared.sqrt());
-            let (n, s) = (line.along(pixel.nbar), line.along(pixel.place));
+            let (n, s) = (line.component_along(pixel.nbar), line.component_along(pixel.place));
             (zz, zs, ss) = (zz + w * z * z, zs + w * z * s, ss + w * s * s);
             (zn, sn) = (zn + w * z * n, sn + w * s * n);
         }
@@ -235,7 +235,7 @@ mod tests {
         is_covered: impl Fn(usize, usize) -> bool + Sync,
     ) -> Option<ContourLine> {
         let coverage = Plane::from_fn(SIZE, |x, y| if is_covered(x, y) { 255 } else { 0 });
-        let (depth, links) = (Plane::filled(SIZE, 0.5), Plane::filled(SIZE, 0));
+        let (depth, links) = (Plane::full(SIZE, 0.5), Plane::full(SIZE, 0));
         let maps = ContourMaps {
             size: SIZE,
             nbar: [&nbar[0], &nbar[1]],
@@ -288,7 +288,7 @@ mod tests {
 
     fn assert_is(line: Option<ContourLine>, rim: ContourLine, most: f32, what: &str) {
         let line = line.unwrap_or_else(|| panic!("{rim:?}, {what}"));
-        let error = (line.near_share() - rim.near_share()).abs();
+        let error = (line.nearer_share() - rim.nearer_share()).abs();
         assert!(error < most, "{line:?} for {rim:?}, {what}: {error}");
     }
 
@@ -317,7 +317,7 @@ mod tests {
 
     #[test]
     fn normals_that_never_turn_away_give_no_line() {
-        let level = || Plane::filled(SIZE, 0.3);
+        let level = || Plane::full(SIZE, 0.3);
         assert_eq!(line_of([level(), level()], |x, _| x > 2), None);
     }
 }

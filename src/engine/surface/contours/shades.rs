@@ -12,7 +12,7 @@ const SHADES_OFF: f32 = 0.12;
 
 impl ContourLine {
     /// The line of a direction that leaves a share of the unit pixel on its nearer side: the
-    /// inverse of [`ContourLine::near_share`].
+    /// inverse of [`ContourLine::nearer_share`].
     ///
     /// * `share`: `[0, 1]`.
     /// * `toward_near`: unit.
@@ -45,7 +45,7 @@ impl ContourLine {
             around.iter().map(|&(at, shade)| at / at.length_squared() * (shade - share)).sum();
         let start = lean.try_normalize()?;
         let off = |line: Self| {
-            let seen = around.iter().map(|&(at, shade)| (line.at(at).near_share() - shade).abs());
+            let seen = around.iter().map(|&(at, shade)| (line.at(at).nearer_share() - shade).abs());
             seen.fold((0.0f32, 0.0), |(most, all), off| (most.max(off), all + off))
         };
         let turned =
@@ -71,7 +71,7 @@ mod tests {
             let toward_near = Vec2::from_angle(turn as f32 * 0.157);
             for k in 1..20 {
                 let share = k as f32 * 0.05;
-                let found = ContourLine::of_share(share, toward_near).near_share();
+                let found = ContourLine::of_share(share, toward_near).nearer_share();
                 assert!((found - share).abs() < 1e-4, "{toward_near}: {found} for {share}");
             }
         }

@@ -197,11 +197,11 @@ fn error_beside_a_band(gap: f32) -> f32 {
             if d < 0.0 { 0.8 } else { [0.4, 0.1][usize::from((gap..gap + 4.0).contains(&d))] }
         };
         let depth = Plane::from_fn(SIZE, |x, y| depth(edge(x, y).distance_px));
-        let (normals, coverage) = (Plane::filled(SIZE, Vec3::Z), Plane::filled(SIZE, 255));
+        let (normals, coverage) = (Plane::full(SIZE, Vec3::Z), Plane::full(SIZE, 255));
         let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
         for (x, y) in (5..195).flat_map(|y| (5..255).map(move |x| (x, y))) {
             let edge = edge(x, y);
-            let own = if edge.distance_px < 0.0 { edge.turned() } else { edge }.near_share();
+            let own = if edge.distance_px < 0.0 { edge.turned() } else { edge }.nearer_share();
             if edge.distance_px.abs() < 0.7 && own < 0.998 {
                 let found =
                     surface.contours().at(x as i32, y as i32).map_or(1.0, |pixel| pixel.share);

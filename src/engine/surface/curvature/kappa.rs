@@ -71,7 +71,7 @@ impl Kappa {
             }
             to_steps(kappa, steps);
         });
-        Kappa { steps: Plane::from_values(size, steps).unwrap_or_else(|| Plane::filled(size, 0)) }
+        Kappa { steps: Plane::from_values(size, steps).unwrap_or_else(|| Plane::full(size, 0)) }
     }
 }
 
@@ -128,7 +128,7 @@ mod tests {
             Plane::from_fn(size, |x, y| vec3((x as f32 * 0.2).sin(), (y as f32 * 0.3).cos(), 1.2));
         let coverage = Plane::from_fn(size, |x, _| if x < 80 { 255 } else { 0 });
         let surface =
-            Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+            Surface::new(Maps { normals, depth: Plane::full(size, 0.5), coverage }).unwrap();
         let scales =
             [(0.0, 9.0, 0.75), (1.5, 30.0, 0.25)].map(|(blur_px, curvature_scale_px, share)| {
                 KappaScale { blur_px, curvature_scale_px, share }

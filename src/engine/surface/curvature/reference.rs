@@ -29,7 +29,7 @@ fn is_at_border(surface: &Surface, (x, y): (usize, usize), bit: u8) -> bool {
 
 /// Σ_k w_k value(k steps away) in two opposite directions, as far as the links go and the last
 /// value on.
-fn along(
+fn weigh_along_links(
     surface: &Surface,
     at: (usize, usize),
     bits: [u8; 2],
@@ -56,8 +56,8 @@ fn along(
 fn slope_at(surface: &Surface, at: (usize, usize), taps: &[f32]) -> (f32, f32) {
     let [nx, ny, nz] = surface.normal_planes();
     let normal = |(x, y): (usize, usize)| Vec3::new(nx.at(x, y), ny.at(x, y), nz.at(x, y));
-    let across = |at| along(surface, at, [links::LEFT, links::RIGHT], taps, &normal);
-    let n = along(surface, at, [links::UP, links::DOWN], taps, &across);
+    let across = |at| weigh_along_links(surface, at, [links::LEFT, links::RIGHT], taps, &normal);
+    let n = weigh_along_links(surface, at, [links::UP, links::DOWN], taps, &across);
     slope(n.x, n.y, n.z)
 }
 

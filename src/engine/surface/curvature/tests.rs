@@ -11,12 +11,8 @@ fn from_height_slope(side: u32, slope: impl Fn(f32, f32) -> (f32, f32) + Sync) -
         let (dx, dy) = slope(x as f32 + 0.5 - half, half - y as f32 - 0.5);
         vec3(-dx, -dy, 1.0)
     });
-    Surface::new(Maps {
-        normals,
-        depth: Plane::filled(size, 0.5),
-        coverage: Plane::filled(size, 255),
-    })
-    .unwrap()
+    Surface::new(Maps { normals, depth: Plane::full(size, 0.5), coverage: Plane::full(size, 255) })
+        .unwrap()
 }
 
 /// A sphere on an empty ground.
@@ -187,8 +183,7 @@ fn a_blur_sees_no_stairs_of_the_contour() {
     let inside = |x: usize, y: usize| (y as f32) < 90.0 - 0.13 * x as f32;
     let normals = Plane::from_fn(size, |_, y| vec3(0.0, 0.006 * (y as f32 - 60.0), 1.0));
     let coverage = Plane::from_fn(size, |x, y| if inside(x, y) { 255 } else { 0 });
-    let surface =
-        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+    let surface = Surface::new(Maps { normals, depth: Plane::full(size, 0.5), coverage }).unwrap();
     let c = surface.curvature(4.0);
     let edge = |x: usize| (0..120).rfind(|&y| inside(x, y)).unwrap();
     let along: Vec<f32> = (30..90).map(|x| c.kappa(x, edge(x), 40.0)).collect();

@@ -113,7 +113,7 @@ fn try_laid_span(
             None => fill_laid_row(u, v, fit.linear, fit.shift, out_x, out_y),
         },
         None if one && planes.fits().iter().all(|fit| fit.object != objects[0]) => {
-            let away = planes.elsewhere_px();
+            let away = planes.default_shift_px();
             fill_shifted_row(u, v, away, out_x, out_y);
         }
         None => fill_laid(planes, surface, at, out_x, out_y),

@@ -180,7 +180,7 @@ impl LaidPlanes {
     /// is on its object.
     pub fn plane_over(&self, rect: Rect) -> Option<OwnPlane<'_>> {
         let ([fit], Some(at)) = (&self.fits[..], self.dab_at) else { return None };
-        let blocks = self.objects.around_blocks();
+        let blocks = self.objects.objects_of_blocks();
         let (x0, y0) = (rect.x0.max(0) as usize / BLOCK, rect.y0.max(0) as usize / BLOCK);
         let (x1, y1) = (rect.x1.max(0) as usize, rect.y1.max(0) as usize);
         let (x1, y1) =
@@ -200,7 +200,7 @@ impl LaidPlanes {
     }
 
     /// What is added where no fit is.
-    pub fn elsewhere_px(&self) -> f32 {
+    pub fn default_shift_px(&self) -> f32 {
         if self.is_bounded { OUT_OF_REACH_PX } else { 0.0 }
     }
 }

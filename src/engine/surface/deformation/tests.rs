@@ -54,7 +54,7 @@ const OPERATORS: [Operator; 8] = [
 /// One anchor, three with one of them dragged, and the gradient's two.
 fn bends(operator: Operator) -> [Bend; 4] {
     let dragged = Anchor { at: vec2(100.5, 80.5), source: vec2(90.0, 85.0) };
-    let three = vec![Anchor::fixed(vec2(60.5, 40.5)), dragged, Anchor::fixed(vec2(45.0, 70.0))];
+    let three = vec![Anchor::pin(vec2(60.5, 40.5)), dragged, Anchor::pin(vec2(45.0, 70.0))];
     let bend = |anchors: &[Anchor], weights| Bend {
         operator,
         anchors: anchors.to_vec(),
@@ -167,7 +167,7 @@ fn a_ball_reflects_the_whole_image_and_a_plane_none_of_it() {
     let (ball, alpha) = (sphere(), 0.5);
     let operator = Operator::Normal { alpha, beta: 0.0, detail: 0.0 };
     let center = vec2(80.5, 60.5);
-    let bend = Bend { operator, anchors: vec![Anchor::fixed(center)], ..Bend::default() };
+    let bend = Bend { operator, anchors: vec![Anchor::pin(center)], ..Bend::default() };
     let d = Deformation::new(Some(&ball), SIZE, &bend).at(110, 60);
     // f_n(u) d = α u d (eq. 14 at β = 0), u = |d|, L = 160.
     let u = 30.0 / 70.0;
@@ -183,7 +183,7 @@ fn detail_bends_more_where_the_surface_is_convex() {
     let surface = sphere();
     let bend = |detail| Bend {
         operator: Operator::Normal { alpha: 0.5, beta: 1.0, detail },
-        anchors: vec![Anchor::fixed(vec2(80.5, 60.5))],
+        anchors: vec![Anchor::pin(vec2(80.5, 60.5))],
         ..Bend::default()
     };
     let offset = |detail| {
@@ -208,7 +208,7 @@ fn an_anchor_off_the_surface_reads_the_background_and_a_dab_the_nearest_rim() {
     let operator = Operator::Normal { alpha: 1.0, beta: 0.0, detail: 0.0 };
     let off = vec2(3.0, 60.0);
     let nbar = surface.nbar(100, 60);
-    let bend = Bend { operator, anchors: vec![Anchor::fixed(off)], ..Bend::default() };
+    let bend = Bend { operator, anchors: vec![Anchor::pin(off)], ..Bend::default() };
     // f_n is linear: the offset is L |d| d of the relative normal d, here n̄ itself.
     let d = Deformation::new(Some(&surface), SIZE, &bend).at(100, 60) - vec2(100.5, 60.5);
     assert!((d - 160.0 * nbar.length() * nbar).length() < 1e-2, "{d}");
@@ -223,7 +223,7 @@ fn identity_is_known_without_looking_at_pixels() {
     let surface = sphere();
     let still = Bend {
         operator: OPERATORS[0],
-        anchors: vec![Anchor::fixed(vec2(9.0, 9.0))],
+        anchors: vec![Anchor::pin(vec2(9.0, 9.0))],
         ..Bend::default()
     };
     assert!(!Deformation::new(Some(&surface), SIZE, &still).is_identity());
@@ -247,7 +247,7 @@ fn counted_from_another_corner_a_moved_surface_gives_the_same_bits() {
         // The range stays the same.
         depth.set(0, 0, 0.0);
         depth.set(89, 69, 1.0);
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
+        Surface::new(Maps { normals, depth, coverage: Plane::full(size, 255) }).unwrap()
     };
     let bend = |shift: (i32, i32)| {
         let move_by = vec2(shift.0 as f32, shift.1 as f32);

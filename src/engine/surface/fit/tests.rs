@@ -7,7 +7,7 @@ fn plate_and_wall(size: Size) -> Surface {
     Surface::new(Maps {
         normals: Plane::from_fn(size, |x, _| if left(x) { vec3(0.0, 0.6, 0.8) } else { Vec3::Z }),
         depth: Plane::from_fn(size, |x, _| if left(x) { 0.0 } else { 1.0 }),
-        coverage: Plane::filled(size, 255),
+        coverage: Plane::full(size, 255),
     })
     .unwrap()
 }
@@ -130,7 +130,7 @@ fn a_crease_stays_one_between_two_planes() {
         depth: Plane::from_fn(size, |x, y| {
             0.5 + slope * (x as f32 - 19.8 - 0.31 * y as f32).abs() / 60.0
         }),
-        coverage: Plane::filled(size, 255),
+        coverage: Plane::full(size, 255),
     })
     .unwrap();
     let large = roof.stretched(Size::new(80, 60)).unwrap();
@@ -152,7 +152,7 @@ fn bumps_keep_most_of_their_slope_in_a_larger_map() {
     let bumpy = Surface::new(Maps {
         normals: Plane::from_fn(size, |x, _| vec3(slope(x), 0.0, 1.0).normalize()),
         depth: Plane::from_fn(size, |x, _| 0.5 + height(x) / 48.0),
-        coverage: Plane::filled(size, 255),
+        coverage: Plane::full(size, 255),
     })
     .unwrap();
     assert_eq!(bumpy.contours().pixels().len(), 0);

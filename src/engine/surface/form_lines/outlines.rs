@@ -50,7 +50,7 @@ struct Partings<'s> {
 
 /// The lines along broken links.
 pub(super) fn trace(surface: &Surface, settings: &LineSettings) -> Vec<RawLine> {
-    let mut own = Plane::filled(surface.size(), 1.0f32);
+    let mut own = Plane::full(surface.size(), 1.0f32);
     for pixel in surface.contours().pixels().iter().filter(|pixel| pixel.is_between_parts()) {
         own.set(pixel.x as usize, pixel.y as usize, pixel.share);
     }
@@ -91,7 +91,7 @@ impl Partings<'_> {
     }
 
     /// What separates two neighbors, if anything does.
-    fn between(&self, a: (usize, usize), b: (usize, usize)) -> Option<Parting> {
+    fn parting(&self, a: (usize, usize), b: (usize, usize)) -> Option<Parting> {
         let (on_a, on_b) = (self.is_on(a), self.is_on(b));
         if !on_a || !on_b {
             return (on_a != on_b).then_some(Parting::Outline);
@@ -124,7 +124,7 @@ impl Partings<'_> {
         (a, b, key): ((usize, usize), (usize, usize), u64),
         side: usize,
     ) -> Option<LinkCrossing> {
-        if self.between(a, b) != Some(parting) {
+        if self.parting(a, b) != Some(parting) {
             return None;
         }
         let place = |(x, y): (usize, usize)| vec2(x as f32 + 0.5, y as f32 + 0.5);

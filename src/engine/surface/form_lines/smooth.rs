@@ -75,7 +75,7 @@ pub(in crate::surface) fn diffuse(plane: &mut Plane<f32>, links: &Plane<u8>, sig
     if steps.is_nan() || steps <= 0.0 {
         return;
     }
-    let mut other = Plane::filled(plane.size(), 0.0f32);
+    let mut other = Plane::full(plane.size(), 0.0f32);
     if steps > MOST_STEPS {
         // The variance that is left for the recursive blur.
         let wide = (sigma_px * sigma_px - 2.0 * SHARE * MOST_STEPS).sqrt();
@@ -125,11 +125,11 @@ fn blur_along_links(plane: &mut Plane<f32>, links: &Plane<u8>, sigma_px: f32) {
             let sigma = sigma_px * 3f32.sqrt() * 2f32.powi(2 - pass) / 63f32.sqrt();
             let feedback = (-std::f32::consts::SQRT_2 / sigma).exp();
             if !is_turned {
-                along_rows(plane, links, feedback);
+                smooth_rows(plane, links, feedback);
             }
-            along_columns(plane, links, feedback);
+            smooth_columns(plane, links, feedback);
             if is_turned {
-                along_rows(plane, links, feedback);
+                smooth_rows(plane, links, feedback);
             }
         }
     }
@@ -137,7 +137,7 @@ fn blur_along_links(plane: &mut Plane<f32>, links: &Plane<u8>, sigma_px: f32) {
     mean.with_min_len(1 << 12).for_each(|(v, turned)| *v = 0.5 * (*v + *turned));
 }
 
-fn along_rows(plane: &mut Plane<f32>, links: &Plane<u8>, feedback: f32) {
+fn smooth_rows(plane: &mut Plane<f32>, links: &Plane<u8>, feedback: f32) {
     let width = plane.width().max(1);
     plane.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         let linked = links.row(y);
@@ -152,7 +152,7 @@ fn along_rows(plane: &mut Plane<f32>, links: &Plane<u8>, feedback: f32) {
     });
 }
 
-fn along_columns(plane: &mut Plane<f32>, links: &Plane<u8>, feedback: f32) {
+fn smooth_columns(plane: &mut Plane<f32>, links: &Plane<u8>, feedback: f32) {
     let (w, h) = (plane.width(), plane.height());
     let values = plane.values_mut();
     let mut toward = |y: usize, from: usize, bit: u8| {

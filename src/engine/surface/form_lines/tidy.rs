@@ -62,7 +62,7 @@ pub fn tidy_lines(lines: Vec<RawLine>, settings: &LineSettings) -> Vec<FormLine>
         }
     }
     if settings.gap > 0.0 {
-        left = behind(left, settings);
+        left = open_gaps(left, settings);
     }
     find_joints(&mut left);
     left
@@ -340,7 +340,7 @@ fn without_doubles(line: FormLine, known: &NearPoints, settings: &LineSettings) 
 }
 
 /// Lines with gaps behind outlines in front of them.
-fn behind(lines: Vec<FormLine>, settings: &LineSettings) -> Vec<FormLine> {
+fn open_gaps(lines: Vec<FormLine>, settings: &LineSettings) -> Vec<FormLine> {
     let mut fronts = NearPoints::default();
     for (i, line) in lines.iter().enumerate().filter(|(_, line)| line.kind == LineKind::Outline) {
         fronts.add(i as u32, line.kind, &line.points);

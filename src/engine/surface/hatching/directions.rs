@@ -116,13 +116,13 @@ impl<'s> DirectionField<'s> {
     /// The direction of a family at a place, unit, in the tangent plane: of both, the one nearer to
     /// `near`.
     pub fn direction(&self, at: Vec2, family: u8, near: Vec2) -> Vec2 {
-        let along = halve_angle(self.between(at));
+        let along = halve_angle(self.interpolate(at));
         let way = if family == 0 { along } else { along.perp() };
         if way.dot(near) < 0.0 { -way } else { way }
     }
 
     /// The doubled direction between pixels, of those that are linked to the nearest.
-    fn between(&self, at: Vec2) -> Vec2 {
+    fn interpolate(&self, at: Vec2) -> Vec2 {
         let size = self.surface.size();
         let (w, h) = (size.width as i32, size.height as i32);
         let middle = ((at.x as i32).clamp(0, w - 1), (at.y as i32).clamp(0, h - 1));

@@ -20,7 +20,7 @@ fn plate_and_disc_of(size: Size) -> Arc<Surface> {
         _ => 0.6,
     });
     let coverage = Plane::from_fn(size, |x, _| if x < 10 { 0 } else { 255 });
-    Arc::new(Surface::new(Maps { normals: Plane::filled(size, Vec3::Z), depth, coverage }).unwrap())
+    Arc::new(Surface::new(Maps { normals: Plane::full(size, Vec3::Z), depth, coverage }).unwrap())
 }
 
 /// While objects are found a worker helps others, whose work may need the same objects.
@@ -32,7 +32,7 @@ fn workers_that_need_the_objects_at_once_never_wait_for_themselves() {
         for _ in 0..40 {
             let objects = Objects::new(&surface);
             let count = |_: usize| {
-                objects.around_blocks().values().iter().filter(|label| **label > 0).count()
+                objects.objects_of_blocks().values().iter().filter(|label| **label > 0).count()
             };
             let counts: Vec<usize> = (0..64).into_par_iter().map(count).collect();
             assert!(counts.iter().all(|count| *count == counts[0]));
@@ -60,8 +60,7 @@ fn a_disc_before_a_plate_is_an_object_of_its_own_and_a_fragment_is_none() {
 fn a_ramp_as_high_as_a_cliff_tears_nothing() {
     let depth = Plane::from_fn(SIZE, |x, _| x as f32 / 119.0);
     let normal = Vec3::new(-0.6, 0.0, 0.8);
-    let maps =
-        Maps { normals: Plane::filled(SIZE, normal), depth, coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals: Plane::full(SIZE, normal), depth, coverage: Plane::full(SIZE, 255) };
     assert_eq!(Surface::new(maps).unwrap().objects().count(), 1);
 }
 

@@ -56,7 +56,7 @@ impl Heights {
 pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
     let size = surface.size();
     let heights = Heights::of(surface, ways);
-    let mut open = Plane::filled(size, 1.0f32);
+    let mut open = Plane::full(size, 1.0f32);
     open.values_mut().par_chunks_mut(size.width.max(1) as usize).enumerate().for_each(
         |(y, row)| {
             for (i, out) in row.chunks_mut(LANES).enumerate() {
@@ -86,12 +86,12 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
 /// The open part averaged over five pixels each way, never across a depth jump: the remaining
 /// artifacts of depth steps and few directions are finer than that.
 pub(super) fn smooth(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
-    let across = along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
-    along_links(surface, &across, (links::UP, links::DOWN), (0, 1))
+    let across = smooth_along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
+    smooth_along_links(surface, &across, (links::UP, links::DOWN), (0, 1))
 }
 
 /// Binomial weights 1 4 6 4 1 along a row or a column, as far as the links reach.
-fn along_links(
+fn smooth_along_links(
     surface: &Surface,
     open: &Plane<f32>,
     (back, forth): (u8, u8),
@@ -187,8 +187,8 @@ crate::widest! {
             let (mut tangent, mut hidden) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
             let [ahead, behind] = &mut tangent;
             for (i, (ahead, behind)) in ahead.iter_mut().zip(behind).enumerate() {
-                let along = along(&facing.slope, toward, i);
-                let both = tangents(along, self::along(&facing.nbar, toward, i), facing.nz[i]);
+                let along = component_along(&facing.slope, toward, i);
+                let both = tangents(along, self::component_along(&facing.nbar, toward, i), facing.nz[i]);
                 (*ahead, *behind) = (both[0], both[1]);
             }
             let mut is_open = true;
@@ -196,7 +196,7 @@ crate::widest! {
                 is_open &= !march(heights, at, &slice[side], ways.radius_px, &tangent[side], &mut hidden[side]);
             }
             for i in 0..LANES {
-                let along = -along(&facing.slope, toward, i);
+                let along = -component_along(&facing.slope, toward, i);
                 part[i] = open_part(along, 1.0, [tangent[0][i], tangent[1][i]]);
                 whole[i] += part[i];
             }
@@ -205,7 +205,7 @@ crate::widest! {
                 continue;
             }
             for i in 0..LANES {
-                let along = -along(&facing.slope, toward, i);
+                let along = -component_along(&facing.slope, toward, i);
                 open[i] += open_part(along, 1.0, [tangent[0][i] + hidden[0][i], tangent[1][i] + hidden[1][i]]);
             }
         }
@@ -216,7 +216,7 @@ crate::widest! {
 }
 
 #[inline(always)]
-fn along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
+fn component_along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
     vector[0][i] * toward.x + vector[1][i] * toward.y
 }
 

@@ -70,8 +70,8 @@ fn the_middle_of_a_pixel_reads_what_the_pixel_holds() {
             nbar: surface.nbar(x, y),
             nz: surface.normal(x, y).z,
         };
-        assert_eq!(surface.near_point(q), held, "{q}");
-        assert_eq!(surface.at_point(q), (x < 33).then_some(held), "{q}");
+        assert_eq!(surface.values_near(q), held, "{q}");
+        assert_eq!(surface.values_at(q), (x < 33).then_some(held), "{q}");
     }
 }
 
@@ -81,7 +81,7 @@ fn points_read_what_the_definition_says() {
     let mut parted = 0;
     for i in 0..4000 {
         let q = vec2(40.0 * hash::unit(i, 0, 7), 30.0 * hash::unit(i, 1, 7));
-        let (found, told) = (surface.at_point(q), read_by_definition(&surface, q));
+        let (found, told) = (surface.values_at(q), read_by_definition(&surface, q));
         match (found, told) {
             (Some(a), Some(b)) => {
                 assert!(
@@ -102,8 +102,8 @@ fn points_read_what_the_definition_says() {
 fn a_point_that_is_nowhere_reads_something_finite() {
     let surface = bumpy();
     for q in [Vec2::NAN, Vec2::INFINITY, vec2(-1e7, 4.0), vec2(12.5, f32::NAN), vec2(1e7, 1e7)] {
-        assert_eq!(surface.at_point(q), None, "{q}");
-        let MapValues { depth, nbar, nz } = surface.near_point(q);
+        assert_eq!(surface.values_at(q), None, "{q}");
+        let MapValues { depth, nbar, nz } = surface.values_near(q);
         assert!(depth.is_finite() && nbar.is_finite() && nz.is_finite(), "{q}");
     }
 }
@@ -115,7 +115,7 @@ fn a_surface_of_another_size_reads_points_as_the_document_does() {
         let scaled = surface.scaled(SIZE.scaled(factor)).unwrap();
         for i in 0..500 {
             let q = vec2(40.0 * hash::unit(i, 0, 8), 30.0 * hash::unit(i, 1, 8));
-            let (here, there) = (surface.near_point(q), scaled.near_point(q * factor));
+            let (here, there) = (surface.values_near(q), scaled.values_near(q * factor));
             let apart = here.nbar.distance(there.nbar) + (here.depth - there.depth).abs();
             assert!(apart < 1e-4, "{q} times {factor}: {here:?} {there:?}");
         }

@@ -65,11 +65,11 @@ fn rows_do_as_the_equation_says() {
     let (mut out, force) = (vec![0.0; 70], applied(&grid, &v));
     for y in 0..40 {
         let at = y * 70..(y + 1) * 70;
-        rows::residual_row(grid.row(y), around(&v, 70, y), &b[at.clone()], &mut out);
+        rows::residual_row(grid.row(y), neighboring_rows(&v, 70, y), &b[at.clone()], &mut out);
         for (x, (i, out)) in at.clone().zip(&out).enumerate() {
             assert!((b[i] - force[i] - out).abs() < 1e-5, "residual at {x}, {y}");
         }
-        rows::relax_row(grid.row(y), around(&v, 70, y), &b[at.clone()], 0.7, &mut out);
+        rows::relax_row(grid.row(y), neighboring_rows(&v, 70, y), &b[at.clone()], 0.7, &mut out);
         for (i, out) in at.clone().zip(&out) {
             let (sum, pull) = grid.pull(&v, i);
             let told = if sum > 0.0 { v[i] + 0.7 * ((b[i] + pull) / sum - v[i]) } else { *out };

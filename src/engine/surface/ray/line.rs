@@ -31,7 +31,7 @@ impl RayLine {
             // q = c + f b with b = P/Z: db/dt = (r + b r_z) / Z, and of f Z̄/Z the change is r_z f
             // Z̄/Z².
             Some(near) => (
-                vec2(r.x, -r.y) + near.beside_at(ray.at) * r.z,
+                vec2(r.x, -r.y) + near.offset_at(ray.at) * r.z,
                 r.z * ray.nearness / near.focal_px(),
             ),
         };

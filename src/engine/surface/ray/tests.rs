@@ -29,7 +29,7 @@ fn view(eye: Eye, at: Vec2) -> (Vec3, Vec3) {
     let flat = at - SIZE.center();
     match eye {
         Eye::Afar => (vec3(flat.x, -flat.y, 500.0), Vec3::NEG_Z),
-        Eye::At { .. } => (Vec3::ZERO, -eye.toward(flat)),
+        Eye::At { .. } => (Vec3::ZERO, -eye.direction_to_eye(flat)),
     }
 }
 
@@ -131,7 +131,7 @@ fn jumping_over_blocks_changes_no_ray() {
         let surface = Surface::new(Maps { normals, depth, coverage }).unwrap().with_eye(eye);
         let map = surface.ray_map();
         let mut every_pixel = RayMap::of(&surface);
-        every_pixel.blocks = BLOCKS.map(|side| Plane::filled(blocks_of(SIZE, side), -NOWHERE));
+        every_pixel.blocks = BLOCKS.map(|side| Plane::full(blocks_of(SIZE, side), -NOWHERE));
         let (mut met, mut jumped) = (0, 0);
         for (x, y) in covered(&surface) {
             for turn in 0..3 {
@@ -150,8 +150,9 @@ fn jumping_over_blocks_changes_no_ray() {
                 assert_eq!(a, b, "({x}, {y}) turn {turn}");
                 met += usize::from(a.is_some());
                 let line = RayLine::of(&map, &ray);
-                jumped +=
-                    usize::from(line.is_some_and(|line| line.steps > 0 && map.ahead(&line, 1).1));
+                jumped += usize::from(
+                    line.is_some_and(|line| line.steps > 0 && map.step_out_of_block(&line, 1).1),
+                );
             }
         }
         assert!(met > 2000 && jumped > 300, "{met} {jumped}");
@@ -166,8 +167,8 @@ fn planes_and_single_balls_are_never_met() {
             Plane::from_fn(SIZE, |x, y| 0.5 + (x as f32 * slope.x + y as f32 * slope.y) / 2000.0);
         // As coarse as a file of bytes has it.
         let depth = depth.map(|z| (z * 255.0).round() / 255.0);
-        let normals = Plane::filled(SIZE, vec3(slope.x, -slope.y, 1.0));
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap()
+        let normals = Plane::full(SIZE, vec3(slope.x, -slope.y, 1.0));
+        Surface::new(Maps { normals, depth, coverage: Plane::full(SIZE, 255) }).unwrap()
     };
     for surface in [ball, plane(vec2(0.0, 0.0)), plane(vec2(1.2, 0.0)), plane(vec2(-0.6, 2.0))] {
         let map = surface.ray_map();
@@ -189,8 +190,7 @@ fn a_ray_passes_behind_what_floats_in_front_and_meets_what_lies_beyond() {
     let depth = Plane::from_fn(SIZE, |x, _| (90.0 - height(x)) / 90.0);
     let normals =
         Plane::from_fn(SIZE, |x, _| if x >= 120 { vec3(-1.0, 0.0, 1.0) } else { Vec3::Z });
-    let surface =
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap();
+    let surface = Surface::new(Maps { normals, depth, coverage: Plane::full(SIZE, 255) }).unwrap();
     let map = surface.ray_map();
     let nearness = map.nearness_of(surface.depth(20, 70));
     let leaving = |direction: Vec3, inward: bool| {

@@ -25,7 +25,7 @@ pub fn of(surface: &Surface, kind: RegionKind, at: Vec2) -> Plane<f32> {
         })
     };
     let longer = surface.size().longer_side();
-    let MapValues { depth: z0, nbar, nz } = surface.near_point(at);
+    let MapValues { depth: z0, nbar, nz } = surface.values_near(at);
     let n0 = vec3(nbar.x, -nbar.y, nz);
     match kind {
         RegionKind::Direction => on_surface(&|x, y| angle(surface.normal(x, y), n0)),

@@ -17,7 +17,7 @@ fn ball() -> Arc<Surface> {
     };
     let normals = Plane::from_fn(SIZE, |x, y| height(x, y).unwrap_or(Vec3::Z));
     let depth = Plane::from_fn(SIZE, |x, y| height(x, y).map_or(1.0, |n| 0.5 * (1.0 - n.z)));
-    Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap())
+    Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::full(SIZE, 255) }).unwrap())
 }
 
 fn near(found: f64, expected: f64, within: f64) {
@@ -105,9 +105,8 @@ fn flows_are_lines_and_a_cylinders_is_its_own_everywhere() {
     };
     let normals = Plane::from_fn(SIZE, |x, _| bent(x));
     let depth = normals.map(|n| 1.0 - n.z);
-    let cylinder = Arc::new(
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap(),
-    );
+    let cylinder =
+        Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::full(SIZE, 255) }).unwrap());
     let all = region(RegionKind::Flow, vec2(60.5, 60.5), 5.0).on(&cylinder);
     near(all.area_px(), 220.0 * 200.0, 0.0);
     near(f64::from(angle_between_lines(Vec2::X, -Vec2::X)), 0.0, 1e-6);
@@ -118,8 +117,7 @@ fn flows_are_lines_and_a_cylinders_is_its_own_everywhere() {
 fn the_curvature_of_a_dent_is_not_that_of_a_bump() {
     let wave = |x: usize| vec3(0.6 * (x as f32 * 0.06).cos(), 0.0, 1.0).normalize();
     let normals = Plane::from_fn(SIZE, |x, _| wave(x));
-    let maps =
-        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals, depth: Plane::full(SIZE, 0.5), coverage: Plane::full(SIZE, 255) };
     let waves = Arc::new(Surface::new(maps).unwrap());
     let told = SurfaceRegion {
         contiguous: false,

@@ -78,7 +78,7 @@ fn place(at: usize, step: usize, count: usize) -> (usize, usize, f32) {
 fn enlarge(map: &Plane<f32>, step: usize, size: Size) -> Plane<f32> {
     let columns: Vec<(usize, usize, f32)> =
         (0..size.width as usize).map(|x| place(x, step, map.width())).collect();
-    let (mut large, width) = (Plane::filled(size, 0.0), size.width.max(1) as usize);
+    let (mut large, width) = (Plane::full(size, 0.0), size.width.max(1) as usize);
     large.values_mut().par_chunks_mut(width).enumerate().for_each_init(
         Vec::new,
         |between, (y, row)| {
@@ -124,7 +124,7 @@ impl ContactShade {
 
     fn sum(map: &Plane<f32>, blurred: &[Blurred; 4], page: &Blurred) -> Self {
         let width = map.width().max(1);
-        let (mut higher, mut lower) = (Plane::filled(map.size(), 0), Plane::filled(map.size(), 0));
+        let (mut higher, mut lower) = (Plane::full(map.size(), 0), Plane::full(map.size(), 0));
         let rows =
             higher.values_mut().par_chunks_mut(width).zip(lower.values_mut().par_chunks_mut(width));
         rows.enumerate().for_each_init(
@@ -178,7 +178,7 @@ impl Halves {
 fn halve_page(surface: &Surface) -> Plane<f32> {
     let coverage = surface.coverage_plane();
     let side = |n: usize| n.div_ceil(2).max(1) as u32;
-    let mut page = Plane::filled(Size::new(side(coverage.width()), side(coverage.height())), 1.0);
+    let mut page = Plane::full(Size::new(side(coverage.width()), side(coverage.height())), 1.0);
     let width = page.width();
     page.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         let last = coverage.height().saturating_sub(1);

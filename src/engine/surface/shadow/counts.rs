@@ -27,8 +27,8 @@ impl HiddenCounts {
     pub fn of(&mut self, is_turned: bool) -> &mut Plane<u16> {
         let Size { width, height } = self.size;
         match is_turned {
-            false => self.upright.get_or_insert_with(|| Plane::filled(self.size, 0)),
-            true => self.turned.get_or_insert_with(|| Plane::filled(Size::new(height, width), 0)),
+            false => self.upright.get_or_insert_with(|| Plane::full(self.size, 0)),
+            true => self.turned.get_or_insert_with(|| Plane::full(Size::new(height, width), 0)),
         }
     }
 

@@ -33,7 +33,7 @@ impl HeightMap {
 impl HeightMaps {
     pub fn of(surface: &Surface) -> Self {
         let range = surface.depth_range_px();
-        let mut whole = Plane::filled(surface.size(), 0.0);
+        let mut whole = Plane::full(surface.size(), 0.0);
         let width = whole.width().max(1);
         whole.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
             let (depth, coverage) = (surface.depth_plane().row(y), surface.coverage_plane().row(y));
@@ -55,7 +55,7 @@ impl HeightMaps {
     /// h between pixels, `x` and `y` between their centers; 0 beyond the picture. Along a row or a
     /// column it is linear.
     #[cfg(test)]
-    pub fn between(&self, x: f32, y: f32) -> f32 {
+    pub fn interpolate(&self, x: f32, y: f32) -> f32 {
         let at = |x: i32, y: i32| self.upright.whole.get(x, y).unwrap_or(0.0);
         let (x0, y0) = (x.floor(), y.floor());
         let (fx, fy) = (x - x0, y - y0);
@@ -85,7 +85,7 @@ impl BlockSlopes {
     fn of(map: &Plane<f32>) -> Self {
         let blocks = |n: usize| n.div_ceil(Self::SIDE).max(1);
         let (across, down) = (blocks(map.width()), blocks(map.height()));
-        let mut slopes = Plane::filled(Size::new(across as u32, down as u32), [0.0; 4]);
+        let mut slopes = Plane::full(Size::new(across as u32, down as u32), [0.0; 4]);
         slopes.values_mut().par_chunks_mut(across).enumerate().for_each(|(block, steepest)| {
             let rows = block * Self::SIDE..((block + 1) * Self::SIDE).min(map.height());
             let mut values = vec![[0.0; Self::SIDE]; 4 * across];
@@ -157,7 +157,7 @@ crate::widest! {
 pub(super) fn halve(map: &Plane<f32>) -> Plane<f32> {
     let side = |n: usize| n.div_ceil(2).max(1);
     let (width, height) = (side(map.width()), side(map.height()));
-    let mut half = Plane::filled(Size::new(width as u32, height as u32), 0.0);
+    let mut half = Plane::full(Size::new(width as u32, height as u32), 0.0);
     if map.width() == 0 || map.height() == 0 {
         return half;
     }
@@ -178,7 +178,7 @@ pub(super) fn halve(map: &Plane<f32>) -> Plane<f32> {
 pub(super) fn turned<T: Copy + Send + Sync + Default>(plane: &Plane<T>) -> Plane<T> {
     const SIDE: usize = 32;
     let (w, h) = (plane.width(), plane.height());
-    let mut values = Plane::filled(Size::new(h as u32, w as u32), T::default());
+    let mut values = Plane::full(Size::new(h as u32, w as u32), T::default());
     values.values_mut().par_chunks_mut((h * SIDE).max(1)).enumerate().for_each(|(band, rows)| {
         let x0 = band * SIDE;
         for y0 in (0..h).step_by(SIDE) {

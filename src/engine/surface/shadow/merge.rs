@@ -29,7 +29,7 @@ impl FarCounts {
     /// The sum of all groups.
     pub fn total(&self) -> Plane<u16> {
         let Some((first, others)) = self.groups.split_first() else {
-            return Plane::filled(Size::new(0, 0), 0);
+            return Plane::full(Size::new(0, 0), 0);
         };
         let (mut total, width) = (first.clone(), first.width().max(1));
         total.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
@@ -69,7 +69,7 @@ struct Merge<'a> {
 /// `HALF` pixels of a row of half the size, one to the left of `x` on, and one more; those of the
 /// border again beyond it. `+ 7` fills vectors.
 #[inline(always)]
-fn around<T: Copy + Default>(row: &[T], x: usize) -> [T; HALF + 8] {
+fn window_of_row<T: Copy + Default>(row: &[T], x: usize) -> [T; HALF + 8] {
     let inside = x.checked_sub(1).and_then(|x| row.get(x..)?.first_chunk());
     inside.copied().unwrap_or_else(|| {
         let mut values = [T::default(); HALF + 8];
@@ -149,7 +149,7 @@ impl Merge<'_> {
         if self.far.is_half {
             let (above, below, _) = rows_around(self.y, self.total.height());
             for y in [above, below] {
-                take(&around(self.total.row(y), x0 / 2)[..HALF + 2]);
+                take(&window_of_row(self.total.row(y), x0 / 2)[..HALF + 2]);
             }
         } else {
             take(&self.total.row(self.y)[x0..x0 + width]);
@@ -170,7 +170,7 @@ impl Merge<'_> {
             return split_by_parity(counts.row(self.y), x0, width).map(|half| half.map(f32::from));
         }
         let (above, below, _) = rows_around(self.y, counts.height());
-        let rows = [above, below].map(|y| around(counts.row(y), x0 / 2));
+        let rows = [above, below].map(|y| window_of_row(counts.row(y), x0 / 2));
         let mut far = [[0.0; HALF]; 2];
         for (odd, far) in far.iter_mut().enumerate() {
             for (c, (is_below, is_right)) in SIDES.into_iter().enumerate() {
@@ -198,7 +198,7 @@ fn split_by_parity<T: Copy + Default>(row: &[T], x0: usize, width: usize) -> [[T
 #[inline(always)]
 fn weigh(heights: &HeightMap, (x0, y): (usize, usize), width: usize, weights: &mut NeighborShares) {
     let (above, below, down) = rows_around(y, heights.half.height());
-    let rows = [above, below].map(|y| around(heights.half.row(y), x0 / 2));
+    let rows = [above, below].map(|y| window_of_row(heights.half.row(y), x0 / 2));
     let own = split_by_parity(heights.whole.row(y), x0, width);
     for (odd, weights) in weights.iter_mut().enumerate() {
         let mut all = [0.0; HALF];

@@ -143,7 +143,7 @@ impl RayGroups {
     /// What is hidden from the far rays of a group.
     fn far(&self, map: &HeightMap, highest: f32, group: &RayGroup) -> Plane<u16> {
         let (heights, px) = if self.is_half { (&map.half, 2.0) } else { (&map.whole, 1.0) };
-        let mut sum = Plane::filled(heights.size(), 0);
+        let mut sum = Plane::full(heights.size(), 0);
         for ray in &group.far {
             let sweep = sweep(heights, highest, ray, px, self.near_px);
             Sweep { is_fading: true, ..sweep }.add(&mut sum);

@@ -15,7 +15,7 @@ pub struct ShareMap {
 impl ShareMap {
     /// 1 everywhere.
     pub(super) fn full(size: Size) -> Self {
-        Self { values: Plane::filled(size, u16::MAX), most: 1.0 }
+        Self { values: Plane::full(size, u16::MAX), most: 1.0 }
     }
 
     /// Rounds values between 0 and `most`.

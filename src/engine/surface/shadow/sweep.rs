@@ -226,7 +226,7 @@ impl Sweep<'_> {
 
     /// What rises less steeply on all of the way hides nothing, px a px.
     pub fn least_slope(&self) -> f32 {
-        // Of `hidden_share`: what stands above a ray, and half of the ray's width less, exceeds the bias.
+        // Of `hidden_share`: what stands above a ray, and half of its width less, exceeds the bias.
         let widened = self.spread * (1.0 + self.rise * self.rise);
         self.rise - widened - 0.5 / BUMP_REACH_PX - 0.01
     }

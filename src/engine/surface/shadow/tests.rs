@@ -9,7 +9,7 @@ const SIZE: Size = Size::new(220, 180);
 fn surface_of(size: Size, range: f32, height: impl Fn(f32, f32) -> f32 + Sync) -> Surface {
     let depth = Plane::from_fn(size, |x, y| 1.0 - height(x as f32, y as f32) / range);
     let maps =
-        Maps { normals: Plane::filled(size, Vec3::Z), depth, coverage: Plane::filled(size, 255) };
+        Maps { normals: Plane::full(size, Vec3::Z), depth, coverage: Plane::full(size, 255) };
     Surface::with_depth_range(maps, Some(range)).unwrap()
 }
 
@@ -56,7 +56,7 @@ fn highest(
         let at = q + way * t;
         // Rays to a point draw together on their way to it.
         let nearer = if farthest < f32::MAX { farthest / (farthest - t) } else { 1.0 };
-        let above = (heights.between(at.x, at.y) - h - rise * t) * nearer;
+        let above = (heights.interpolate(at.x, at.y) - h - rise * t) * nearer;
         if above > found.0 {
             (found.0, found.1) = (above, t);
         }

@@ -165,7 +165,7 @@ impl RadialOffset {
 
 impl<'s> OperatorBounds<'s> {
     pub fn new(surface: &'s Surface, operator: Operator, at: Vec2) -> Self {
-        let MapValues { depth, nbar, nz } = surface.near_point(at);
+        let MapValues { depth, nbar, nz } = surface.values_near(at);
         let unit_px = surface.size().longer_side();
         match operator {
             Operator::None => OperatorBounds::Still,

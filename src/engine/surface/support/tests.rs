@@ -152,8 +152,7 @@ fn a_small_highlight_on_a_large_sphere_touches_few_blocks() {
         vec3(p.x, -p.y, (1.0 - p.length_squared()).max(0.0).sqrt())
     });
     let coverage = Plane::from_fn(size, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
-    let surface =
-        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+    let surface = Surface::new(Maps { normals, depth: Plane::full(size, 0.5), coverage }).unwrap();
     let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
     let extent = DabExtent { radius_px: 40.0, filter_px: 0.5 };
     let support = SupportBounds::new(Some(&surface), size, operator, vec2(600.0, 450.0), extent);

@@ -79,7 +79,7 @@ impl PlaneDisplacement {
                 solver.solve_constrained(&held, &pull, &mut moved, EFFORT, &mut scratch);
             }
             meet(&discs, axis, &mut moved);
-            let mut plane = Plane::filled(size, 0.0);
+            let mut plane = Plane::full(size, 0.0);
             for (y, moved) in (rect.y0 as usize..).zip(moved.chunks(w)) {
                 let start = y * size.width as usize + rect.x0 as usize;
                 plane.values_mut()[start..start + w].copy_from_slice(moved);
@@ -240,7 +240,7 @@ impl Surface {
             self.on_either_side(solved, |far, front| {
                 let whole = front.map(|front| front.plane_displacement(settings, constraints));
                 let planes = [0, 1].map(|axis| {
-                    far.continued(self.size(), |x, y| {
+                    far.continue_map(self.size(), |x, y| {
                         whole.as_ref().map_or(0.0, |whole| whole.planes[axis].at(x, y))
                     })
                 });

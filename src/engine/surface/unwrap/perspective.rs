@@ -41,7 +41,7 @@ impl PerspectiveView {
                 .filter(|&x| links.at(x, y) == links::LEFT | links::RIGHT | links::UP | links::DOWN)
             {
                 let (nbar, nz, beside) =
-                    (surface.nbar(x, y), surface.normal(x, y).z, self.beside(x, y));
+                    (surface.nbar(x, y), surface.normal(x, y).z, self.offset_of_pixel(x, y));
                 let z = surface.depth(x, y);
                 (sum, count) = (sum + f64::from(z), count + 1);
                 let facing = metric::facing_in_perspective(nbar, nz, beside);
@@ -68,13 +68,13 @@ impl PerspectiveView {
 
     /// b of a pixel's center: focal lengths from the point before the eye.
     #[inline(always)]
-    pub fn beside(&self, x: usize, y: usize) -> Vec2 {
-        self.beside_at(vec2(x as f32 + 0.5, y as f32 + 0.5))
+    pub fn offset_of_pixel(&self, x: usize, y: usize) -> Vec2 {
+        self.offset_at(vec2(x as f32 + 0.5, y as f32 + 0.5))
     }
 
     /// b of a point of the map, px.
     #[inline(always)]
-    pub fn beside_at(&self, q: Vec2) -> Vec2 {
+    pub fn offset_at(&self, q: Vec2) -> Vec2 {
         (q - self.before) / self.focal_px
     }
 
@@ -106,7 +106,7 @@ impl Surface {
             Some(near) => metric::stretch_in_perspective(
                 nbar,
                 nz,
-                near.beside(x, y),
+                near.offset_of_pixel(x, y),
                 near.farness(self.depth(x, y)),
                 amount,
             ),

@@ -187,9 +187,9 @@ mod tests {
                     || (seed > 2 && x > 90 && y > 40 && x + y < 180)
             };
             let coverage = Plane::from_fn(size, |x, y| if is_covered(x, y) { 255 } else { 0 });
-            let normals = Plane::filled(size, Vec3::Z);
+            let normals = Plane::full(size, Vec3::Z);
             let surface =
-                Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+                Surface::new(Maps { normals, depth: Plane::full(size, 0.5), coverage }).unwrap();
             for i in 0..200u32 {
                 let reach = [1.0, 3.0, 1000.0][i as usize % 3];
                 let at = |k: u32, side: f32| {

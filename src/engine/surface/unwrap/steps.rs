@@ -49,8 +49,8 @@ pub(super) fn sources(
             }
             let couplings = CouplingRows::of(grid, y);
             let [xx, xy, yx, yy] = &here.0;
-            along_row(couplings, xx, out_x);
-            along_row(couplings, yx, out_y);
+            add_row_links(couplings, xx, out_x);
+            add_row_links(couplings, yx, out_y);
             down_row(couplings, [&above.0[1], xy, &below.0[1]], out_x);
             down_row(couplings, [&above.0[3], yy, &below.0[3]], out_y);
             std::mem::swap(&mut above, &mut here);
@@ -157,7 +157,7 @@ crate::widest! {
     }
 
     /// Sets `out` to what the links along a row bring: those at the left, less those at the right.
-    fn along_row(couplings: CouplingRows, t: &[f32], out: &mut [f32]) {
+    fn add_row_links(couplings: CouplingRows, t: &[f32], out: &mut [f32]) {
         let n = out.len();
         let (right, t) = (&couplings.right[..n], &t[..n]);
         let flow = |i: usize| if i + 1 < n { right[i] * 0.5 * (t[i] + t[i + 1]) } else { 0.0 };

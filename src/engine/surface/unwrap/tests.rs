@@ -81,7 +81,7 @@ fn a_plane_seen_from_near_is_isometric_in_space() {
     let far = |pick: fn(f32, f32) -> f32| all().map(|(x, y)| point(x, y).z).reduce(pick).unwrap();
     let (low, high) = (far(f32::min), far(f32::max));
     let depth = Plane::from_fn(size, |x, y| (point(x, y).z - low) / (high - low));
-    let maps = Maps { normals: Plane::filled(size, n), depth, coverage: Plane::filled(size, 255) };
+    let maps = Maps { normals: Plane::full(size, n), depth, coverage: Plane::full(size, 255) };
     let surface = Surface::new(maps).unwrap().with_eye(eye);
     let d = Unwrapping::new(&surface, WHOLE);
     let ratio = |a: (usize, usize), b: (usize, usize)| {

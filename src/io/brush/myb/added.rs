@@ -59,8 +59,8 @@ impl Added {
     }
 
     /// The value where all that drives it is halfway.
-    pub fn halfway(&self) -> f32 {
-        self.base + self.rows.iter().map(AddedInput::halfway).sum::<f32>()
+    pub fn middle_value(&self) -> f32 {
+        self.base + self.rows.iter().map(AddedInput::middle_value).sum::<f32>()
     }
 
     /// The row that changes it most.
@@ -80,7 +80,7 @@ impl AddedInput {
         level(&self.points, x)
     }
 
-    pub fn halfway(&self) -> f32 {
+    pub fn middle_value(&self) -> f32 {
         self.at(0.5)
     }
 

@@ -70,7 +70,7 @@ pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
         settings.note("The opacity follows some of several inputs");
     }
     let row = &factor.rows[main];
-    let rest = factor.halfway() - row.halfway();
+    let rest = factor.middle_value() - row.middle_value();
     let most = (rest + row.most()).max(1e-3);
     let brush = flows(brush, sum.times(most));
     match row.factors(|x| (rest + row.at(x)) / most) {

@@ -76,7 +76,7 @@ impl<'a> MyPaintSettings<'a> {
         if !added.rows.is_empty() {
             self.note(&format!("“{name}” follows nothing here"));
         }
-        added.halfway()
+        added.middle_value()
     }
 
     /// A setting with all that adds to it. Inputs that never change are part of its base.

@@ -35,7 +35,7 @@ impl DabSmoothing {
     pub fn new(settings: &mut MyPaintSettings, here: f32) -> Self {
         let most = 1.0 / *Tip::RATIO.start();
         let snaps = settings.reads("snap_to_pixel") > 0.5;
-        let mut halfway = |name, default| settings.take_added(name, default).halfway();
+        let mut halfway = |name, default| settings.take_added(name, default).middle_value();
         Self {
             hardness: halfway("hardness", 0.8).max(0.0).min(1.0),
             here: here.max(0.02).min(1.0),
@@ -80,7 +80,7 @@ impl DabSmoothing {
         let Some(main) = theirs.main_row() else {
             return Added { base: here(theirs.base), ..theirs };
         };
-        let rest = theirs.halfway() - theirs.rows[main].halfway();
+        let rest = theirs.middle_value() - theirs.rows[main].middle_value();
         let base = here(rest);
         let row = &theirs.rows[main];
         let even = (0..=STEPS).map(|i| i as f32 / STEPS as f32);

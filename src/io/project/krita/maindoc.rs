@@ -113,7 +113,7 @@ impl<'a> MaindocParser<'a> {
                 })?;
                 let mut node = KritaNode::of(&element);
                 if is_open {
-                    self.inside(&mut node, depth)?;
+                    self.read_children(&mut node, depth)?;
                 }
                 nodes.push(node);
             } else if is_open {
@@ -123,7 +123,7 @@ impl<'a> MaindocParser<'a> {
     }
 
     /// The lists within a layer, up to its end.
-    fn inside(&mut self, node: &mut KritaNode, depth: usize) -> Result<()> {
+    fn read_children(&mut self, node: &mut KritaNode, depth: usize) -> Result<()> {
         loop {
             match self.event()? {
                 Event::Start(e) => match e.local_name().as_ref() {

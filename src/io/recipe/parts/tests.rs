@@ -24,7 +24,7 @@ fn read(parts: &Value) -> crate::Result<Document> {
         "layers": [{ "kind": "fill", "name": "Flats", "color": "#c08040" }],
     });
     let file = folder.path().join("r.json");
-    let files = RecipeFolder::beside(&file);
+    let files = RecipeFolder::folder_of(&file);
     let source =
         RecipeSource { file: &file, files: &files, budget: &Budget::default(), onto: None };
     recipe::read(value.to_string().as_bytes(), source)

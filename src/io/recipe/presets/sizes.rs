@@ -76,7 +76,7 @@ fn sorted_differences(a: &[[f32; 3]], b: &[[f32; 3]], ground: Color) -> Vec<f32>
 }
 
 /// A preset's stroke in its own size, and twice as large and reduced again.
-fn twice(preset: &BrushPreset, surface: Option<Arc<Surface>>) -> Vec<f32> {
+fn compare_at_twice_the_size(preset: &BrushPreset, surface: Option<Arc<Surface>>) -> Vec<f32> {
     let dark =
         u32::from(preset.color.r) + u32::from(preset.color.g) + u32::from(preset.color.b) < 380;
     let ground = if dark { Color::WHITE } else { Color { r: 40, g: 40, b: 46, a: 255 } };
@@ -100,7 +100,7 @@ fn every_preset_paints_the_same_at_twice_the_size() {
     let mut far = Vec::new();
     for surface in [None, Some(Arc::new(ball()))] {
         for preset in presets() {
-            let apart = twice(&preset, surface.clone());
+            let apart = compare_at_twice_the_size(&preset, surface.clone());
             let at = |share: f32| {
                 apart.get((apart.len() as f32 * share) as usize).copied().unwrap_or(0.0)
             };

@@ -47,7 +47,8 @@ impl CanvasAction {
         session.drop_gesture();
         match self {
             CanvasAction::CropArea { frame: area } => {
-                return session.tools.crop.area = area.map(near).filter(|area| !area.is_empty());
+                return session.tools.crop.area =
+                    area.map(limit_to_range).filter(|area| !area.is_empty());
             }
             CanvasAction::Aspect { aspect } => {
                 session.tools.crop.aspect = *aspect;
@@ -159,15 +160,15 @@ pub fn forget_places(open: &mut OpenDocument) {
 }
 
 /// An area within the range of pixels.
-fn near(area: Rect) -> Rect {
+fn limit_to_range(area: Rect) -> Rect {
     const FAR: i32 = 1_000_000;
     let [x0, y0, x1, y1] = [area.x0, area.y0, area.x1, area.y1].map(|v| v.clamp(-FAR, FAR));
     Rect::new(x0, y0, x1, y1)
 }
 
 fn crop_to(from: Size, to: Rect) -> Result<CanvasChange, String> {
-    let change =
-        CanvasChange::crop(from, near(to)).ok_or("The frame contains no pixel of the canvas.")?;
+    let change = CanvasChange::crop(from, limit_to_range(to))
+        .ok_or("The frame contains no pixel of the canvas.")?;
     check_size(change.size().width, change.size().height)?;
     Ok(change)
 }

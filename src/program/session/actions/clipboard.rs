@@ -6,7 +6,7 @@ mod pasted;
 
 pub use pasted::{PasteTo, PastedPicture};
 
-use super::layers::{LayerAction, above};
+use super::layers::{LayerAction, slot_above};
 use crate::document::cut::multiply;
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten_to_paint,
@@ -121,10 +121,7 @@ const LOCKED: &str = "The layer is locked. Unlock it to cut from it.";
 
 /// What is selected, or all of the canvas.
 fn covered_area(document: &Document) -> CoverageGrid {
-    document
-        .active_coverage()
-        .cloned()
-        .unwrap_or_else(|| CoverageGrid::filled(document.size.rect()))
+    document.active_coverage().cloned().unwrap_or_else(|| CoverageGrid::full(document.size.rect()))
 }
 
 fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'static str> {
@@ -188,7 +185,7 @@ fn cut(open: &mut OpenDocument) -> Result<Copied, &'static str> {
 }
 
 fn paste(open: &mut OpenDocument, copied: &Copied) {
-    let slot = above(open);
+    let slot = slot_above(open);
     let (mut next, mut ids) = (open.document().clone(), Vec::new());
     for (i, layer) in paste_layers(copied, &next).into_iter().enumerate() {
         let layer = Layer { name: next.free_layer_name(&layer.name), ..layer };

@@ -295,7 +295,7 @@ impl LayerAction {
             LayerAction::Add { kind } => {
                 let new = selecting(document, make_layer(*kind, document, gradient_settings));
                 let id = new.id;
-                ("Add layer", document.with_inserted(new, above(open))?, vec![id])
+                ("Add layer", document.with_inserted(new, slot_above(open))?, vec![id])
             }
             LayerAction::AddShading { model } => add_layer(open, lit_layer(*model, document))?,
             LayerAction::Look { name } => looks::apply_look(document, name)?,
@@ -395,7 +395,7 @@ fn add_layer(open: &OpenDocument, new: Layer) -> Option<EditStep> {
     let document = open.document();
     let new = selecting(document, new);
     let id = new.id;
-    Some(("Add layer", document.with_inserted(new, above(open))?, vec![id]))
+    Some(("Add layer", document.with_inserted(new, slot_above(open))?, vec![id]))
 }
 
 /// A painter's light in tones of the picture beneath it; in three tones if light was smooth.
@@ -503,9 +503,9 @@ fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bo
 }
 
 /// Where a new layer goes: above the selected one; into it, on top, if it is a group.
-pub fn above(open: &OpenDocument) -> LayerSlot {
+pub fn slot_above(open: &OpenDocument) -> LayerSlot {
     let document = open.document();
-    let highest = document.below_top_ink();
+    let highest = document.layers_below_top_ink();
     let Some(layer) = open.primary.and_then(|id| document.layer(id)) else {
         return LayerSlot::top_level(highest);
     };

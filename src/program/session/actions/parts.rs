@@ -193,7 +193,7 @@ impl PartAction {
             }
             PartAction::Split { part } => {
                 let part = of(part)?;
-                ("Split by place", split::by_place(document, &part)?, Some(part.id.clone()))
+                ("Split by place", split::split_by_place(document, &part)?, Some(part.id.clone()))
             }
             PartAction::Ink { layer } => {
                 let (next, lines) = ink::on_top(document, layer)?;

@@ -8,7 +8,7 @@ use crate::math::Vec2;
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::file_names::free_file;
-use crate::session::actions::layers::above;
+use crate::session::actions::layers::slot_above;
 use crate::session::{OpenDocument, Session, storage};
 use crate::surface::operator::{MapValues, reflection};
 use crate::surface::{Anchor, Bend, Operator};
@@ -40,7 +40,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let lies = Lies {
         placement: placement(document, operator, at),
         outside: Outside::Mirror,
-        bend: Bend { operator, anchors: vec![Anchor::fixed(at)], ..Bend::default() },
+        bend: Bend { operator, anchors: vec![Anchor::pin(at)], ..Bend::default() },
     };
     add_image(open, name, picture, lies, "Place image");
 }
@@ -69,7 +69,7 @@ pub(super) fn add_image(
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let layer = Layer::new(document.free_layer_name(&stem), Content::Image(Live::new(image)));
     let id = layer.id;
-    let next = document.with_inserted(layer, above(open));
+    let next = document.with_inserted(layer, slot_above(open));
     let is_added = next.is_some_and(|next| open.commit(label, next));
     if is_added {
         open.primary = Some(id);
@@ -82,7 +82,7 @@ pub(super) fn add_image(
 fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
     match (operator, &document.surface) {
         (Operator::Reflection { alpha, .. }, Some(surface)) => {
-            let MapValues { nbar, nz, .. } = surface.near_point(at);
+            let MapValues { nbar, nz, .. } = surface.values_near(at);
             let turn = reflection::mirrored(nbar, nz);
             Placement::covering_mirror(document.size, alpha, turn)
         }

@@ -142,7 +142,7 @@ impl SelectionAction {
         let layer =
             |path: &LayerPath| path.find(document).cloned().ok_or("There is no such layer.");
         Ok(match self {
-            SelectionAction::All {} => ("Select all", with(CoverageGrid::filled(canvas))),
+            SelectionAction::All {} => ("Select all", with(CoverageGrid::full(canvas))),
             SelectionAction::None {} => {
                 selected()?;
                 ("Deselect", document.with_selection(None))

@@ -10,9 +10,9 @@ impl OpenDocument {
     pub fn drawn_document(&self) -> Document {
         let shown = self.shown_document();
         if self.quick_mask {
-            return under_red(shown);
+            return with_red_mask(shown);
         }
-        self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
+        self.solo.and_then(|id| isolate(shown, id)).unwrap_or_else(|| shown.clone())
     }
 
     /// Why paint on the selected layer would not be seen: another layer is shown alone.
@@ -31,7 +31,7 @@ impl OpenDocument {
 }
 
 /// The document with what is not selected under red.
-fn under_red(document: &Document) -> Document {
+fn with_red_mask(document: &Document) -> Document {
     let Some(selected) = document.active_coverage() else { return document.clone() };
     let coverage = Arc::new(selected.to_plane(document.size.rect()));
     let kind = MaskKind::File { file: String::new(), coverage };
@@ -49,7 +49,7 @@ fn under_red(document: &Document) -> Document {
 }
 
 /// The document with one layer shown alone; `None` if it has no such layer.
-fn alone(document: &Document, id: LayerId) -> Option<Document> {
+fn isolate(document: &Document, id: LayerId) -> Option<Document> {
     fn hide(layers: &[Arc<Layer>], id: LayerId) -> (Vec<Arc<Layer>>, bool) {
         let mut found = false;
         let layers = layers.iter().map(|layer| {

@@ -76,7 +76,9 @@ impl OpenDocument {
 
     fn gizmo_in(&self, document: &Document, target: TransformTarget) -> Option<TransformGizmo> {
         let selected = self.outermost_selected();
-        self.selected_layers.gizmo.around(document, GizmoContent::new(target, document, &selected))
+        self.selected_layers
+            .gizmo
+            .gizmo_for(document, GizmoContent::new(target, document, &selected))
     }
 
     /// The gizmo around the selected layers turns with them from now on.

@@ -30,8 +30,7 @@ pub(super) fn everything() -> Document {
     let normals = Plane::from_fn(size, |x, y| {
         vec2(x as f32 / 48.0 - 0.5, 0.5 - y as f32 / 40.0).extend(0.8).normalize()
     });
-    let (depth, coverage) =
-        (Plane::from_fn(size, |x, _| x as f32 / 48.0), Plane::filled(size, 255));
+    let (depth, coverage) = (Plane::from_fn(size, |x, _| x as f32 / 48.0), Plane::full(size, 255));
     let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
     let picture = Picture::srgb8(Size::new(2, 1), vec![[9, 90, 200, 255], [200; 4]]).unwrap();
     let placement = Placement::covering(size);

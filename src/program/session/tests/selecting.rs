@@ -26,7 +26,7 @@ fn red(session: &Session, x: i32, y: i32) -> bool {
 fn a_stroke_keeps_to_the_selection_and_undo_gives_both_back() {
     let mut session = replay(&format!("{PAPER}{SQUARE}{STROKE}"));
     assert_eq!([50, 62, 118, 125].map(|x| red(&session, x, 70)), [false, true, true, false]);
-    let steps: Vec<_> = session.active().unwrap().history.past().collect();
+    let steps: Vec<_> = session.active().unwrap().history.past_names().collect();
     assert_eq!(steps, ["Select", "Brush stroke"]);
     story(&mut session, r#"{"in":"selection","do":"none"}"#);
     assert!(!red(&session, 50, 70), "the stroke keeps its own selection");

@@ -32,7 +32,7 @@ fn done(session: &Session) -> &str {
 }
 
 fn steps(session: &Session) -> usize {
-    session.active().unwrap().history.past().count()
+    session.active().unwrap().history.past_names().count()
 }
 
 #[test]

@@ -80,7 +80,7 @@ fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refus
         (255, 0),
         "half as large about the middle"
     );
-    let steps = session.active().unwrap().history.past().count();
+    let steps = session.active().unwrap().history.past_names().count();
     let frame =
         session.active().unwrap().gizmo(crate::tools::gizmo::TransformTarget::Shape).unwrap();
     let corner = frame.corners[2];
@@ -96,7 +96,7 @@ fn the_shape_is_turned_scaled_and_mirrored_by_numbers_and_a_perspective_is_refus
         "{:?}",
         session.notes
     );
-    assert_eq!(session.active().unwrap().history.past().count(), steps);
+    assert_eq!(session.active().unwrap().history.past_names().count(), steps);
     story(&mut session, &by("[1,0,0,1,9000,0]"));
     assert!(
         session.notes.last().is_some_and(|why| why.contains("No part of the shape")),

@@ -14,7 +14,7 @@ pub(super) struct EraseStrokesGesture {
 }
 
 impl EraseStrokesGesture {
-    fn without(&self) -> Option<Document> {
+    fn erase(&self) -> Option<Document> {
         let kept = |i: &usize| !self.gone.contains(i);
         let strokes = &self.list.params().strokes;
         let left = (0..strokes.len()).filter(kept).map(|i| strokes[i].clone()).collect();
@@ -35,11 +35,11 @@ impl Gesture for EraseStrokesGesture {
         if self.gone.is_empty() {
             return Outcome::Idle;
         }
-        self.without().map_or(Outcome::Idle, Outcome::Preview)
+        self.erase().map_or(Outcome::Idle, Outcome::Preview)
     }
 
     fn release(&mut self) -> Outcome {
-        match self.without() {
+        match self.erase() {
             Some(document) if !self.gone.is_empty() => {
                 let label = if self.gone.len() == 1 { "Delete stroke" } else { "Delete strokes" };
                 Outcome::Commit { label: label.into(), document, select: None }

@@ -63,7 +63,7 @@ fn paint_gradient(document: &Document, id: LayerId, gradient: &Gradient) -> Opti
         let base = pixels.tiles.tile(at);
         let Some(coverage) = coverage(selected, at) else { return base.cloned() };
         match gradient.render_pixels(&scene, at) {
-            Some(paint) => over(base.map(|tile| &**tile), &paint, mix, &coverage),
+            Some(paint) => paint_over(base.map(|tile| &**tile), &paint, mix, &coverage),
             None => base.cloned(),
         }
     };
@@ -85,7 +85,7 @@ fn coverage(selected: Option<&CoverageGrid>, at: TileAt) -> Option<TileCoverage>
     })
 }
 
-fn over(
+fn paint_over(
     base: Option<&Tile>,
     paint: &PlanarTile,
     mix: Mix,

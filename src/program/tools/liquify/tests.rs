@@ -97,7 +97,7 @@ fn a_group_is_displaced_as_paint_is_and_looks_alike_baked() {
 #[test]
 fn what_is_not_selected_stays_as_it_was() {
     let mut before = document();
-    let half = CoverageGrid::filled(Rect::new(0, 0, 96, SIZE.height as i32));
+    let half = CoverageGrid::full(Rect::new(0, 0, 96, SIZE.height as i32));
     before.active_selection = Some(Arc::new(crate::paint::Selection::new(half)));
     let after =
         stroke(&before, settings(LiquifyTool::Grow), &[vec2(100.0, 96.0), vec2(110.0, 96.0)])

@@ -81,7 +81,7 @@ fn a_drag_within_the_selection_moves_it_and_a_click_beside_it_lets_go() {
     let moved = drawn(ToolKind::SelectRectangle, &one, NONE, &[vec2(50.0, 50.0), vec2(75.4, 39.6)])
         .unwrap();
     assert_eq!(covered(&moved), Rect::new(45, 20, 105, 80));
-    let all = bands().with_selection(Some(Selection::new(CoverageGrid::filled(SIZE.rect()))));
+    let all = bands().with_selection(Some(Selection::new(CoverageGrid::full(SIZE.rect()))));
     let drag = [vec2(50.0, 50.0), vec2(75.0, 90.0)];
     let anew = drawn(ToolKind::SelectRectangle, &all, NONE, &drag).unwrap();
     assert_eq!(covered(&anew), Rect::new(50, 50, 75, 90), "in all of the canvas it begins anew");
@@ -152,8 +152,7 @@ fn the_wand_selects_what_is_like_a_pixel_and_a_drag_changes_how_like() {
 fn the_surface_wand_keeps_what_it_was_told_and_says_why_it_cannot() {
     let normals =
         Plane::from_fn(SIZE, |x, _| Vec3::new(if x < 100 { -0.6 } else { 0.6 }, 0.0, 0.8));
-    let maps =
-        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals, depth: Plane::full(SIZE, 0.5), coverage: Plane::full(SIZE, 255) };
     let roof =
         Document { surface: Some(Arc::new(Surface::new(maps).unwrap())), ..Document::empty(SIZE) };
     let points = [vec2(30.5, 40.5), vec2(55.5, 40.5)];

@@ -128,26 +128,26 @@ impl PartGizmo {
 
     /// The handle that tilts it, if there is room.
     pub fn tilt(&self) -> Option<Vec2> {
-        self.around(vec2(0.0, 1.0))
+        self.handle_beside_middle(vec2(0.0, 1.0))
     }
 
     /// The handle for its profile, if it is inflated.
     pub fn profile(&self) -> Option<Vec2> {
-        self.around(vec2(-1.0, 0.0)).filter(|_| self.is_inflated)
+        self.handle_beside_middle(vec2(-1.0, 0.0)).filter(|_| self.is_inflated)
     }
 
     /// The handle for its rim, if it is inflated.
     pub fn rim(&self) -> Option<Vec2> {
-        self.around(vec2(1.0, 0.0)).filter(|_| self.is_inflated)
+        self.handle_beside_middle(vec2(1.0, 0.0)).filter(|_| self.is_inflated)
     }
 
     /// The handle for its depth, if there is room.
     pub fn depth(&self) -> Option<Vec2> {
-        self.around(vec2(0.0, -1.0))
+        self.handle_beside_middle(vec2(0.0, -1.0))
     }
 
     /// Next to the middle, if there is room.
-    fn around(&self, way: Vec2) -> Option<Vec2> {
+    fn handle_beside_middle(&self, way: Vec2) -> Option<Vec2> {
         self.has_room().then(|| self.middle() + way * (AROUND_PT * self.px_per_pt))
     }
 

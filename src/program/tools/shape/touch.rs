@@ -57,7 +57,10 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     if pen.keys.alt {
         return (
             None,
-            found.map_or_else(|| take_direction(document, at), |touch| without(document, &touch)),
+            found.map_or_else(
+                || take_direction(document, at),
+                |touch| remove_touch(document, &touch),
+            ),
         );
     }
     if let Some(touch) = found {
@@ -121,7 +124,7 @@ fn take_direction(document: &Document, at: Vec2) -> Outcome {
     let Some(surface) = &document.surface else {
         return Outcome::Refused("There is no surface to take the direction from.".into());
     };
-    match surface.at_point(at) {
+    match surface.values_at(at) {
         None => {
             Outcome::Refused("There is no surface under the pen to take a direction from.".into())
         }
@@ -134,7 +137,7 @@ fn take_direction(document: &Document, at: Vec2) -> Outcome {
     }
 }
 
-fn without(document: &Document, touch: &StandingTouch) -> Outcome {
+fn remove_touch(document: &Document, touch: &StandingTouch) -> Outcome {
     let Some(part) = document.parts.part(&touch.part) else { return Outcome::Idle };
     let mut next = Part::clone(part);
     if let PartKind::Touches { touches, .. } = &mut next.kind

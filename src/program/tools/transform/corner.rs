@@ -12,7 +12,7 @@ const MARGIN: f64 = 0.02;
 ///
 /// * `corners`: of a convex quadrilateral, in order.
 /// * `corner`: the number of the one that moves.
-pub fn within_convex(corners: [DVec2; 4], corner: usize, at: DVec2) -> DVec2 {
+pub fn clamp_to_convex(corners: [DVec2; 4], corner: usize, at: DVec2) -> DVec2 {
     let [before, opposite, after] = [3, 2, 1].map(|i| corners[(corner + i) % 4]);
     let size = (after - before)
         .length()
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn a_corner_goes_where_it_may_and_stays_at_the_border_elsewhere() {
-        let to = |x: f64, y: f64| within_convex(SQUARE, 2, DVec2::new(x, y));
+        let to = |x: f64, y: f64| clamp_to_convex(SQUARE, 2, DVec2::new(x, y));
         assert_eq!(to(140.0, 60.0), DVec2::new(140.0, 60.0));
         let past = to(-50.0, 40.0);
         assert!(past.x > 0.0 && past.distance(DVec2::new(-50.0, 40.0)) < 100.0, "{past}");
@@ -74,7 +74,7 @@ mod tests {
         ) {
             let corners = if mirrored { SQUARE.map(|p| DVec2::new(-p.x, p.y)) } else { SQUARE };
             let [a, b] = [a, b].map(DVec2::from_array);
-            let [at, other] = [a, b].map(|p| within_convex(corners, corner, p));
+            let [at, other] = [a, b].map(|p| clamp_to_convex(corners, corner, p));
             let mut moved = corners;
             moved[corner] = at;
             prop_assert!(PlaneMap::rect_to_quad(DVec2::ZERO, DVec2::ONE, moved).is_some(), "{at}");

@@ -1,6 +1,6 @@
 //! The gizmo under the pen: what a drag of each handle does to all layers in it. Floor 5.
 
-use super::corner::within_convex;
+use super::corner::clamp_to_convex;
 use super::placed::{DragMap, LayerPlacement};
 use crate::document::FrameBox;
 use crate::document::{Document, LayerId, LayerMap};
@@ -185,7 +185,7 @@ impl TransformGesture {
     /// possible, and leaves the others.
     fn drag_corner(&self, corner: usize, at: Vec2) -> Option<Dragged> {
         let held = self.gizmo.corners.map(|c| c.as_dvec2());
-        let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
+        let (from, to) = (held[corner], clamp_to_convex(held, corner, at.as_dvec2()));
         let FrameBox { low, high } = self.gizmo.inner;
         let at_share = |share: f64| {
             let mut corners = held;

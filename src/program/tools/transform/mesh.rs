@@ -48,7 +48,7 @@ fn with_mesh(
 /// The points of a layer's mesh on the canvas, and the mesh; `None` for a layer without one.
 pub fn points_of(document: &Document, layer: &Layer) -> Option<(Arc<Mesh>, Vec<Vec2>)> {
     let mesh = layer.transform.as_ref()?.mesh()?;
-    let to_canvas = document.map_of(layer.id)?.outside_own();
+    let to_canvas = document.map_of(layer.id)?.map_outside_own();
     let points = mesh.points().iter().map(|p| to_canvas.to_canvas(*p).unwrap_or(*p)).collect();
     Some((mesh.clone(), points))
 }
@@ -80,7 +80,7 @@ pub(super) fn press(
     if !selected.contains(&nearest) {
         selected = vec![nearest];
     }
-    let to_canvas = document.map_of(*id)?.outside_own();
+    let to_canvas = document.map_of(*id)?.map_outside_own();
     let gesture = MeshGesture {
         document: document.clone(),
         layer: *id,

@@ -173,7 +173,7 @@ fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about(
     close(turned, [(40.0, 30.0), (40.0, -10.0), (60.0, -10.0), (60.0, 30.0)]);
     let scaled = done(vec2(80.0, 50.0), vec2(60.0, 90.0), alt);
     close(scaled, [(40.0, 30.0), (60.0, 30.0), (60.0, 90.0), (40.0, 90.0)]);
-    assert_eq!(kept.around(&document, GizmoContent::Layers(&[LayerId::fresh()])), None);
+    assert_eq!(kept.gizmo_for(&document, GizmoContent::Layers(&[LayerId::fresh()])), None);
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn the_frame_of_several_layers_turns_with_them() {
     let turn = PlaneMap::rotation(30.0, vec2(80.0, 50.0));
     let turned = ids.iter().fold(both.clone(), |next, id| mapped(&next, *id, turn).unwrap());
     kept.hold(&turned, GizmoContent::Layers(&ids));
-    let gizmo = kept.around(&turned, GizmoContent::Layers(&ids)).unwrap();
+    let gizmo = kept.gizmo_for(&turned, GizmoContent::Layers(&ids)).unwrap();
     let numbers = GizmoNumbers::of(&gizmo).unwrap();
     assert!(
         (numbers.angle - 30.0).abs() < 1e-3 && (numbers.width - 120.0).abs() < 1e-3,
@@ -283,7 +283,7 @@ fn the_frame_of_several_layers_turns_with_them() {
     // One of them alone moved: the gizmo is the box around both again.
     let apart = mapped(&turned, ids[0], PlaneMap::translation(vec2(9.0, 0.0))).unwrap();
     assert!(
-        GizmoNumbers::of(&kept.around(&apart, GizmoContent::Layers(&ids)).unwrap())
+        GizmoNumbers::of(&kept.gizmo_for(&apart, GizmoContent::Layers(&ids)).unwrap())
             .unwrap()
             .angle
             .abs()

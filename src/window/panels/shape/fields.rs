@@ -57,7 +57,7 @@ pub fn presets(ui: &mut Ui, now: Inflation) -> Option<Inflation> {
     ui.horizontal_wrapped(|ui| {
         for (preset, word) in Inflation::PRESETS {
             let chip = Button::selectable(preset == now, sentence(word)).corner_radius(10);
-            if ui.add(chip).on_hover_text(about(word)).clicked() {
+            if ui.add(chip).on_hover_text(describe(word)).clicked() {
                 chosen = Some(preset);
             }
         }
@@ -65,7 +65,7 @@ pub fn presets(ui: &mut Ui, now: Inflation) -> Option<Inflation> {
     chosen
 }
 
-fn about(preset: &str) -> &'static str {
+fn describe(preset: &str) -> &'static str {
     match preset {
         "pillow" => "Round, as a cloth filled with air",
         "tube" => "Limbs as deep as they are wide",

@@ -82,12 +82,12 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
             ui.weak(format!("Maps that were made elsewhere: {}", names.join(", ")));
             None
         }
-        other => by_hand(ui, other),
+        other => show_hand_made(ui, other),
     }
 }
 
 /// What the pen made on a part; its marks are changed on the canvas.
-fn by_hand(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
+fn show_hand_made(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     let count = |n: usize, of: &str| format!("{n} {of}{}", if n == 1 { "" } else { "s" });
     match kind {
         PartKind::Touches { touches, .. } => {

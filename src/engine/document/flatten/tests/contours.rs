@@ -14,8 +14,8 @@ use crate::surface::{DetailMap, Operator};
 /// Covered by the shares of the columns: 0 … 255 over and over.
 fn soft_surface() -> Arc<Surface> {
     let coverage = Plane::from_fn(SIZE, |x, _| share(x));
-    let normals = Plane::filled(SIZE, vec3(0.6, 0.0, 0.8));
-    Arc::new(Surface::new(Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage }).unwrap())
+    let normals = Plane::full(SIZE, vec3(0.6, 0.0, 0.8));
+    Arc::new(Surface::new(Maps { normals, depth: Plane::full(SIZE, 0.5), coverage }).unwrap())
 }
 
 fn share(x: usize) -> u8 {
@@ -104,7 +104,7 @@ fn what_is_not_clipped_to_the_surface_stands_in_both() {
 
 /// Detail that leans everywhere in one direction.
 pub fn cloth(normal: Vec3) -> Layer {
-    let detail = Arc::new(DetailMap::new(Plane::filled(Size::new(4, 4), normal)));
+    let detail = Arc::new(DetailMap::new(Plane::full(Size::new(4, 4), normal)));
     let picture = Picture::srgb8(Size::new(1, 1), vec![[255; 4]]).unwrap();
     let picture = PictureSource::new("d.png".into(), picture, Default::default());
     let source =
@@ -135,7 +135,7 @@ fn plates() -> Arc<Surface> {
     let normals = Plane::from_fn(SIZE, |x, _| if near(x) { Vec3::Z } else { vec3(0.6, 0.0, 0.8) });
     let depth =
         Plane::from_fn(SIZE, |x, _| if near(x) { 0.0 } else { 0.5 + 0.0075 * (x as f32 - 40.0) });
-    Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap())
+    Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::full(SIZE, 255) }).unwrap())
 }
 
 #[test]
@@ -163,9 +163,8 @@ fn live_layers_are_rendered_for_both_sides_alike() {
     let normals =
         Plane::from_fn(SIZE, |x, y| if near(x, y) { Vec3::Z } else { vec3(0.0, 0.5, 0.866) });
     let depth = Plane::from_fn(SIZE, |x, y| if near(x, y) { 0.1 } else { 0.6 + 0.0058 * y as f32 });
-    let surface = Arc::new(
-        Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap(),
-    );
+    let surface =
+        Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::full(SIZE, 255) }).unwrap());
     let operator = Operator::Normal { alpha: 0.6, beta: 0.0, detail: 0.0 };
     let stops = vec![
         GradientStop { t: 0.0, color: color("#000000") },
@@ -248,7 +247,7 @@ fn disc(hard: bool) -> Arc<Surface> {
             false => (255 * (0..64).filter(covers).count() / 64) as u8,
         }
     });
-    let (normals, depth) = (Plane::filled(SIZE, Vec3::Z), Plane::filled(SIZE, 0.5));
+    let (normals, depth) = (Plane::full(SIZE, Vec3::Z), Plane::full(SIZE, 0.5));
     Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
 }
 

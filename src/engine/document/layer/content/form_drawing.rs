@@ -14,9 +14,9 @@ impl Marks for FormDrawing {
         stroke::render_pixels(&self.strokes(scene), scene, at)
     }
 
-    fn together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
+    fn render_together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
         let strokes = self.strokes(scene).to_vec();
-        StrokeList { strokes }.together(scene, tiles, progress, done);
+        StrokeList { strokes }.render_together(scene, tiles, progress, done);
     }
 }
 

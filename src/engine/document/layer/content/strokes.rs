@@ -29,7 +29,7 @@ impl Marks for StrokeList {
     }
 
     /// Strokes whose dabs are too many to be kept would be laid again for every tile.
-    fn together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
+    fn render_together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
         let is_wanted = || !progress.is_canceled();
         let seen: Vec<TileAt> =
             tiles.iter().copied().filter(|&at| !scene.area(at).is_empty()).collect();

@@ -120,12 +120,11 @@ fn a_gradient_and_a_bent_image_follow_their_frame() {
     let size = SIZE;
     let normals =
         Plane::from_fn(size, |x, _| vec3(0.4 * (x as f32 * 0.05).sin(), 0.0, 1.0).normalize());
-    let maps =
-        Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+    let maps = Maps { normals, depth: Plane::full(size, 0.5), coverage: Plane::full(size, 255) };
     let surface = Some(Arc::new(Surface::new(maps).unwrap()));
     let bend = Bend {
         operator: Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 },
-        anchors: vec![Anchor::fixed(vec2(60.5, 40.5))],
+        anchors: vec![Anchor::pin(vec2(60.5, 40.5))],
         ..Bend::default()
     };
     let shift = TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 30.0, 12.0]);

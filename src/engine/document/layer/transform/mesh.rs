@@ -201,8 +201,8 @@ impl Mesh {
     /// A point, or its straight continuation where the grid ends.
     fn point_or_extension(&self, column: i32, row: i32) -> Vec2 {
         let along =
-            |row: usize| beyond(column, self.columns, |i| self.points[row * self.columns + i]);
-        beyond(row, self.rows, along)
+            |row: usize| extrapolate(column, self.columns, |i| self.points[row * self.columns + i]);
+        extrapolate(row, self.rows, along)
     }
 
     /// Backward: the displacement from a point near the canvas to the point of the frame that shows
@@ -215,7 +215,7 @@ impl Mesh {
 }
 
 /// The value at a place of a row, which is continued straight at both ends.
-fn beyond(i: i32, count: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
+fn extrapolate(i: i32, count: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
     let last = count as i32 - 1;
     match i {
         _ if i < 0 => value(0) * (1 - i) as f32 + value(1) * i as f32,

@@ -78,7 +78,7 @@ impl WarpTiles {
     ) -> Option<Arc<Tile>> {
         let wanted = self
             .warp
-            .within(map.source_rect(at.rect().intersect(self.canvas)))
+            .rect_within_border(map.source_rect(at.rect().intersect(self.canvas)))
             .intersect(self.canvas);
         let mut grid = TileGrid::default();
         for from in TileAt::covering(wanted) {

@@ -57,12 +57,12 @@ impl CutLines {
     }
 
     /// What the taker of a pixel adds to the color behind it: the ink, as much of it as is seen.
-    pub fn over(&self, cut: &Cut, (x, y): (usize, usize), behind: Pixel) -> Pixel {
+    pub fn ink_over(&self, cut: &Cut, (x, y): (usize, usize), behind: Pixel) -> Pixel {
         let drawn = cut.drawn.at(x, y);
         if behind[3] < 255 {
             return drawn;
         }
-        let ink = around(x, y, SOFT).filter(|(x, y)| self.is_ink.get(*x, *y) == Some(true));
+        let ink = square_around(x, y, SOFT).filter(|(x, y)| self.is_ink.get(*x, *y) == Some(true));
         let ink = ink
             .filter_map(|(x, y)| cut.drawn.get(x, y))
             .max_by_key(|ink| color_distance(*ink, behind));
@@ -108,8 +108,9 @@ fn assign_marks(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
         is_marked(x, y) && cut.can_take(part, x, y) && cut.is_ink_between(part, (x, y))
     };
     let seed = |(x, y): (usize, usize)| {
-        let beside =
-            around(x, y, 1).filter_map(|(x, y)| cut.nearest.get(x, y)).map(|[first, _]| first);
+        let beside = square_around(x, y, 1)
+            .filter_map(|(x, y)| cut.nearest.get(x, y))
+            .map(|[first, _]| first);
         let part = beside.filter(|part| *part != NO_PART).max()?;
         can_take(part, x, y).then_some((x, y, part))
     };
@@ -130,7 +131,7 @@ fn assign_marks(cut: &Cut, marks: &Plane<u8>) -> Plane<u16> {
         (5 * own.saturating_sub(seeds)).div_ceil(4 * seeds.max(1)) + 1
     };
     let widths: Vec<usize> = count(&own_side).into_iter().zip(count(&seeds)).map(width).collect();
-    let mut taker = Plane::filled(cut.drawn.size(), NO_PART);
+    let mut taker = Plane::full(cut.drawn.size(), NO_PART);
     let found = walk(cut, &seeds, &widths, can_take);
     found.into_iter().for_each(|(x, y, part)| taker.set(x, y, part));
     taker
@@ -144,14 +145,14 @@ fn walk(
     most_px: &[usize],
     enters: impl Fn(u16, usize, usize) -> bool,
 ) -> Vec<(usize, usize, u16)> {
-    let mut is_reached = Plane::filled(cut.drawn.size(), false);
+    let mut is_reached = Plane::full(cut.drawn.size(), false);
     seeds.iter().for_each(|(x, y, _)| is_reached.set(*x, *y, true));
     let mut reached = seeds.to_vec();
     let mut ahead: VecDeque<_> =
         seeds.iter().map(|(x, y, part)| ((*x, *y), (*x, *y), *part)).collect();
     while let Some((seed, (x, y), part)) = ahead.pop_front() {
         let most = most_px[usize::from(part)].pow(2);
-        for (x, y) in around(x, y, 1) {
+        for (x, y) in square_around(x, y, 1) {
             let is_new = is_reached.get(x, y) == Some(false);
             let (x, y) = (x.max(0) as usize, y.max(0) as usize);
             let is_near = || seed.0.abs_diff(x).pow(2) + seed.1.abs_diff(y).pow(2) <= most;
@@ -172,7 +173,7 @@ fn soft_border(cut: &Cut, taker: &Plane<u16>) -> Vec<(usize, usize, u16)> {
         pixels((taker.width(), taker.height())).filter(|(x, y)| taker.at(*x, *y) != NO_PART)
     {
         let part = taker.at(x, y);
-        let free = around(x, y, 1).filter(|(x, y)| taker.get(*x, *y) == Some(NO_PART));
+        let free = square_around(x, y, 1).filter(|(x, y)| taker.get(*x, *y) == Some(NO_PART));
         let free =
             free.map(|(x, y)| (x as usize, y as usize)).filter(|(x, y)| cut.can_take(part, *x, *y));
         border.extend(free.map(|(x, y)| (x, y, part)));
@@ -181,7 +182,7 @@ fn soft_border(cut: &Cut, taker: &Plane<u16>) -> Vec<(usize, usize, u16)> {
 }
 
 /// The pixels in a square, row by row.
-fn around(x: usize, y: usize, reach: i32) -> impl Iterator<Item = (i32, i32)> {
+fn square_around(x: usize, y: usize, reach: i32) -> impl Iterator<Item = (i32, i32)> {
     let (x, y) = (x as i32, y as i32);
     (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| (x + dx, y + dy)))
 }

@@ -33,7 +33,7 @@ impl Cut {
         let size = Size::new(rect.width() as u32, rect.height() as u32);
         let drawn =
             Plane::from_fn(size, |x, y| tiles.pixel(rect.x0 + x as i32, rect.y0 + y as i32));
-        let (nearest, owner) = (Plane::filled(size, [NO_PART; 2]), Plane::filled(size, 0));
+        let (nearest, owner) = (Plane::full(size, [NO_PART; 2]), Plane::full(size, 0));
         let mut cut = Self { rect, drawn, outlines, nearest, owner };
         cut.nearest = Plane::from_fn(size, |x, y| {
             let mut covering =

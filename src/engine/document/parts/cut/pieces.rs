@@ -4,7 +4,7 @@ use super::lines::CutLines;
 use super::owners::{Cut, NO_PART, PieceOutline};
 use crate::math::Rect;
 use crate::raster::{Plane, Tile, TileAt, TileGrid};
-use crate::shape::flats::areas::{over, spread};
+use crate::shape::flats::areas::{plane_over, spread};
 use crate::shape::flats::color_distance::uncomposite;
 use crate::shape::flats::picture::Pixel;
 use std::sync::Arc;
@@ -23,15 +23,15 @@ impl Cut {
     /// What each part carries, and what belongs to none.
     pub fn pieces(&self) -> (Vec<TileGrid>, TileGrid) {
         let lines = CutLines::of(self);
-        let mut beneath = Plane::filled(self.drawn.size(), ColorBeneath::default());
+        let mut beneath = Plane::full(self.drawn.size(), ColorBeneath::default());
         let mut pieces = Vec::with_capacity(self.outlines.len());
         for (part, area) in (0..).zip(self.find_reached(&lines)) {
             let own = self.own_colors(part, area, &lines);
-            let piece = over(area, |x, y, i| {
+            let piece = plane_over(area, |x, y, i| {
                 let own = own.values()[i];
                 match lines.taker(x, y) {
                     Some(taker) if taker == part => {
-                        lines.over(self, (x, y), beneath.at(x, y).color)
+                        lines.ink_over(self, (x, y), beneath.at(x, y).color)
                     }
                     Some(taker) if taker < part => OUT,
                     Some(_) => own,
@@ -47,7 +47,10 @@ impl Cut {
         }
         let rest = self.drawn.size().rect();
         let left =
-            over(rest, |x, y, _| if self.owner.at(x, y) == 0 { self.drawn.at(x, y) } else { OUT });
+            plane_over(
+                rest,
+                |x, y, _| if self.owner.at(x, y) == 0 { self.drawn.at(x, y) } else { OUT },
+            );
         (pieces, self.tiles_of(&left, rest))
     }
 
@@ -107,7 +110,7 @@ impl Cut {
         };
         let pure = self.nearest_where(part, area, is_pure);
         let plain = self.nearest_where(part, area, |x, y| is_pure(x, y) && lines.is_far(x, y));
-        over(area, |x, y, i| {
+        plane_over(area, |x, y, i| {
             let (pure, plain, first) =
                 (pure.values()[i], plain.values()[i], self.nearest.at(x, y)[0]);
             let is_beneath = first != part && first != NO_PART && self.coverage(first, x, y) == 255;
@@ -124,7 +127,7 @@ impl Cut {
     ) -> Plane<Pixel> {
         let width = self.drawn.width();
         let mut nearest =
-            over(area, |x, y, _| if counts(x, y) { (y * width + x) as u32 + 1 } else { 0 });
+            plane_over(area, |x, y, _| if counts(x, y) { (y * width + x) as u32 + 1 } else { 0 });
         let (x0, y0) = (area.x0 as usize, area.y0 as usize);
         spread(&mut nearest, |x, y| self.coverage(part, x + x0, y + y0) > 0);
         nearest.map(|index| {

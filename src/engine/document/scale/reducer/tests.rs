@@ -163,8 +163,7 @@ fn what_a_hand_drags_is_read_coarsely_in_its_own_size_and_the_rest_stays_as_it_i
 fn a_surface_made_small_elsewhere_is_taken_in_and_not_made_again() {
     let size = Size::new(300, 200);
     let normals = Plane::from_fn(size, |x, _| vec3((0.1 * x as f32).sin(), 0.0, 1.0));
-    let maps =
-        Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+    let maps = Maps { normals, depth: Plane::full(size, 0.5), coverage: Plane::full(size, 255) };
     let document =
         Document { surface: Surface::new(maps).ok().map(Arc::new), ..Document::empty(size) };
     let mut reduced = DocumentReducer::new(0.5);

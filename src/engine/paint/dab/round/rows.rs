@@ -70,7 +70,7 @@ crate::widest! {
             let Some(paint) = of_span(part.corner, span, (&mut *tile.0, &mut *tile.1)) else { continue };
             d.prefetch(*span);
             sure.enter((span.y - part.corner.1) as usize / BLOCK, part.pixel, tip);
-            fill_bent_span(d.around(*span), sure.from((span.x - part.corner.0) as usize), tip, row, paint);
+            fill_bent_span(d.span_neighbors(*span), sure.from((span.x - part.corner.0) as usize), tip, row, paint);
         }
     }
 }

@@ -71,7 +71,7 @@ fn row_by_row(placed: &PlacedDab, at: TileAt, [coverage, reach]: &mut [Vec<f32>;
             reach: &mut reach[start..start + span.n],
         };
         match &field {
-            Some(field) => fill_bent_row(field.around(span), &tip, &mut row, out),
+            Some(field) => fill_bent_row(field.span_neighbors(span), &tip, &mut row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, &mut row, out),
         }
     }
@@ -123,8 +123,7 @@ fn the_unwrapped_plane_itself_gives_the_coverage_that_d_gives() {
     let normals = Plane::from_fn(SIZE, |x, y| {
         vec3((0.05 * x as f32).sin(), (0.04 * y as f32).cos(), 1.5).normalize()
     });
-    let maps =
-        Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals, depth: Plane::full(SIZE, 0.5), coverage: Plane::full(SIZE, 255) };
     let scene = Scene { size: SIZE, surface: Surface::new(maps).ok().map(Arc::new) };
     let (mut by_plane, mut off) = (0, 0.0f32);
     for seed in 0..90 {

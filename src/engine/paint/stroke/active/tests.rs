@@ -14,7 +14,7 @@ fn waves() -> Scene {
     let normals =
         Plane::from_fn(SIZE, |x, y| vec3((0.05 * x as f32).sin(), (0.07 * y as f32).cos(), 1.0));
     let depth = Plane::from_fn(SIZE, |x, _| 0.5 + 0.4 * (0.02 * x as f32).sin());
-    let maps = Maps { normals, depth, coverage: Plane::filled(SIZE, 255) };
+    let maps = Maps { normals, depth, coverage: Plane::full(SIZE, 255) };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 

@@ -18,16 +18,25 @@ crate::widest! {
         }
         match at.outside {
             Outside::None => find_folded(at, pair_or_seam, index, across, down),
-            Outside::Clamp => find_folded(at, |c, n| pair(within(c, n) - 0.5, n), index, across, down),
-            Outside::Repeat => find_folded(at, |c, n| pair_or_seam(wrap_position(c, n), n), index, across, down),
+            Outside::Clamp => {
+                let place = |c, n| pair(clamp_position(c, n) - 0.5, n);
+                find_folded(at, place, index, across, down)
+            }
+            Outside::Repeat => {
+                find_folded(at, |c, n| pair_or_seam(wrap_position(c, n), n), index, across, down)
+            }
             // Few pictures are bent so far that they repeat twice.
             Outside::Mirror
                 if are_within(at.x, -2.0 * wide, 1.999 * wide)
                     && are_within(at.y, -2.0 * high, 1.999 * high) =>
             {
-                find_folded(at, |c, n| pair(within(mirrored_once(c, n), n) - 0.5, n), index, across, down)
+                let place = |c, n| pair(clamp_position(mirrored_once(c, n), n) - 0.5, n);
+                find_folded(at, place, index, across, down)
             }
-            Outside::Mirror => find_folded(at, |c, n| pair(within(mirrored(c, n), n) - 0.5, n), index, across, down),
+            Outside::Mirror => {
+                let place = |c, n| pair(clamp_position(mirrored(c, n), n) - 0.5, n);
+                find_folded(at, place, index, across, down)
+            }
         }
     }
 }
@@ -83,7 +92,7 @@ fn pair_or_seam(c: f32, n: f32) -> (i32, f32) {
 
 /// Clamped so that both texels of the pair are the border's own.
 #[inline(always)]
-fn within(c: f32, n: f32) -> f32 {
+fn clamp_position(c: f32, n: f32) -> f32 {
     c.max(0.5).min(n - 0.5)
 }
 
@@ -95,7 +104,7 @@ fn mirrored(c: f32, n: f32) -> f32 {
     if m > n { period - m } else { m }
 }
 
-/// The same to the bit, once it is [`within`], for `c` in `[−2 n, 2 n)`; without a division.
+/// The same to the bit after [`clamp_position`], for `c` in `[−2 n, 2 n)`; without a division.
 #[inline(always)]
 fn mirrored_once(c: f32, n: f32) -> f32 {
     let period = 2.0 * n;
@@ -141,7 +150,8 @@ mod tests {
                 near.flat_map(|c: f32| [c.next_down(), c, c.next_up()]).filter(|c| *c >= -2.0 * n);
             let all = around.chain((0..5000).map(|i| (i as f32 * 0.000_799 - 2.0) * n));
             for c in all {
-                let [once, often] = [mirrored_once(c, n), mirrored(c, n)].map(|m| within(m, n));
+                let [once, often] =
+                    [mirrored_once(c, n), mirrored(c, n)].map(|m| clamp_position(m, n));
                 assert_eq!(once.to_bits(), often.to_bits(), "{c} in {n}: {once} and {often}");
             }
         }

@@ -117,9 +117,9 @@ fn a_ball_is_seen_in_the_ball_beside_it() {
 #[test]
 fn a_plane_and_a_lone_ball_stay_as_they_are() {
     let plane = Maps {
-        normals: Plane::filled(SIZE, vec3(0.5, -0.3, 1.0)),
+        normals: Plane::full(SIZE, vec3(0.5, -0.3, 1.0)),
         depth: Plane::from_fn(SIZE, |x, y| (x as f32 * 0.5 + y as f32 * 0.3) / 100.0),
-        coverage: Plane::filled(SIZE, 255),
+        coverage: Plane::full(SIZE, 255),
     };
     let plane = Scene { size: SIZE, surface: Some(Arc::new(Surface::new(plane).unwrap())) };
     for scene in [plane, scene(&PAIR[..1])] {

@@ -43,9 +43,14 @@ pub(in crate::surface::deformation) fn try_fill_dab(
                 depth_row(row, coverage, span.of(surface.depth_plane()), k, out_x, out_y)
             }
             Kernel::Normal(k) => normal_row(row, coverage, span.of(x), span.of(y), k, out_x, out_y),
-            Kernel::Mirror(k) => {
-                mirrored_row(row, coverage, [x, y, z].map(|plane| span.of(plane)), k, out_x, out_y)
-            }
+            Kernel::Mirror(k) => fill_mirrored_row(
+                row,
+                coverage,
+                [x, y, z].map(|plane| span.of(plane)),
+                k,
+                out_x,
+                out_y,
+            ),
         }
     });
     true
@@ -113,7 +118,7 @@ fn try_fill_laid(
             object: fit.object,
             linear: fit.linear,
             shift: fit.shift,
-            away: planes.elsewhere_px(),
+            away: planes.default_shift_px(),
         };
         let coverage = span.of(surface.coverage_plane());
         fill_laid_dab_row(
@@ -237,7 +242,7 @@ crate::widest! {
         }
     }
 
-    fn mirrored_row(
+    fn fill_mirrored_row(
         row: DabRow,
         coverage: &[u8],
         normals: [&[f32]; 3],

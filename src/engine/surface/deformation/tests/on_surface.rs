@@ -78,7 +78,7 @@ fn a_piece_has_its_picture_turned_moved_and_scaled_alone() {
     let surface = cylinder_and_plate();
     let still = vec![
         Anchor { at: vec2(70.5, 60.5), source: vec2(60.0, 61.0) },
-        Anchor::fixed(vec2(100.5, 62.5)),
+        Anchor::pin(vec2(100.5, 62.5)),
     ];
     let piece = PlanePiece {
         moved: vec2(4.0, -7.0),
@@ -112,7 +112,7 @@ fn a_piece_has_its_picture_turned_moved_and_scaled_alone() {
 #[test]
 fn a_gradient_on_the_surface_runs_evenly_along_it() {
     let surface = cylinder_and_plate();
-    let anchors = vec![Anchor::fixed(vec2(80.5, 100.5)), Anchor::fixed(vec2(130.5, 100.5))];
+    let anchors = vec![Anchor::pin(vec2(80.5, 100.5)), Anchor::pin(vec2(130.5, 100.5))];
     let bend = Bend { operator: ON_SURFACE, anchors, weights: Weights::Segment, ..Bend::default() };
     let d = Deformation::new(Some(&surface), SIZE, &bend);
     for x in [90, 100, 110, 120, 128] {
@@ -132,7 +132,7 @@ proptest! {
         let surface = &*UNWRAPPED_ONCE;
         let at = vec2(x as f32, y as f32) + 0.5;
         let piece = PlanePiece { at, moved: vec2(moved_x, moved_y), scale, rotation };
-        let anchors = vec![Anchor::fixed(vec2(70.5, 60.5)), Anchor::fixed(vec2(130.5, 90.5))];
+        let anchors = vec![Anchor::pin(vec2(70.5, 60.5)), Anchor::pin(vec2(130.5, 90.5))];
         let before = Bend { operator: ON_SURFACE, anchors, weights: Weights::Segment, ..Bend::default() };
         let after = Bend { pieces: vec![piece], ..before.clone() };
         let [d, e] = [&before, &after].map(|bend| Deformation::new(Some(surface), SIZE, bend));
@@ -151,7 +151,7 @@ fn anchors_anywhere_leave_the_surface_finite() {
     let (surface, huge) = (cylinder_and_plate(), vec2(f32::MAX, -1e30));
     for at in [vec2(-50.0, 40.0), huge, vec2(f32::NAN, 1.0), vec2(90.5, 60.5)] {
         let anchors =
-            vec![Anchor::fixed(vec2(90.5, 60.5)), Anchor { at, source: huge }, Anchor::fixed(at)];
+            vec![Anchor::pin(vec2(90.5, 60.5)), Anchor { at, source: huge }, Anchor::pin(at)];
         for weights in
             [Weights::Shepard { power: 2.0 }, Weights::Shepard { power: 0.3 }, Weights::Segment]
         {
@@ -177,7 +177,7 @@ proptest! {
         y in prop::num::f32::ANY,
     ) {
         let surface = sphere();
-        let anchors = vec![Anchor { at: vec2(x, 50.5), source: vec2(3.0, y) }, Anchor::fixed(vec2(80.5, 60.5))];
+        let anchors = vec![Anchor { at: vec2(x, 50.5), source: vec2(3.0, y) }, Anchor::pin(vec2(80.5, 60.5))];
         for operator in [
             Operator::Depth { gamma: beta },
             Operator::Normal { alpha, beta, detail: beta },

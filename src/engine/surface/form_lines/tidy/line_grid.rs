@@ -35,7 +35,7 @@ impl NearPoints {
         }
     }
 
-    fn around(&self, at: Vec2, reach_px: f32) -> impl Iterator<Item = &NearPoint> {
+    fn points_near(&self, at: Vec2, reach_px: f32) -> impl Iterator<Item = &NearPoint> {
         let [low, high] = [-reach_px, reach_px].map(|by| ((at + by) / CELL_PX).floor().as_ivec2());
         let cells = (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| (x, y)));
         cells.filter_map(|cell| self.0.get(&cell)).flatten()
@@ -43,7 +43,7 @@ impl NearPoints {
 
     /// Whether one of those within a distance is as asked.
     pub fn has_within(&self, at: Vec2, px: f32, is_asked: impl Fn(&NearPoint) -> bool) -> bool {
-        self.around(at, px).any(|point| point.at.distance(at) < px && is_asked(point))
+        self.points_near(at, px).any(|point| point.at.distance(at) < px && is_asked(point))
     }
 
     /// The nearest within a distance, of those that count.
@@ -53,7 +53,7 @@ impl NearPoints {
         px: f32,
         counts: impl Fn(&NearPoint) -> bool,
     ) -> Option<&NearPoint> {
-        let near = self.around(at, px).filter(|point| counts(point));
+        let near = self.points_near(at, px).filter(|point| counts(point));
         let by = |point: &&NearPoint| point.at.distance_squared(at);
         near.filter(|point| by(point) < px * px).min_by(|a, b| by(a).total_cmp(&by(b)))
     }

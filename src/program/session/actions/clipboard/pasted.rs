@@ -7,7 +7,7 @@ use crate::io::{Budget, base64, picture};
 use crate::math::range::clamp_to_range;
 use crate::math::{COORDINATE, Vec2};
 use crate::raster::{Asset, Picture, TileGrid};
-use crate::session::actions::layers::above;
+use crate::session::actions::layers::slot_above;
 use crate::session::actions::placing::place;
 use crate::session::replay::{ReplayValue, names};
 use crate::session::{OpenDocument, Session};
@@ -74,7 +74,7 @@ pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, 
     let tiles = picture::to_tiles(&pasted.picture, corner.x as i32, corner.y as i32);
     let layer = paint(open.document().free_layer_name(&stem(&pasted.name)), tiles);
     let id = layer.id;
-    if let Some(next) = open.document().with_inserted(layer, above(open))
+    if let Some(next) = open.document().with_inserted(layer, slot_above(open))
         && open.commit("Paste", next)
     {
         open.select_layers(vec![id]);

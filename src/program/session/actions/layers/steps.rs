@@ -23,7 +23,7 @@ pub(super) fn paint_mask(document: &Document, layer: &Layer, hides: bool) -> Opt
     let mask = match &layer.mask {
         Some(mask) => mask.as_picture(&document.scene()),
         None => {
-            let coverage = Arc::new(Plane::filled(document.size, if hides { 0 } else { 255 }));
+            let coverage = Arc::new(Plane::full(document.size, if hides { 0 } else { 255 }));
             LayerMask::new(MaskKind::File { file: String::new(), coverage })
         }
     };

@@ -1,7 +1,7 @@
 //! Layers that are texts: written, and retyped in their places. Floor 6. Not here: how a text is
 //! laid out (`io::text`).
 
-use super::above;
+use super::slot_above;
 use crate::Result;
 use crate::document::{Content, Document, Layer, LayerId, Live};
 use crate::io::{Budget, text};
@@ -93,14 +93,14 @@ pub(super) fn write(open: &mut OpenDocument, text: &Text, at: Vec2) -> Result<()
         source: source(free_file(document, "text.svg"), laid, Adjust::default()),
         placement,
         outside: Outside::None,
-        bend: Bend { anchors: vec![Anchor::fixed(center)], ..Bend::default() },
+        bend: Bend { anchors: vec![Anchor::pin(center)], ..Bend::default() },
         filter: ImageFilter::Antialias,
         frame: Default::default(),
     };
     let (name, content) = (document.free_layer_name(&name(text)), Content::Image(Live::new(image)));
     let layer = Layer { clip_to_surface: false, ..Layer::new(name, content) };
     let id = layer.id;
-    if let Some(next) = document.with_inserted(layer, above(open))
+    if let Some(next) = document.with_inserted(layer, slot_above(open))
         && open.commit("Write", next)
     {
         open.primary = Some(id);

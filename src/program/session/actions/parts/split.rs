@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// The document with a part split. The largest place keeps the part's id and name, and the paint
 /// that lies on it; touches and strokes of sculpting go to the place that they are at, and lines
 /// and reliefs to all places.
-pub fn by_place(document: &Document, part: &Part) -> Result<Document, PartRefusal> {
+pub fn split_by_place(document: &Document, part: &Part) -> Result<Document, PartRefusal> {
     let refused = "Only a part that follows a color of a layer everywhere can be split by place.";
     let places = document.places_of(part).ok_or(refused)?;
     let points = places.points();

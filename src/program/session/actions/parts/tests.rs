@@ -106,7 +106,7 @@ fn a_drawing_that_is_one_part_goes_where_the_part_goes() {
 fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
     let mut session = opened(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
-    let steps = session.active().unwrap().history.past().count();
+    let steps = session.active().unwrap().history.past_names().count();
     let part = |puff: f32, done: bool| {
         let outline = r#"{"layer":"snowman"}"#;
         format!(
@@ -127,7 +127,7 @@ fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
     let flatter = drags.reshaped().surface.unwrap();
     assert!(flatter.normal(70, 84).z > before.normal(70, 84).z + 0.1);
     tell(&mut session, &part(0.25, true));
-    assert_eq!(session.active().unwrap().history.past().count(), steps + 1);
+    assert_eq!(session.active().unwrap().history.past_names().count(), steps + 1);
     tell(&mut session, &part(9.0, true));
     assert!(
         session.notes[0].contains("puff") && session.notes[0].contains("between 0 and 8"),

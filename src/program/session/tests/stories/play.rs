@@ -165,7 +165,7 @@ type Fingerprints = Vec<(String, u32)>;
 fn export(session: &Session) {
     let Some(open) = session.active() else { return };
     let (document, progress) = (open.document(), Progress::default());
-    if open.history.past().count().is_multiple_of(2) {
+    if open.history.past_names().count().is_multiple_of(2) {
         drop(flatten_to_paint(document, &progress));
     } else {
         drop(flatten(document, &progress));

@@ -174,7 +174,7 @@ fn steps(open: &mut OpenDocument, seen: &[Seen]) -> Kept {
             return Err(Broken::new("undone, another document", what.into()));
         }
         known.push(now);
-        if open.history.past().next().is_none() || known.len() > STEPS {
+        if open.history.past_names().next().is_none() || known.len() > STEPS {
             break;
         }
         open.walk(-1);

@@ -53,7 +53,7 @@ impl Roll for Operator {
 impl Roll for Anchor {
     fn roll(dice: &mut Dice) -> Self {
         let at = dice.place();
-        if dice.is(50) { Anchor::fixed(at) } else { Anchor { at, source: dice.place() } }
+        if dice.is(50) { Anchor::pin(at) } else { Anchor { at, source: dice.place() } }
     }
 }
 
