@@ -11,7 +11,7 @@ use rilievo::raster::Plane;
 use rilievo::{Budget, Color, Content, Document, Layer, Maps, Progress, Size, Surface, flatten};
 use rilievo_engine::math::srgb;
 use serde_json::{Value, json};
-use spheres::seen;
+use spheres::hit_at;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,8 +22,9 @@ const TIMES: usize = 5;
 /// The spheres, so many times as large.
 fn surface(times: usize) -> Arc<Surface> {
     let size = Size::new(SIZE.width * times as u32, SIZE.height * times as u32);
-    let at =
-        |x: usize, y: usize| seen((x as f32 + 0.5) / times as f32, (y as f32 + 0.5) / times as f32);
+    let at = |x: usize, y: usize| {
+        hit_at((x as f32 + 0.5) / times as f32, (y as f32 + 0.5) / times as f32)
+    };
     let maps = Maps {
         normals: Plane::from_fn(size, |x, y| at(x, y).map_or(Vec3::ZERO, |s| s.1)),
         depth: Plane::from_fn(size, |x, y| at(x, y).map_or(f32::NAN, |s| (220.0 - s.2) / 280.0)),
@@ -36,7 +37,7 @@ fn surface(times: usize) -> Arc<Surface> {
 fn is_contour(x: usize, y: usize) -> bool {
     let at = |k: usize| (k as f32 + 0.5) / TIMES as f32;
     let mut parts = (0..TIMES * TIMES)
-        .map(|k| seen(x as f32 + at(k % TIMES), y as f32 + at(k / TIMES)).map(|s| s.0));
+        .map(|k| hit_at(x as f32 + at(k % TIMES), y as f32 + at(k / TIMES)).map(|s| s.0));
     let first = parts.next();
     parts.any(|part| Some(part) != first)
 }

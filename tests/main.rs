@@ -26,6 +26,7 @@ mod python;
 mod recipe;
 mod scripting;
 mod shape;
+mod verbs;
 mod view;
 #[cfg(feature = "window-tests")]
 mod window;

@@ -221,6 +221,11 @@ fn definition(line: &str) -> Option<(Named, &str)> {
     Some((what, name))
 }
 
+/// The function that a line defines.
+pub fn function(line: &str) -> Option<&str> {
+    definition(line).filter(|(what, _)| *what == Named::Function).map(|(_, name)| name)
+}
+
 /// The functions of a text, without its tests, that return `bool`.
 fn returning_bool(text: &str) -> Vec<&str> {
     let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
@@ -229,7 +234,7 @@ fn returning_bool(text: &str) -> Vec<&str> {
     for line in text.split_inclusive('\n') {
         let rest = &text[start..];
         start += line.len();
-        let Some((Named::Function, name)) = definition(line) else { continue };
+        let Some(name) = function(line) else { continue };
         let signature = rest.split(['{', ';']).next().unwrap_or_default();
         let words = signature.split_whitespace().collect::<Vec<_>>().join(" ");
         let words = words.split(" where ").next().unwrap_or_default();

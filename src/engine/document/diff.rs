@@ -3,7 +3,7 @@
 //! that is not reported is the same; a reported one may differ.
 
 use super::filter_stage::tiles_touched;
-use super::layer::content::{Changed, Touched};
+use super::layer::content::{Changed, VisibleArea};
 use super::layer::on_canvas::on_canvas;
 use super::{Content, Document, Layer, LayerId, LayerMap, LayerTransform, LayerWarp};
 use crate::math::Rect;
@@ -305,17 +305,17 @@ impl Diff<'_> {
         let canvas = self.scene.size.rect();
         // Normal layers replace the canvas's surface.
         let touched =
-            layer.content.painted_tiles(Some(&self.scene).filter(|_| !self.has_normals(layer.id)));
+            layer.content.visible_area(Some(&self.scene).filter(|_| !self.has_normals(layer.id)));
         let touched = match touched {
-            Touched::Nowhere => return false,
-            Touched::Canvas => return self.report_rect(canvas),
-            Touched::Rects(rects) if layer.effects.is_empty() => {
+            VisibleArea::Nowhere => return false,
+            VisibleArea::Canvas => return self.report_rect(canvas),
+            VisibleArea::Rects(rects) if layer.effects.is_empty() => {
                 return rects
                     .into_iter()
                     .fold(false, |changed, rect| self.report_rect(rect) | changed);
             }
-            Touched::Rects(rects) => rects.into_iter().flat_map(TileAt::covering).collect(),
-            Touched::Tiles(tiles) => tiles,
+            VisibleArea::Rects(rects) => rects.into_iter().flat_map(TileAt::covering).collect(),
+            VisibleArea::Tiles(tiles) => tiles,
         };
         let tiles = self.with_effect_reach(&layer, touched);
         self.report_tiles(tiles)

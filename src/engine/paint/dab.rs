@@ -106,22 +106,22 @@ impl<'s> PlacedDab<'s> {
     }
 
     /// The blocks that the dab may touch, among the pixels that represent a tile.
-    fn touched_blocks(&self, at: TileAt) -> TouchedBlocks {
+    fn reached_blocks(&self, at: TileAt) -> ReachedBlocks {
         let Some(blocks) = self.far_blocks else {
             let tile = at.rect();
             let Some(judged) = self.support.judge_blocks(at) else {
-                return TouchedBlocks::none(tile);
+                return ReachedBlocks::none(tile);
             };
-            let area = touched_rect(&judged.touched, tile).intersect(self.scene.size.rect());
+            let area = reached_rect(&judged.touched, tile).intersect(self.scene.size.rect());
             // Near its border a dab is pushed away, and pixels are longer.
             let pixel =
                 if self.deformation.is_limited(area.grown(1)) { ANY_LENGTH } else { judged.pixel };
-            return TouchedBlocks { tile, blocks: judged.touched, area, step: 1, pixel };
+            return ReachedBlocks { tile, blocks: judged.touched, area, step: 1, pixel };
         };
         let whole = self.scene.area(at);
         let tile = Rect::new(0, whole.y0, TILE as i32, whole.y0 + TILE as i32);
-        let area = touched_rect(&blocks, tile).intersect(whole);
-        TouchedBlocks { tile, blocks, area, step: self.scene.row_step(), pixel: ANY_LENGTH }
+        let area = reached_rect(&blocks, tile).intersect(whole);
+        ReachedBlocks { tile, blocks, area, step: self.scene.row_step(), pixel: ANY_LENGTH }
     }
 
     pub fn dab(&self) -> &Dab {
@@ -134,8 +134,8 @@ impl<'s> PlacedDab<'s> {
 
     /// D over the touched blocks of a tile and the pixels around them, in rows of their area grown
     /// by one.
-    fn fill_touched(&self, part: &TouchedBlocks, deformed: &mut DeformedRect) {
-        let TouchedBlocks { tile, ref blocks, area, .. } = *part;
+    fn fill_touched(&self, part: &ReachedBlocks, deformed: &mut DeformedRect) {
+        let ReachedBlocks { tile, ref blocks, area, .. } = *part;
         let touched =
             |y: i32| if (area.y0..area.y1).contains(&y) { row_of(blocks, tile, y) } else { 0 };
         let columns = |y: i32| {
@@ -158,7 +158,7 @@ impl<'s> PlacedDab<'s> {
     /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling
     /// c.
     pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
-        let part = self.touched_blocks(at);
+        let part = self.reached_blocks(at);
         if part.area.is_empty() {
             return;
         }
@@ -209,7 +209,7 @@ impl<'s> PlacedDab<'s> {
     /// where D is the identity.
     fn round_field<'f>(
         &'f self,
-        part: &TouchedBlocks,
+        part: &ReachedBlocks,
         tip: RoundTip,
         deformed: &'f mut DeformedRect,
     ) -> (RoundTip, Option<DeformationField<'f>>) {
@@ -229,7 +229,7 @@ impl<'s> PlacedDab<'s> {
         stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        let part = self.touched_blocks(at);
+        let part = self.reached_blocks(at);
         let area = part.area;
         let DabScratch { deformed, stamping: StampScratch { patches, antialias, row }, .. } =
             scratch;
@@ -267,7 +267,7 @@ impl PixelSpan {
 
 /// The part of a tile that a dab may touch, or of what represents one on a far side.
 #[derive(Clone, Copy)]
-struct TouchedBlocks {
+struct ReachedBlocks {
     /// The pixels of the tile.
     tile: Rect,
     blocks: TileBlocks,
@@ -281,14 +281,14 @@ struct TouchedBlocks {
 /// For pixels whose lengths are not known.
 const ANY_LENGTH: BlockPixels = [f32::INFINITY; TILE_BLOCKS * TILE_BLOCKS];
 
-impl TouchedBlocks {
+impl ReachedBlocks {
     fn none(tile: Rect) -> Self {
         Self { tile, blocks: TileBlocks::default(), area: Rect::EMPTY, step: 1, pixel: ANY_LENGTH }
     }
 
     /// The rows of the area, each from its first to its last touched block.
     fn spans(&self) -> impl Iterator<Item = PixelSpan> + use<> {
-        let TouchedBlocks { tile, blocks, area, step, .. } = *self;
+        let ReachedBlocks { tile, blocks, area, step, .. } = *self;
         (area.y0..area.y1).step_by(step).filter_map(move |y| {
             let columns = columns(row_of(&blocks, tile, y), tile);
             let (x0, x1) = (columns.start.max(area.x0), columns.end.min(area.x1));
@@ -303,7 +303,7 @@ impl TouchedBlocks {
 }
 
 /// The smallest rectangle that holds the touched blocks of a tile.
-fn touched_rect(blocks: &TileBlocks, tile: Rect) -> Rect {
+fn reached_rect(blocks: &TileBlocks, tile: Rect) -> Rect {
     let side = BLOCK as i32;
     let rows = blocks.iter().enumerate().filter(|(_, bits)| **bits != 0);
     rows.fold(Rect::EMPTY, |r, (row, bits)| {

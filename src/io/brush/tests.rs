@@ -131,7 +131,7 @@ const MYB: &str = r#"{ "version": 3, "group": "", "settings": {
     "smudge": { "base_value": 0.7, "inputs": {} } } }"#;
 
 /// The value of a brush property for given inputs.
-fn driven(brush: &Brush, property: Property, plain: f32, inputs: DabInputs) -> f32 {
+fn drive(brush: &Brush, property: Property, plain: f32, inputs: DabInputs) -> f32 {
     brush.dynamics.value(property, plain, &inputs)
 }
 
@@ -141,12 +141,12 @@ fn a_mypaint_brush_becomes_numbers_and_what_is_added_to_them() {
     assert_eq!(name, "ink blot");
     let pressed = |pressure: f32| DabInputs { pressure, ..DabInputs::default() };
     for (pressure, log) in [(0.0f32, 1.8f32), (0.5, 2.3), (1.0, 2.8)] {
-        let size = driven(&brush, Property::Size, brush.size, pressed(pressure));
+        let size = drive(&brush, Property::Size, brush.size, pressed(pressure));
         assert!((size / (2.0 * log.exp()) - 1.0).abs() < 0.01, "{pressure}: {size}");
     }
     for (pressure, opaque) in [(0.25f32, 0.05f32), (0.5, 0.1), (0.75, 0.55), (1.0, 1.0)] {
         assert!(
-            (driven(&brush, Property::Flow, brush.flow, pressed(pressure)) - opaque).abs() < 0.01
+            (drive(&brush, Property::Flow, brush.flow, pressed(pressure)) - opaque).abs() < 0.01
         );
     }
     assert_eq!((brush.spacing, brush.rate.per_diameter), (0.125, 2.0), "4 and 1 in a radius");
@@ -177,12 +177,12 @@ fn a_mypaint_brush_that_follows_several_inputs_follows_them_all() {
     let chance = brush.dynamics.added_curve(Property::Flow, Input::Chance).unwrap();
     let random = (0..=100).map(|i| chance.at(i as f32 / 100.0)).fold(0.0, f32::max);
     assert!((random - 0.1).abs() < 1e-5);
-    let flow = driven(&brush, Property::Flow, brush.flow, inputs);
+    let flow = drive(&brush, Property::Flow, brush.flow, inputs);
     assert!(
         (0.12..=0.38).contains(&flow),
         "between 0.5 (0.4 + 0.25 − 0.4) and 0.5 (0.4 + 0.25 + 0.1): {flow}"
     );
-    assert!((driven(&brush, Property::Elongation, 1.0, inputs) - 6.0).abs() < 1e-3);
+    assert!((drive(&brush, Property::Elongation, 1.0, inputs) - 6.0).abs() < 1e-3);
     assert_eq!((brush.rate.per_sec, brush.cycle.hold), (80.0, 10.0));
     assert!(notes.is_empty(), "{notes:?}");
 }
@@ -208,7 +208,7 @@ fn a_key_given_twice_counts_as_it_does_in_mypaint() {
 #[test]
 fn a_mypaint_brush_of_an_older_version_is_read_and_of_another_is_named() {
     let old = only("b.myb", b"radius_logarithmic 1.0 | pressure (0.0 0.0), (1.0 1.0)\nversion 2\n");
-    let size = driven(&old.brush, Property::Size, old.brush.size, DabInputs::default());
+    let size = drive(&old.brush, Property::Size, old.brush.size, DabInputs::default());
     assert!((size - 2.0 * 2f32.exp()).abs() < 1e-3);
     assert!(error_of("b.myb", br#"{ "version": 4, "settings": {} }"#).contains("version 4"));
     assert!(error_of("b.myb", br#"{ "version": 3 }"#).contains("no settings"));

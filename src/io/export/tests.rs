@@ -11,7 +11,7 @@ fn checker() -> (TileGrid, Size) {
     (TileGrid::from_straight_rgba(&rgba, 70, 3, 0, 0), size)
 }
 
-fn encoded(format: ExportFormat, options: ExportOptions) -> Result<Vec<u8>> {
+fn encode_sample(format: ExportFormat, options: ExportOptions) -> Result<Vec<u8>> {
     let (grid, size) = checker();
     encode(Path::new("out"), format, &grid, size, &options)
 }
@@ -21,7 +21,7 @@ fn lossless_formats_read_back_as_they_were() {
     let (grid, size) = checker();
     let straight = grid.to_straight_rgba(size.rect());
     for format in [ExportFormat::Png, ExportFormat::WebP] {
-        let bytes = encoded(format, ExportOptions::default()).unwrap();
+        let bytes = encode_sample(format, ExportOptions::default()).unwrap();
         let read = image::load_from_memory(&bytes).unwrap().to_rgba8();
         assert_eq!(read.as_raw(), &straight, "{format:?}");
     }
@@ -30,7 +30,7 @@ fn lossless_formats_read_back_as_they_were() {
 #[test]
 fn an_exr_holds_linear_light() {
     let (grid, size) = checker();
-    let bytes = encoded(ExportFormat::Exr, ExportOptions::default()).unwrap();
+    let bytes = encode_sample(ExportFormat::Exr, ExportOptions::default()).unwrap();
     let read = picture::decode(Path::new("out.exr"), &bytes, &Budget::default()).unwrap();
     let straight = grid.to_straight_rgba(size.rect());
     for (i, pixel) in straight.chunks_exact(4).enumerate().filter(|(_, p)| p[3] == 255) {
@@ -41,10 +41,10 @@ fn an_exr_holds_linear_light() {
 
 #[test]
 fn a_jpeg_of_a_transparent_picture_wants_a_background() {
-    let error = encoded(ExportFormat::Jpeg, ExportOptions::default()).unwrap_err();
+    let error = encode_sample(ExportFormat::Jpeg, ExportOptions::default()).unwrap_err();
     assert_eq!(error.remedy(), Some(Remedy::Background), "{error}");
     let white = ExportOptions { background: Some(Color::WHITE), ..ExportOptions::default() };
-    assert!(encoded(ExportFormat::Jpeg, white).is_ok());
+    assert!(encode_sample(ExportFormat::Jpeg, white).is_ok());
 }
 
 #[test]

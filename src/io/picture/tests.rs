@@ -5,7 +5,7 @@ use crate::srgb_profile::own_srgb;
 use image::{ImageFormat, RgbaImage};
 use std::io::Cursor;
 
-fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
     image.write_to(&mut out, format).unwrap();
     out.into_inner()
@@ -39,7 +39,7 @@ fn lossless_formats_keep_their_bytes() {
         (ImageFormat::Bmp, "a.bmp"),
     ];
     for (format, name) in formats {
-        assert_eq!(texels(&encoded(&image, format), name), expected, "{name}");
+        assert_eq!(texels(&encode(&image, format), name), expected, "{name}");
     }
 }
 
@@ -62,7 +62,7 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
     let bytes: Vec<u8> = texels16.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect();
     writer.write_image_data(&bytes).unwrap();
     writer.finish().unwrap();
-    let files = [encoded(&image, ImageFormat::Png), encoded(&image, ImageFormat::Tiff), profiled];
+    let files = [encode(&image, ImageFormat::Png), encode(&image, ImageFormat::Tiff), profiled];
     for (file, name) in files.iter().zip(["a.png", "a.tif", "profiled.png"]) {
         let found = decode_paint(Path::new(name), file, -9, 20, &Budget::default()).unwrap();
         assert_eq!(found.size, Size::new(70, 130));
@@ -83,7 +83,7 @@ fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
         image::Rgba([x as u16 * 211, 7, 40000, 65535 - y as u16])
     });
     for (format, name) in [(ImageFormat::Png, "a.png"), (ImageFormat::Tiff, "a.tif")] {
-        let bytes = encoded(&DynamicImage::ImageRgba16(texels16.clone()), format);
+        let bytes = encode(&DynamicImage::ImageRgba16(texels16.clone()), format);
         let picture = decode(Path::new(name), &bytes, &Budget::default()).unwrap();
         let kept = picture.texels16.as_ref().unwrap();
         assert!(kept.iter().zip(texels16.pixels()).all(|(kept, pixel)| *kept == pixel.0), "{name}");
@@ -95,7 +95,7 @@ fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
         );
     }
     assert!(
-        decode(Path::new("b.png"), &encoded(&opaque(), ImageFormat::Png), &Budget::default())
+        decode(Path::new("b.png"), &encode(&opaque(), ImageFormat::Png), &Budget::default())
             .unwrap()
             .texels16
             .is_none()
@@ -106,16 +106,16 @@ fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
 fn a_mask_is_luminance_times_alpha() {
     let image =
         RgbaImage::from_fn(2, 1, |x, _| image::Rgba([255, 255, 255, [255, 128][x as usize]]));
-    let bytes = encoded(&DynamicImage::ImageRgba8(image), ImageFormat::Png);
+    let bytes = encode(&DynamicImage::ImageRgba8(image), ImageFormat::Png);
     let plane = decode_coverage(Path::new("m.png"), &bytes, &Budget::default()).unwrap();
     assert_eq!(plane.values(), [255, 128]);
 }
 
 #[test]
 fn what_is_no_picture_gets_a_sentence() {
-    let mut bomb = encoded(&DynamicImage::ImageRgba8(sample()), ImageFormat::Png);
+    let mut bomb = encode(&DynamicImage::ImageRgba8(sample()), ImageFormat::Png);
     bomb[16..24].copy_from_slice(&[0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60]);
-    let cut = encoded(&opaque(), ImageFormat::Jpeg);
+    let cut = encode(&opaque(), ImageFormat::Jpeg);
     let cases: [(&str, &[u8], &str); 4] = [
         ("empty.png", b"", "is empty"),
         ("text.png", b"hello, world", "does not begin like"),
@@ -130,7 +130,7 @@ fn what_is_no_picture_gets_a_sentence() {
 
 #[test]
 fn a_jpeg_without_its_end_is_shown_as_far_as_it_goes() {
-    let whole = encoded(&opaque(), ImageFormat::Jpeg);
+    let whole = encode(&opaque(), ImageFormat::Jpeg);
     let scan = whole.windows(2).rposition(|pair| pair == [0xff, 0xda]).unwrap();
     for cut in [whole.len() - 1, whole.len() - 2, (scan + whole.len()) / 2] {
         let read =

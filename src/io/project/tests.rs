@@ -11,7 +11,7 @@ use crate::raster::Plane;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-fn written(document: &Document) -> Vec<u8> {
+fn write_bytes(document: &Document) -> Vec<u8> {
     write(Path::new("a.ora"), document, &Progress::default()).unwrap().unwrap()
 }
 
@@ -32,24 +32,24 @@ fn entries(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
     (0..count).map(one).collect()
 }
 
-fn packed(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
+fn pack(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
     let mut packer = ZipPacker::default();
     entries.iter().for_each(|(name, bytes)| packer.store(name, bytes).unwrap());
     packer.finish().unwrap()
 }
 
 /// A project whose entries went through another program.
-fn changed(bytes: &[u8], change: impl Fn(&str, Vec<u8>) -> Option<Vec<u8>>) -> Vec<u8> {
+fn change_entries(bytes: &[u8], change: impl Fn(&str, Vec<u8>) -> Option<Vec<u8>>) -> Vec<u8> {
     let kept = entries(bytes)
         .into_iter()
         .filter_map(|(name, bytes)| Some((name.clone(), change(&name, bytes)?)));
-    packed(&kept.collect::<Vec<_>>())
+    pack(&kept.collect::<Vec<_>>())
 }
 
 #[test]
 fn a_document_comes_back_in_every_parameter_and_pixel() {
     let document = everything(64);
-    let back = read_back(&written(&document));
+    let back = read_back(&write_bytes(&document));
     assert_eq!(back.notes, [""; 0]);
     assert!(back.is_whole);
     assert_same(&document, &back.document);
@@ -60,7 +60,7 @@ fn smooth_paint_comes_back_in_16_bits_and_ink_is_stored_in_8() {
     let document = smoothly_painted();
     let found = tiles16(&document);
     assert!(found[..3].iter().all(|&deep| deep > 1) && found[3] == 0, "{found:?}");
-    let file = written(&document);
+    let file = write_bytes(&document);
     let back = read_back(&file);
     assert!(
         back.notes.is_empty() && document.difference(&back.document).is_none(),
@@ -69,7 +69,7 @@ fn smooth_paint_comes_back_in_16_bits_and_ink_is_stored_in_8() {
     );
     assert_same(&document, &back.document);
     assert_eq!(tiles16(&back.document), found);
-    assert!(written(&back.document) == file, "saved again");
+    assert!(write_bytes(&back.document) == file, "saved again");
     let depth = |name: &str| {
         let entry = entries(&file).into_iter().find(|(known, _)| known == name).unwrap();
         crate::pixels::is_16_bit(&entry.1)
@@ -77,17 +77,18 @@ fn smooth_paint_comes_back_in_16_bits_and_ink_is_stored_in_8() {
     let names = ["data/001.png", "data/004.png", "mergedimage.png"];
     assert_eq!(names.map(depth), [true, false, false]);
     // Another program finds the pixels as they are.
-    let foreign = changed(&file, |name, bytes| (!name.starts_with("rilievo/")).then_some(bytes));
+    let foreign =
+        change_entries(&file, |name, bytes| (!name.starts_with("rilievo/")).then_some(bytes));
     let seen = tiles16(&read_back(&foreign).document);
     assert_eq!(seen[1..2], found[..1]);
 }
 
 #[test]
 fn saved_and_read_and_saved_again_it_is_the_same_file() {
-    let first = written(&everything(64));
-    assert!(first == written(&everything(64)), "another document of the same parameters");
+    let first = write_bytes(&everything(64));
+    assert!(first == write_bytes(&everything(64)), "another document of the same parameters");
     let back = read_back(&first).document;
-    let second = written(&back);
+    let second = write_bytes(&back);
     assert!(first == second, "{:?}", differing(&first, &second));
 }
 
@@ -102,7 +103,7 @@ fn differing(a: &[u8], b: &[u8]) -> Vec<(String, String)> {
 #[test]
 fn an_unchanged_layer_is_copied_and_a_changed_one_is_not() {
     let document = everything(64);
-    let first = written(&document);
+    let first = write_bytes(&document);
     let layer = document.layer_named("last").unwrap();
     let look = || {
         layer
@@ -112,20 +113,23 @@ fn an_unchanged_layer_is_copied_and_a_changed_one_is_not() {
             .unwrap()
     };
     let before = look();
-    assert!(first == written(&document));
+    assert!(first == write_bytes(&document));
     assert!(look().file.ptr_eq(&before.file));
     let moved = document.with_layer(layer.id, |layer| {
         let Content::Pixels(pixels) = &mut layer.content else { panic!("pixels") };
         pixels.tiles = crate::raster::TileGrid::from_straight_rgba(&[9; 4 * 4], 2, 2, 0, 0);
     });
-    assert_same(&read_back(&written(moved.as_ref().unwrap())).document, moved.as_ref().unwrap());
+    assert_same(
+        &read_back(&write_bytes(moved.as_ref().unwrap())).document,
+        moved.as_ref().unwrap(),
+    );
 }
 
 #[test]
 fn sources_maps_and_tips_keep_their_very_bytes() {
     let files = super::sample::files(64);
     let stored: Vec<Vec<u8>> =
-        entries(&written(&everything(64))).into_iter().map(|(_, bytes)| bytes).collect();
+        entries(&write_bytes(&everything(64))).into_iter().map(|(_, bytes)| bytes).collect();
     for name in ["maps/n.png", "photo.png", "tip.png"] {
         assert!(stored.contains(&files.0[name]), "{name}");
     }
@@ -133,7 +137,7 @@ fn sources_maps_and_tips_keep_their_very_bytes() {
 
 #[test]
 fn it_is_a_valid_openraster_file() {
-    let bytes = written(&everything(64));
+    let bytes = write_bytes(&everything(64));
     assert_eq!(&bytes[30..54], b"mimetypeimage/openraster", "first, and stored");
     let names: Vec<String> = entries(&bytes).into_iter().map(|(name, _)| name).collect();
     assert_eq!(names[..4], [MIMETYPE, DOCUMENT, MANIFEST, STACK]);
@@ -149,7 +153,7 @@ fn it_is_a_valid_openraster_file() {
 fn what_other_programs_see_is_the_same_picture() {
     let document = everything(64);
     // Without our own entries, everything is what OpenRaster alone can say.
-    let bytes = changed(&written(&document), |name, bytes| {
+    let bytes = change_entries(&write_bytes(&document), |name, bytes| {
         (!name.starts_with("rilievo/")).then_some(bytes)
     });
     let seen = read_back(&bytes);
@@ -187,7 +191,7 @@ fn what_other_programs_see_is_the_same_picture() {
 #[test]
 fn a_picture_that_another_program_changed_becomes_pixels_and_the_rest_stays_live() {
     let document = everything(64);
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     let path = document.walk().iter().position(|(_, layer)| layer.name == "lines").unwrap();
     let manifest: serde_json::Value = entries(&bytes)
         .iter()
@@ -201,7 +205,7 @@ fn a_picture_that_another_program_changed_becomes_pixels_and_the_rest_stays_live
         .find(|p| p["layer"] == document.walk()[path].0.as_str());
     let name = name.unwrap()["picture"].as_str().unwrap().to_owned();
     let red = png(3, 3, |_, _| [255, 0, 0, 255]);
-    let back = read_back(&changed(&bytes, |entry, bytes| {
+    let back = read_back(&change_entries(&bytes, |entry, bytes| {
         Some(if entry == name { red.clone() } else { bytes })
     }));
     assert_eq!(back.notes.len(), 1, "{:?}", back.notes);
@@ -216,7 +220,7 @@ fn a_picture_that_another_program_changed_becomes_pixels_and_the_rest_stays_live
 #[test]
 fn a_stack_that_another_program_changed_is_believed_and_untouched_layers_stay_live() {
     let document = everything(64);
-    let bytes = changed(&written(&document), |name, bytes| {
+    let bytes = change_entries(&write_bytes(&document), |name, bytes| {
         let edited = |xml: String| {
             xml.replace("name=\"photo\" opacity=\"1\"", "name=\"Foto\" opacity=\"0.25\"")
         };
@@ -244,7 +248,7 @@ fn a_stack_that_another_program_changed_is_believed_and_untouched_layers_stay_li
 #[test]
 fn a_damaged_entry_costs_its_own_layer_only() {
     let document = everything(64);
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     for (entry, layer) in [("rilievo/files/photo.png", "photo"), ("rilievo/files/tip.png", "lines")]
     {
         let at = bytes.windows(entry.len()).position(|w| w == entry.as_bytes()).unwrap();
@@ -266,7 +270,7 @@ fn a_damaged_entry_costs_its_own_layer_only() {
 #[test]
 fn a_document_cut_short_gives_what_is_there() {
     let document = everything(64);
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     let first = bytes.windows(12).position(|w| w == b"data/006.png").unwrap();
     let back = read_back(&bytes[..first + 200]);
     assert!(!back.is_whole && back.notes.len() > 1, "{:?}", back.notes);
@@ -278,7 +282,7 @@ fn a_document_cut_short_gives_what_is_there() {
 fn a_surface_that_came_from_no_file_comes_back() {
     let mut document = everything(64);
     (document.surface_source, document.surface_files) = (None, Arc::default());
-    let back = read_back(&written(&document)).document;
+    let back = read_back(&write_bytes(&document)).document;
     let (a, b) = (document.surface.as_ref().unwrap(), back.surface.as_ref().unwrap());
     for (x, y) in [(32, 32), (20, 40), (50, 25)] {
         assert!(
@@ -297,7 +301,7 @@ fn a_surface_that_came_from_no_file_comes_back() {
 fn maps_that_were_turned_come_back_as_their_files_and_a_matrix() {
     let plain = everything(64);
     assert!(
-        !text_of(&written(&plain)).contains("\"matrix\""),
+        !text_of(&write_bytes(&plain)).contains("\"matrix\""),
         "nothing of it where it is not used"
     );
     let turn = PlaneMap::rotation(30.0, plain.size.center());
@@ -311,14 +315,14 @@ fn maps_that_were_turned_come_back_as_their_files_and_a_matrix() {
         surface: Some(surface.clone()),
         ..plain.clone()
     };
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     let back = read_back(&bytes).document;
     assert_same(&document, &back);
     let again = back.surface.unwrap();
     assert!(surface.normal_planes().map(Plane::values) == again.normal_planes().map(Plane::values));
     assert!(surface.depth_plane().values() == again.depth_plane().values());
     let names = |bytes: &[u8]| entries(bytes).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
-    assert_eq!(names(&bytes), names(&written(&plain)), "the files of the maps");
+    assert_eq!(names(&bytes), names(&write_bytes(&plain)), "the files of the maps");
     assert!(text_of(&bytes).contains("\"version\": 2"));
     let flat =
         SurfaceSource { matrix: Some([1.0, 2.0, 2.0, 4.0, 0.0, 0.0]), ..SurfaceSource::default() };
@@ -344,10 +348,10 @@ fn a_drawing_whose_canvas_was_changed_again_and_again_is_saved_as_it_is() {
         };
         here = here.on_other_canvas(&change).unwrap();
         assert_eq!(here.fits(None), Ok(()), "step {step}");
-        assert_same(&here, &read_back(&written(&here)).document);
+        assert_same(&here, &read_back(&write_bytes(&here)).document);
     }
     let scaled = here.resampled(Size::new(120, 130), crate::raster::Resampling::Sharp).unwrap();
-    assert_same(&scaled, &read_back(&written(&scaled)).document);
+    assert_same(&scaled, &read_back(&write_bytes(&scaled)).document);
 }
 
 /// The recipe in a project.
@@ -362,7 +366,7 @@ fn text_of(bytes: &[u8]) -> String {
 #[test]
 fn an_empty_document_and_an_empty_layer_come_back() {
     let empty = Document::empty(Size::new(3, 2));
-    assert_same(&empty, &read_back(&written(&empty)).document);
+    assert_same(&empty, &read_back(&write_bytes(&empty)).document);
     let layer = Layer::new(
         "",
         Content::Pixels(crate::document::PixelLayer {
@@ -376,7 +380,7 @@ fn an_empty_document_and_an_empty_layer_come_back() {
         layers: vec![Arc::new(layer), Arc::new(Layer::new("f", Content::Fill(Color::WHITE)))],
         ..empty
     };
-    assert_same(&one, &read_back(&written(&one)).document);
+    assert_same(&one, &read_back(&write_bytes(&one)).document);
 }
 
 #[test]
@@ -397,7 +401,7 @@ fn a_layer_that_keeps_to_what_is_beneath_is_clipped_to_all_of_it() {
         ("data/b.png".to_owned(), dots(1, 1, [0, 255, 0])),
         ("data/c.png".to_owned(), png(4, 4, |_, _| [0, 0, 255, 255])),
     ];
-    let back = read_back(&packed(&entries));
+    let back = read_back(&pack(&entries));
     assert_eq!(back.notes, [""; 0]);
     let seen = flatten(&back.document, &Progress::default()).unwrap();
     let pixels = [(0, 0), (1, 1), (2, 2)].map(|(x, y)| seen.pixel(x, y));
@@ -425,7 +429,7 @@ fn meshes_and_liquify_come_back_to_the_last_bit_and_are_of_the_second_version() 
     });
     let warped = warped.unwrap();
     assert_eq!(warped.fits(None), Ok(()));
-    let back = read_back(&written(&warped)).document;
+    let back = read_back(&write_bytes(&warped)).document;
     assert_eq!(warped.difference(&back), None);
     assert_eq!(plain.difference(&back), Some("“fill”: its transform".into()));
     let recipe = crate::recipe::write;

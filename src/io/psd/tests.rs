@@ -22,7 +22,7 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
-fn written(document: &Document) -> Vec<u8> {
+fn write_bytes(document: &Document) -> Vec<u8> {
     write(Path::new("a.psd"), document, &Progress::default()).unwrap().unwrap().bytes
 }
 
@@ -75,7 +75,7 @@ fn smooth_paint_comes_back_in_16_bits_and_other_programs_see_8_which_is_said() {
     assert!(back.notes.is_empty(), "{:?}", back.notes);
     assert_same(&document, &back.document);
     assert_eq!(tiles16(&back.document), tiles16(&document));
-    assert_same(&document, &read_back(&written(&back.document)).document);
+    assert_same(&document, &read_back(&write_bytes(&back.document)).document);
     let foreign = read_back(&without_ours(&made.bytes)).document;
     // Three layers are rounded, each by half a level at most, and the picture of them.
     assert!(worst(&document, &foreign) <= 2, "{}", worst(&document, &foreign));
@@ -84,7 +84,7 @@ fn smooth_paint_comes_back_in_16_bits_and_other_programs_see_8_which_is_said() {
 #[test]
 fn our_own_file_comes_back_live_in_every_parameter_and_pixel() {
     let document = everything(64);
-    let back = read_back(&written(&document));
+    let back = read_back(&write_bytes(&document));
     assert_eq!(back.notes, [""; 0]);
     assert!(back.is_whole);
     assert_same(&document, &back.document);
@@ -98,7 +98,7 @@ fn names_that_other_programs_cannot_show_do_not_cost_what_is_live() {
         let mut document = everything(32);
         let named = document.with_layer(document.layers[0].id, |layer| layer.name = name.into());
         document = named.unwrap();
-        let back = read_back(&written(&document));
+        let back = read_back(&write_bytes(&document));
         assert_eq!(back.notes, [""; 0], "{name:?}");
         assert_same(&document, &back.document);
     }
@@ -106,13 +106,13 @@ fn names_that_other_programs_cannot_show_do_not_cost_what_is_live() {
 
 #[test]
 fn the_same_document_gives_the_same_bytes() {
-    assert!(written(&everything(48)) == written(&everything(48)));
+    assert!(write_bytes(&everything(48)) == write_bytes(&everything(48)));
 }
 
 #[test]
 fn other_programs_see_the_same_picture() {
     let document = everything(64);
-    let seen = read_back(&without_ours(&written(&document)));
+    let seen = read_back(&without_ours(&write_bytes(&document)));
     // Contour pixels are mixed layer by layer there, and once in ours (docs/PROJECTS.md).
     let surface = document.surface.as_deref().unwrap();
     let mixed: HashSet<_> =
@@ -155,7 +155,7 @@ fn the_surface_s_edge_cuts_layers_that_keep_to_it_once_for_other_programs_as_wel
         let recipe =
             json!({ "canvas": { "width": 40, "height": 40 }, "surface": surface, "layers": stack });
         let document = read_recipe(&recipe, &files);
-        let file = written(&document);
+        let file = write_bytes(&document);
         let seen = read_back(&without_ours(&file)).document;
         assert!(worst(&document, &seen) <= 2, "stack {i}: {} of 255", worst(&document, &seen));
         // Krita leaves out the mask of a group that passes through. Of the last stack the file's
@@ -228,7 +228,7 @@ fn layers_groups_masks_clipping_locks_and_names_are_carried() {
         layer.mask = Some(crate::document::LayerMask::new(kind));
     });
     let document = masked.unwrap();
-    let back = read_back(&without_ours(&written(&document))).document;
+    let back = read_back(&without_ours(&write_bytes(&document))).document;
     let names = |d: &Document| {
         d.walk().iter().map(|(path, layer)| format!("{path} {}", layer.name)).collect::<Vec<_>>()
     };
@@ -271,7 +271,7 @@ fn every_blend_mode_that_the_format_has_is_carried() {
         let document =
             Document { layers: vec![Arc::new(layer)], ..Document::empty(Size::new(2, 2)) };
         assert_eq!(
-            read_back(&without_ours(&written(&document))).document.layers[0].blend,
+            read_back(&without_ours(&write_bytes(&document))).document.layers[0].blend,
             blend,
             "{name}"
         );
@@ -297,7 +297,7 @@ fn what_others_blend_otherwise_is_told_where_it_is_seen() {
 #[test]
 fn layers_that_another_program_changed_are_believed() {
     let document = everything(48);
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     // A layer's opacity, in its record: behind its blend mode.
     let at = bytes.windows(8).position(|w| w == b"8BIMhLit").unwrap();
     let mut other = bytes.clone();
@@ -309,7 +309,7 @@ fn layers_that_another_program_changed_are_believed() {
 
 #[test]
 fn broken_files_get_a_sentence_or_what_is_left() {
-    let bytes = written(&everything(32));
+    let bytes = write_bytes(&everything(32));
     for end in (0..bytes.len()).step_by(499) {
         if let Ok(back) = read(Path::new("a.psd"), &bytes[..end], &Budget::default()) {
             assert!(!back.is_whole || back.document.walk().len() > 5, "cut at {end}");
@@ -332,7 +332,8 @@ fn groups_that_are_never_closed_or_never_opened_lose_no_layer() {
         Layer::new("p", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }))
     };
     let layers = vec![Arc::new(group(vec![pixels(), pixels()])), Arc::new(pixels())];
-    let bytes = without_ours(&written(&Document { layers, ..Document::empty(Size::new(4, 4)) }));
+    let bytes =
+        without_ours(&write_bytes(&Document { layers, ..Document::empty(Size::new(4, 4)) }));
     for kind in [1u32, 3] {
         let mark = [&b"8BIMlsct\0\0\0\x0c"[..], &kind.to_be_bytes()].concat();
         let at = bytes.windows(mark.len()).position(|w| w == mark).unwrap();
@@ -397,7 +398,7 @@ fn selections_kept_by_name_are_channels_for_other_programs() {
         named("目 left", coverage(-9)),
         named("none", Default::default()),
     ];
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     assert_eq!(bytes[12..14], [0, 6], "channels");
     let read = read_back(&without_ours(&bytes)).document;
     let kept: Vec<&str> = read.selections.iter().map(|kept| kept.name.as_str()).collect();
@@ -410,7 +411,7 @@ fn selections_kept_by_name_are_channels_for_other_programs() {
         );
     }
     document.selections.pop();
-    let back = read_back(&written(&document));
+    let back = read_back(&write_bytes(&document));
     assert_same(&document, &back.document);
     // More than a file has room for.
     document.selections = (0..60).map(|i| named(&i.to_string(), coverage(i % 40))).collect();

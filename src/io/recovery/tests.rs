@@ -12,7 +12,7 @@ use crate::raster::TileGrid;
 const LOG: &str = "/r/1.log";
 
 /// A small drawing after `strokes` dots were painted, each where another was.
-fn dotted(strokes: usize) -> Document {
+fn dotted_drawing(strokes: usize) -> Document {
     let base = Document::empty(Size::new(130, 70));
     let mut rgba = vec![0; 130 * 70 * 4];
     for i in 0..strokes {
@@ -63,7 +63,7 @@ fn smooth_paint_comes_back_in_16_bits() {
 }
 
 /// A line of so many readings of the pen.
-fn drawn(count: usize) -> Arc<crate::paint::Stroke> {
+fn draw_stroke(count: usize) -> Arc<crate::paint::Stroke> {
     use crate::paint::{Brush, Sample, Stroke};
     let one = |i: usize| {
         let t = i as f32 / 240.0;
@@ -83,7 +83,7 @@ fn strokes_of_an_hour_come_back_and_take_little() {
     use crate::document::{Live, StrokeList};
     let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
-    let strokes = vec![drawn(400_000), drawn(20), drawn(500_000)];
+    let strokes = vec![draw_stroke(400_000), draw_stroke(20), draw_stroke(500_000)];
     let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(Size::new(48, 40)) };
     journal.record(&document).unwrap();
@@ -104,9 +104,9 @@ fn selections_come_back_with_the_strokes_in_them_and_selecting_writes_no_stroke_
     let own = empty.stroke_selection().map(|own| own.moved(crate::math::vec2(1.5, 0.0)));
     let other = StrokeSelection::new(Arc::new(square(20)));
     let strokes = vec![
-        Arc::new(drawn(9).selecting(own)),
-        Arc::new(drawn(50_000).selecting(Some(other))),
-        drawn(7),
+        Arc::new(draw_stroke(9).selecting(own)),
+        Arc::new(draw_stroke(50_000).selecting(Some(other))),
+        draw_stroke(7),
     ];
     let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
     let document = Document { layers: vec![Arc::new(layer)], ..empty };
@@ -193,7 +193,7 @@ fn an_edit_adds_what_it_changed_and_no_more() {
 fn a_log_cut_anywhere_loses_the_last_edit_at_most() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
-    let versions: Vec<Document> = (1..5).map(dotted).collect();
+    let versions: Vec<Document> = (1..5).map(dotted_drawing).collect();
     // How long the log was after each version.
     let mut ends = Vec::new();
     for version in &versions {
@@ -219,8 +219,8 @@ fn a_log_with_any_bit_flipped_gives_a_version_that_was() {
     let mut journal = journal(&fs);
     let pictures: Vec<Vec<u8>> = (1..4)
         .map(|i| {
-            journal.record(&dotted(i)).unwrap();
-            pixels_of(&dotted(i))
+            journal.record(&dotted_drawing(i)).unwrap();
+            pixels_of(&dotted_drawing(i))
         })
         .collect();
     let log = fs.file(LOG).unwrap();
@@ -249,12 +249,12 @@ fn a_log_that_has_grown_is_written_anew() {
     journal.least_compacted = 1000;
     let mut longest = 0;
     for i in 1..60 {
-        journal.record(&dotted(i)).unwrap();
+        journal.record(&dotted_drawing(i)).unwrap();
         longest = longest.max(fs.file(LOG).unwrap().len());
     }
     let (states, back) = read(&fs.file(LOG).unwrap());
     assert!(states < 59 && longest < 60_000, "{states} versions, {longest} bytes");
-    assert!(pixels_of(&back.unwrap()) == pixels_of(&dotted(59)));
+    assert!(pixels_of(&back.unwrap()) == pixels_of(&dotted_drawing(59)));
     assert_eq!(fs.names(), [LOG, "/r/other"]);
 }
 
@@ -265,7 +265,9 @@ fn a_failing_disk_costs_at_most_what_could_not_be_written() {
     let run = |fs: &MemoryFs| {
         let mut journal = journal(fs);
         journal.least_compacted = 2000;
-        (1..12).filter(|&i| journal.record(&dotted(i)).and_then(|()| journal.sync()).is_ok()).last()
+        (1..12)
+            .filter(|&i| journal.record(&dotted_drawing(i)).and_then(|()| journal.sync()).is_ok())
+            .last()
     };
     let whole = MemoryFs::with(&[("/r/other", b"")]);
     assert_eq!(run(&whole), Some(11));
@@ -285,7 +287,7 @@ fn a_failing_disk_costs_at_most_what_could_not_be_written() {
                 if let Some(last) = last {
                     let found =
                         pixels_of(&back.unwrap_or_else(|| panic!("{what}: nothing is left")));
-                    assert!((last..12).any(|i| found == pixels_of(&dotted(i))), "{what}");
+                    assert!((last..12).any(|i| found == pixels_of(&dotted_drawing(i))), "{what}");
                 }
             }
         }
@@ -296,15 +298,15 @@ fn a_failing_disk_costs_at_most_what_could_not_be_written() {
 fn a_power_cut_takes_nothing_that_was_flushed() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
-    journal.record(&dotted(1)).unwrap();
-    journal.record(&dotted(2)).unwrap();
+    journal.record(&dotted_drawing(1)).unwrap();
+    journal.record(&dotted_drawing(2)).unwrap();
     journal.sync().unwrap();
     fs.record();
-    journal.record(&dotted(3)).unwrap();
+    journal.record(&dotted_drawing(3)).unwrap();
     for moment in fs.moments() {
         for luck in moment.lucks(1 << 10) {
             let (states, back) = read(&moment.after_power_cut(luck).file(LOG).unwrap());
-            assert!(states >= 2 && pixels_of(&back.unwrap()) == pixels_of(&dotted(states)));
+            assert!(states >= 2 && pixels_of(&back.unwrap()) == pixels_of(&dotted_drawing(states)));
         }
     }
 }
@@ -312,12 +314,13 @@ fn a_power_cut_takes_nothing_that_was_flushed() {
 #[test]
 fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
     let folder = tempfile::tempdir().unwrap();
-    let start =
-        |i, title| RecoveryLog::start(disk(), folder.path(), &dotted(i), title, None).unwrap();
+    let start = |i, title| {
+        RecoveryLog::start(disk(), folder.path(), &dotted_drawing(i), title, None).unwrap()
+    };
     let (first, second) = (start(1, "one"), start(2, "two"));
     assert!(sessions(&disk(), folder.path()).is_empty(), "both live");
     assert!(second.wait_until_written(Duration::from_secs(60)));
-    second.record(&dotted(5));
+    second.record(&dotted_drawing(5));
     drop(first);
     drop(second);
     let mut left = sessions(&disk(), folder.path());
@@ -326,7 +329,8 @@ fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
     assert!(sessions(&disk(), folder.path()).is_empty(), "another window holds them");
     let recovered = left[1].recover(&Budget::default(), &Progress::default()).unwrap().unwrap();
     assert!(
-        recovered.versions == 2 && pixels_of(&recovered.version.document) == pixels_of(&dotted(5))
+        recovered.versions == 2
+            && pixels_of(&recovered.version.document) == pixels_of(&dotted_drawing(5))
     );
     drop(left);
     for session in sessions(&disk(), folder.path()) {
@@ -338,9 +342,14 @@ fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
 #[test]
 fn a_closed_session_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let recovery =
-        RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", Some(Path::new("/a.ora")))
-            .unwrap();
+    let recovery = RecoveryLog::start(
+        disk(),
+        folder.path(),
+        &dotted_drawing(3),
+        "one",
+        Some(Path::new("/a.ora")),
+    )
+    .unwrap();
     recovery.flush();
     assert_eq!(recovery.trouble(), None);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
@@ -369,7 +378,7 @@ fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
 #[test]
 fn a_process_number_that_came_again_hides_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    drop(RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", None).unwrap());
+    drop(RecoveryLog::start(disk(), folder.path(), &dotted_drawing(3), "one", None).unwrap());
     let paths = std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path());
     let log = paths
         .into_iter()

@@ -76,7 +76,7 @@ fn empty_disk() -> MemoryFs {
     MemoryFs::with(&[("/d/other", b"")])
 }
 
-fn left_over(fs: &MemoryFs) -> Vec<String> {
+fn leftovers(fs: &MemoryFs) -> Vec<String> {
     fs.names().into_iter().filter(|name| name.contains(".rilievo-")).collect()
 }
 
@@ -125,9 +125,9 @@ fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
                         assert!(said.to_string().contains(FILE), "{what}");
                         // If only one operation fails, the unfinished file is removed.
                         assert!(
-                            sticky || left_over(&fs).is_empty(),
+                            sticky || leftovers(&fs).is_empty(),
                             "{what}: {:?}",
-                            left_over(&fs)
+                            leftovers(&fs)
                         );
                     }
                 }
@@ -360,7 +360,7 @@ fn a_save_leaves_alone_what_an_export_beside_it_is_writing() {
     let fs = disk();
     let export = PartFile::create(&fs, Path::new("/d")).unwrap();
     save_on(&fs, this()).unwrap();
-    assert_eq!(left_over(&fs), [export.path.display().to_string()]);
+    assert_eq!(leftovers(&fs), [export.path.display().to_string()]);
 }
 
 mod corrupting;

@@ -18,7 +18,7 @@ fn step(i: u32) -> u16 {
     (i * 65535 / (STEPS - 1)) as u16
 }
 
-fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
     image.write_to(&mut out, format).unwrap();
     out.into_inner()
@@ -42,7 +42,7 @@ fn pixels(document: &Document, layer: usize) -> &TileGrid {
 }
 
 /// The reds of the upper row, as a picture of 16 bits that is exported.
-fn exported(document: &Document, file: &Path) -> Vec<u16> {
+fn export_reds(document: &Document, file: &Path) -> Vec<u16> {
     let options = ExportOptions { bits: Some(16), ..ExportOptions::default() };
     let target = OutputFile::new(file, Terms::from(Overwrite::Forced)).unwrap();
     target.write_document(document, &options, &Budget::default(), &Progress::default()).unwrap();
@@ -69,9 +69,9 @@ fn a_ramp_of_4096_steps_is_the_same_in_every_format_and_in_a_project() {
     let floats = linear_ramp().into_iter().flat_map(|v| [v, 0.0, 0.0]).collect();
     let floats = ImageBuffer::<Rgb<f32>, _>::from_raw(STEPS, 3, floats).unwrap();
     let files = [
-        ("a.png", encoded(&ramp(), ImageFormat::Png)),
-        ("a.tif", encoded(&ramp(), ImageFormat::Tiff)),
-        ("f.tif", encoded(&DynamicImage::ImageRgb32F(floats), ImageFormat::Tiff)),
+        ("a.png", encode(&ramp(), ImageFormat::Png)),
+        ("a.tif", encode(&ramp(), ImageFormat::Tiff)),
+        ("f.tif", encode(&DynamicImage::ImageRgb32F(floats), ImageFormat::Tiff)),
         ("a.exr", light.unwrap()),
     ];
     for (name, bytes) in files {
@@ -79,7 +79,7 @@ fn a_ramp_of_4096_steps_is_the_same_in_every_format_and_in_a_project() {
         std::fs::write(&file, bytes).unwrap();
         let opened = open(&file, &Budget::default()).unwrap();
         assert_eq!((opened.notes, opened.is_whole), (vec![], true), "{name}");
-        assert_ramp(&exported(&opened.document, &folder.path().join("out.png")), name);
+        assert_ramp(&export_reds(&opened.document, &folder.path().join("out.png")), name);
         let project = folder.path().join("saved.ora");
         save(&opened.document, &project, Overwrite::Forced, &Progress::default()).unwrap().unwrap();
         let again = open(&project, &Budget::default()).unwrap();
@@ -96,7 +96,7 @@ fn a_picture_of_8_bits_takes_no_more_than_its_bytes() {
     let picture = image::RgbaImage::from_fn(200, 130, |x, y| Rgba(value(x, y)));
     let wanted = TileGrid::from_straight_rgba(picture.as_raw(), 200, 130, 0, 0);
     let file = folder.path().join("a.png");
-    std::fs::write(&file, encoded(&DynamicImage::ImageRgba8(picture), ImageFormat::Png)).unwrap();
+    std::fs::write(&file, encode(&DynamicImage::ImageRgba8(picture), ImageFormat::Png)).unwrap();
     let opened = open(&file, &Budget::default()).unwrap().document;
     let (found, rect) = (pixels(&opened, 0), wanted.bounds());
     assert!(found.to_straight_rgba(rect) == wanted.to_straight_rgba(rect));
@@ -105,7 +105,7 @@ fn a_picture_of_8_bits_takes_no_more_than_its_bytes() {
     let opaque =
         ImageBuffer::from_fn(200, 130, |x, y| Rgb([257 * (x as u16), 257 * (y as u16), 0]));
     let file = folder.path().join("c.png");
-    std::fs::write(&file, encoded(&DynamicImage::ImageRgb16(opaque), ImageFormat::Png)).unwrap();
+    std::fs::write(&file, encode(&DynamicImage::ImageRgb16(opaque), ImageFormat::Png)).unwrap();
     assert_eq!(tiles16(&open(&file, &Budget::default()).unwrap().document), [0]);
 }
 
@@ -124,8 +124,8 @@ fn noise() -> Vec<(&'static str, Vec<u8>)> {
     };
     let names = [["R", "G", "B"], ["b.R", "b.G", "b.B"]];
     vec![
-        ("a.png", encoded(&noise, ImageFormat::Png)),
-        ("a.tif", encoded(&noise, ImageFormat::Tiff)),
+        ("a.png", encode(&noise, ImageFormat::Png)),
+        ("a.tif", encode(&noise, ImageFormat::Tiff)),
         ("a.exr", light(names, 1)),
         ("two.exr", light(names, 2)),
     ]

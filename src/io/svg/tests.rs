@@ -7,7 +7,7 @@ const DISC: &str = r##"<?xml version="1.0"?>
   <circle cx="20" cy="10" r="8" fill="#204060"/>
 </svg>"##;
 
-fn decoded(text: &str) -> Result<Picture> {
+fn decode_text(text: &str) -> Result<Picture> {
     decode(Path::new("a.svg"), text.as_bytes(), &Budget::default())
 }
 
@@ -37,7 +37,7 @@ fn a_drawing_is_paint_at_its_own_size() {
 
 #[test]
 fn an_image_layer_gets_more_pixels_than_a_small_drawing_says() {
-    let picture = decoded(DISC).unwrap();
+    let picture = decode_text(DISC).unwrap();
     assert_eq!(picture.size, Size::new(2048, 1024));
     assert_eq!(picture.encoded.unwrap().bytes(), DISC.as_bytes());
 }
@@ -46,7 +46,7 @@ fn an_image_layer_gets_more_pixels_than_a_small_drawing_says() {
 fn text_becomes_outlines_that_show_the_same_without_fonts() {
     let text = r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="60">
         <text x="10" y="40" font-size="32">Rilievo</text></svg>"#;
-    let picture = decoded(text).unwrap();
+    let picture = decode_text(text).unwrap();
     let Texels::Srgb8(texels) = &picture.texels else { panic!("no bytes") };
     let black = texels.iter().filter(|&&texel| texel == [0, 0, 0, 255]).count();
     assert!(black > 10_000, "only {black} texels are written on");
@@ -76,7 +76,7 @@ fn nothing_outside_of_the_file_is_read() {
 
 #[test]
 fn what_is_wrong_is_said() {
-    let said = |text: &str| decoded(text).unwrap_err().to_string();
+    let said = |text: &str| decode_text(text).unwrap_err().to_string();
     let none = said("<svg xmlns='http://www.w3.org/2000/svg' width='0' height='4'/>");
     assert!(none.contains("has no size"), "{none}");
     let cut = said(&DISC[..DISC.len() - 20]);

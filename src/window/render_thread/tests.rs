@@ -7,7 +7,7 @@ use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture, TileGrid};
 
 /// All that is painted until it is settled.
-fn settled(render_thread: &RenderThread, grid: &mut TileGrid) -> usize {
+fn wait_until_settled(render_thread: &RenderThread, grid: &mut TileGrid) -> usize {
     let mut count = 0;
     loop {
         let painted = render_thread.painted.recv_timeout(Duration::from_secs(60)).unwrap();
@@ -55,7 +55,7 @@ fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
         visible,
         is_dragged: false,
     });
-    assert_eq!(settled(&render_thread, &mut grid), 5 * 4);
+    assert_eq!(wait_until_settled(&render_thread, &mut grid), 5 * 4);
     let whole = flatten(&document, &Progress::default()).unwrap();
     assert!(grid.to_straight_rgba(visible) == whole.to_straight_rgba(visible));
     let dot = TileGrid::from_straight_rgba(&[255, 0, 0, 255], 1, 1, 100, 100);
@@ -68,10 +68,14 @@ fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
         visible,
         is_dragged: false,
     });
-    assert_eq!(settled(&render_thread, &mut grid), 1);
+    assert_eq!(wait_until_settled(&render_thread, &mut grid), 1);
     assert_eq!(grid.pixel(100, 100), [255, 0, 0, 255]);
     render_thread.want(RenderRequest { picture: 1, document: next, visible, is_dragged: false });
-    assert_eq!(settled(&render_thread, &mut grid), 0, "what is the same is settled at once");
+    assert_eq!(
+        wait_until_settled(&render_thread, &mut grid),
+        0,
+        "what is the same is settled at once"
+    );
 }
 
 /// A picture much finer than the canvas, moved by some px.

@@ -102,7 +102,7 @@ fn gradient() -> Layer {
     )
 }
 
-fn lit() -> Layer {
+fn shading_layer() -> Layer {
     let position = AT.extend(60.0) + crate::math::vec3(20.0, -30.0, 0.0);
     let light = Light { kind: LightKind::Point { position }, ..Light::default() };
     let shading = Shading { lights: vec![light], ..Shading::new(Model::Phong) };
@@ -172,7 +172,7 @@ fn a_part_moved_by_whole_pixels_gives_the_picture_moved_byte_for_byte() {
         paint(),
         image(),
         gradient(),
-        lit(),
+        shading_layer(),
         masked(gradient()),
         masked(Layer::new("fill", Content::Fill(Color { r: 200, g: 30, b: 40, a: 255 }))),
     ];
@@ -230,9 +230,14 @@ fn what_is_on_the_canvas_stays_there_and_what_is_turned_with_a_part_bends_anew()
 #[test]
 fn painting_where_a_part_was_moved_to_stays_carried_and_comes_back() {
     let mut wrong = Vec::new();
-    for layer in
-        [paint(), strokes("strokes", &path(), NORMAL), image(), gradient(), lit(), masked(paint())]
-    {
+    for layer in [
+        paint(),
+        strokes("strokes", &path(), NORMAL),
+        image(),
+        gradient(),
+        shading_layer(),
+        masked(paint()),
+    ] {
         let name = layer.name.clone();
         let before = document(vec![on_body(layer)]);
         let id = before.layers[0].id;

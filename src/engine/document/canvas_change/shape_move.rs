@@ -207,13 +207,13 @@ fn masked(layer: &Arc<Layer>, map: &PlaneMap) -> Arc<Layer> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{bent, dome, paint, picture, ramp, under};
+    use super::super::tests::{dome, operator, paint, picture, ramp, under};
     use super::*;
     use crate::math::{Size, Vec3};
 
     fn on_dome() -> Document {
         let mut document = Document { surface: Some(dome()), ..under(paint()) };
-        document.layers.push(Arc::new(ramp(bent())));
+        document.layers.push(Arc::new(ramp(operator())));
         document
     }
 

@@ -49,7 +49,7 @@ pub(super) fn paint() -> Layer {
     Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
 }
 
-pub(super) fn bent() -> Operator {
+pub(super) fn operator() -> Operator {
     Operator::Normal { alpha: 0.15, beta: 0.5, detail: 0.0 }
 }
 
@@ -149,7 +149,7 @@ fn exact() -> Vec<(&'static str, CanvasChange)> {
 }
 
 /// The picture after a change, from the one before; pixels that come from beyond it are left out.
-fn expected(before: &[u8], change: &CanvasChange) -> Vec<Option<[u8; 4]>> {
+fn expect_picture(before: &[u8], change: &CanvasChange) -> Vec<Option<[u8; 4]>> {
     let by = change.pixel_move().unwrap();
     let (w, h) = (change.to.width as i32, change.to.height as i32);
     let pixel = |(x, y): (i32, i32)| {
@@ -177,7 +177,11 @@ fn paint_is_moved_turned_and_mirrored_byte_for_byte() {
     for (name, change) in exact() {
         let next = start.on_other_canvas(&change).unwrap();
         assert_eq!(next.size, change.size());
-        assert_eq!(farthest(&picture(&next), &expected(&picture(&start), &change)), 0, "{name}");
+        assert_eq!(
+            farthest(&picture(&next), &expect_picture(&picture(&start), &change)),
+            0,
+            "{name}"
+        );
         assert!(next.layers[1].transform.is_none(), "{name}");
     }
 }
@@ -209,14 +213,15 @@ fn what_comes_round_has_the_same_bytes_beyond_the_canvas_too() {
 #[test]
 fn live_layers_go_along_as_their_picture_does() {
     let flat = [image(Operator::None), ramp(Operator::None), strokes(Operator::None)].map(under);
-    let bent = [image(bent()), ramp(bent()), strokes(bent()), shading(), paint()].map(on_dome);
+    let bent =
+        [image(operator()), ramp(operator()), strokes(operator()), shading(), paint()].map(on_dome);
     let mirror = Operator::Reflection { alpha: 0.2, detail: 0.0 };
     let more = [on_dome(image(mirror))];
     for start in flat.into_iter().chain(bent).chain(more) {
         let before = picture(&start);
         for (name, change) in exact() {
             let next = start.on_other_canvas(&change).unwrap();
-            let off = farthest(&picture(&next), &expected(&before, &change));
+            let off = farthest(&picture(&next), &expect_picture(&before, &change));
             let kind = &start.layers[1].name;
             assert!(
                 off <= 2,
@@ -228,7 +233,7 @@ fn live_layers_go_along_as_their_picture_does() {
         let (_, turn) = exact().remove(0);
         let stays =
             Document { layers: start.layers.clone(), ..start.on_other_canvas(&turn).unwrap() };
-        assert!(farthest(&picture(&stays), &expected(&before, &turn)) > 20);
+        assert!(farthest(&picture(&stays), &expect_picture(&before, &turn)) > 20);
     }
 }
 
@@ -249,7 +254,7 @@ fn a_ramp_on_a_piece_of_the_unwrapped_surface_goes_along_as_its_picture_does() {
     let whole = exact().into_iter().filter(|(name, _)| !["crop", "aside"].contains(name));
     for (name, change) in whole {
         let next = start.on_other_canvas(&change).unwrap();
-        let off = farthest(&picture(&next), &expected(&before, &change));
+        let off = farthest(&picture(&next), &expect_picture(&before, &change));
         assert!(off <= 2, "{name}: {off} off");
     }
     let other = picture(&on_piece(vec2(-5.0, 9.0)));
@@ -315,7 +320,7 @@ fn transforms_masks_and_groups_keep_their_places() {
         let before = picture(&start);
         for (name, change) in exact() {
             let next = start.on_other_canvas(&change).unwrap();
-            let off = farthest(&picture(&next), &expected(&before, &change));
+            let off = farthest(&picture(&next), &expect_picture(&before, &change));
             assert!(off <= 2, "{i} {name}: {off} off");
         }
     }
@@ -323,7 +328,7 @@ fn transforms_masks_and_groups_keep_their_places() {
 
 #[test]
 fn selections_go_along_once_for_all_that_share_them() {
-    let start = on_dome(strokes(bent()));
+    let start = on_dome(strokes(operator()));
     let region = crate::surface::region::SurfaceRegion::new(Default::default(), vec2(60.5, 40.5));
     let found = Arc::new(Selection::of_region(region, &start.scene()));
     let start = Document { active_selection: Some(found.clone()), ..start }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 const SIZE: Size = Size::new(200, 150);
 const GRAY: Color = Color { r: 128, g: 128, b: 128, a: 255 };
 
-fn painted(rect: Rect) -> TileGrid {
+fn paint_rect(rect: Rect) -> TileGrid {
     let rgba = [200, 40, 40, 255].repeat(rect.width() * rect.height());
     TileGrid::from_straight_rgba(&rgba, rect.width(), rect.height(), rect.x0, rect.y0)
 }
@@ -21,18 +21,18 @@ fn of(kind: EffectKind, change: impl FnOnce(&mut EffectSettings)) -> LayerEffect
 }
 
 fn with(effects: Vec<LayerEffect>, change: impl FnOnce(&mut Layer)) -> Document {
-    let mut layer = Layer::new("square", painted(Rect::new(60, 60, 100, 90)));
+    let mut layer = Layer::new("square", paint_rect(Rect::new(60, 60, 100, 90)));
     layer.effects = Arc::new(effects);
     change(&mut layer);
     Document::empty(SIZE).with_top(Layer::new("ground", GRAY)).with_top(layer)
 }
 
-fn shown(document: &Document) -> TileGrid {
+fn render(document: &Document) -> TileGrid {
     flatten(document, &Progress::default()).unwrap()
 }
 
 fn pixel(document: &Document, x: i32, y: i32) -> [u8; 4] {
-    shown(document).pixel(x, y)
+    render(document).pixel(x, y)
 }
 
 fn shadow() -> LayerEffect {
@@ -108,12 +108,12 @@ fn a_line_is_around_the_layer_on_transparency_too() {
 fn a_group_has_effects_of_all_that_is_in_it() {
     for pass_through in [false, true] {
         let layers = [Rect::new(60, 60, 80, 90), Rect::new(80, 60, 100, 90)]
-            .map(|rect| Arc::new(Layer::new("half", painted(rect))));
+            .map(|rect| Arc::new(Layer::new("half", paint_rect(rect))));
         let mut group = Layer::new("group", Group { layers: layers.to_vec(), pass_through });
         group.effects = Arc::new(vec![shadow()]);
         let document = Document::empty(SIZE).with_top(Layer::new("ground", GRAY)).with_top(group);
-        assert_eq!(shown(&document).pixel(80, 100), [64, 64, 64, 255], "{pass_through}");
-        assert_eq!(shown(&document).pixel(80, 70), [200, 40, 40, 255], "{pass_through}");
+        assert_eq!(render(&document).pixel(80, 100), [64, 64, 64, 255], "{pass_through}");
+        assert_eq!(render(&document).pixel(80, 70), [200, 40, 40, 255], "{pass_through}");
     }
 }
 
@@ -125,9 +125,9 @@ fn what_changes_with_a_layer_is_drawn_again_as_far_as_its_effects_reach() {
         let before = with(vec![effect], |_| {});
         let id = before.layers[1].id;
         let after = before
-            .with_layer(id, |layer| layer.content = painted(Rect::new(60, 60, 90, 90)).into())
+            .with_layer(id, |layer| layer.content = paint_rect(Rect::new(60, 60, 90, 90)).into())
             .unwrap();
-        let (was, is) = (shown(&before), shown(&after));
+        let (was, is) = (render(&before), render(&after));
         let drawn = diff(&before, &after);
         for at in TileAt::covering(SIZE.rect()).filter(|at| !drawn.contains(at)) {
             let tiles = [&was, &is].map(|grid| grid.tile(at).map(|tile| tile.bytes().to_vec()));
@@ -135,7 +135,7 @@ fn what_changes_with_a_layer_is_drawn_again_as_far_as_its_effects_reach() {
         }
         // What is kept of the layer before gives what a new one does.
         let fresh = after.with_layer(id, |layer| layer.cache = Default::default()).unwrap();
-        let fresh = shown(&fresh);
+        let fresh = render(&fresh);
         for at in TileAt::covering(SIZE.rect()) {
             let tiles = [&is, &fresh].map(|grid| grid.tile(at).map(|tile| tile.bytes().to_vec()));
             assert!(tiles[0] == tiles[1], "{kind:?} {at:?}");
@@ -147,6 +147,6 @@ fn what_changes_with_a_layer_is_drawn_again_as_far_as_its_effects_reach() {
 fn effects_keep_their_look_on_a_larger_canvas() {
     let document = with(vec![shadow()], |_| {});
     let large = document.scaled(2.0).unwrap();
-    assert_eq!(shown(&large).pixel(160, 200), [64, 64, 64, 255]);
-    assert_eq!(shown(&large).pixel(160, 246), [128, 128, 128, 255]);
+    assert_eq!(render(&large).pixel(160, 200), [64, 64, 64, 255]);
+    assert_eq!(render(&large).pixel(160, 246), [128, 128, 128, 255]);
 }

@@ -17,7 +17,7 @@ fn fill(text: &str) -> Layer {
 }
 
 /// A paint layer that is one color in the columns left of `until`.
-fn left_of(until: usize, text: &str) -> Layer {
+fn layer_left_of(until: usize, text: &str) -> Layer {
     let Color { r, g, b, a } = color(text);
     let (w, h) = (SIZE.width as usize, SIZE.height as usize);
     let rgba: Vec<u8> =
@@ -85,7 +85,8 @@ fn a_tile_that_one_opaque_layer_fills_is_its_very_own_and_what_composing_gives()
     assert!(alone.sole_tile(second).is_none(), "the canvas ends within the tile");
     let faint = with(opaque.clone(), |layer| layer.opacity = 0.5);
     let clipped = with(fill("#ffffff"), |layer| layer.clip_below = true);
-    for layers in [vec![faint], vec![opaque.clone(), left_of(30, "#ff0000")], vec![opaque, clipped]]
+    for layers in
+        [vec![faint], vec![opaque.clone(), layer_left_of(30, "#ff0000")], vec![opaque, clipped]]
     {
         assert!(prepared(layers).sole_tile(first).is_none());
     }
@@ -178,9 +179,9 @@ fn a_clipped_layer_stays_within_its_base() {
     let clipped = |l: Layer| with(l, |l| l.clip_below = true);
     let p = picture(vec![
         fill("#000000"),
-        left_of(50, "#0000ff80"),
+        layer_left_of(50, "#0000ff80"),
         clipped(fill("#ff0000")),
-        clipped(left_of(20, "#00ff00")),
+        clipped(layer_left_of(20, "#00ff00")),
     ]);
     // The base's alpha is 128/255; its color is replaced entirely.
     assert_eq!(p.pixel(10, 0), [0, 128, 0, 255]);
@@ -190,7 +191,8 @@ fn a_clipped_layer_stays_within_its_base() {
 
 #[test]
 fn a_base_lends_its_blend_and_opacity_to_what_is_clipped_to_it() {
-    let base = with(left_of(50, "#ffffff"), |l| (l.blend, l.opacity) = (BlendMode::Multiply, 0.5));
+    let base =
+        with(layer_left_of(50, "#ffffff"), |l| (l.blend, l.opacity) = (BlendMode::Multiply, 0.5));
     let p = picture(vec![fill("#808080"), base, with(fill("#000000"), |l| l.clip_below = true)]);
     // Multiplied by black at half opacity: half of 128.
     assert_eq!(p.pixel(0, 0), [64, 64, 64, 255]);
@@ -235,7 +237,7 @@ fn a_pass_through_group_fades_between_before_and_after() {
     let faded = |pass_through| {
         let inside = vec![
             with(fill("#000000"), |l| l.blend = BlendMode::Multiply),
-            group(vec![left_of(50, "#00ff00")], true),
+            group(vec![layer_left_of(50, "#00ff00")], true),
         ];
         with(group(inside, pass_through), |l| (l.opacity, l.mask) = (0.5, left_mask()))
     };
@@ -246,9 +248,9 @@ fn a_pass_through_group_fades_between_before_and_after() {
 
 #[test]
 fn a_group_can_be_clipped_and_clipped_to() {
-    let inside = || vec![left_of(50, "#ff0000"), left_of(20, "#00ff00")];
+    let inside = || vec![layer_left_of(50, "#ff0000"), layer_left_of(20, "#00ff00")];
     let p = picture(vec![
-        left_of(30, "#ffffff"),
+        layer_left_of(30, "#ffffff"),
         with(group(inside(), false), |l| l.clip_below = true),
     ]);
     assert_eq!([10, 25, 40].map(|x| p.pixel(x, 0)), [[0, 255, 0, 255], [255, 0, 0, 255], [0; 4]]);
@@ -266,8 +268,9 @@ fn a_group_can_be_clipped_and_clipped_to() {
 
 #[test]
 fn one_layer_can_be_flattened_alone() {
-    let inner =
-        with(left_of(50, "#ff0000"), |l| (l.visible, l.clip_below, l.opacity) = (false, true, 0.5));
+    let inner = with(layer_left_of(50, "#ff0000"), |l| {
+        (l.visible, l.clip_below, l.opacity) = (false, true, 0.5)
+    });
     let id = inner.id;
     let doc = document(vec![
         fill("#ffffff"),
@@ -282,7 +285,7 @@ fn one_layer_can_be_flattened_alone() {
 fn a_clipped_layer_left_out_does_not_come_between_the_base_and_what_is_clipped_to_it() {
     let clipped = |layer| with(layer, |l| l.clip_below = true);
     let hidden = with(clipped(fill("#00ff00")), |l| l.visible = false);
-    let document = document(vec![left_of(30, "#ff0000"), hidden, clipped(fill("#0000ff"))]);
+    let document = document(vec![layer_left_of(30, "#ff0000"), hidden, clipped(fill("#0000ff"))]);
     let selected = [document.layers[0].id, document.layers[2].id];
     let alone = flatten_layers(&document, &selected, &Progress::default()).unwrap();
     assert_eq!((alone.pixel(10, 10), alone.pixel(40, 10)), ([0, 0, 255, 255], [0; 4]));
@@ -291,7 +294,7 @@ fn a_clipped_layer_left_out_does_not_come_between_the_base_and_what_is_clipped_t
 #[test]
 fn what_an_opaque_layer_hides_is_never_asked_for() {
     let prepared = PreparedDocument::new(
-        &document(vec![fill("#00ff00"), fill("#ff0000"), left_of(10, "#0000ff")]),
+        &document(vec![fill("#00ff00"), fill("#ff0000"), layer_left_of(10, "#0000ff")]),
         &Progress::default(),
     );
     let prepared = prepared.unwrap();
@@ -325,7 +328,7 @@ fn progress_counts_the_tiles() {
 #[test]
 fn the_bytes_do_not_depend_on_the_number_of_threads() {
     let layers = BlendMode::ALL.iter().enumerate().map(|(i, (mode, _))| {
-        with(left_of(5 * i + 10, "#80c04080"), |l| {
+        with(layer_left_of(5 * i + 10, "#80c04080"), |l| {
             (l.blend, l.opacity, l.blend_linear) = (*mode, 0.7, i % 5 == 0)
         })
     });
@@ -341,9 +344,9 @@ fn the_bytes_do_not_depend_on_the_number_of_threads() {
 fn the_brightest_pixel_beneath_an_adjustment_is_found_in_its_own_scope() {
     use crate::shading::RadianceScaling;
     let adjustment = || Layer::new("rs", Content::RadianceScaling(RadianceScaling::default()));
-    let inner = group(vec![left_of(30, "#808080"), adjustment(), fill("#ffffff")], false);
+    let inner = group(vec![layer_left_of(30, "#808080"), adjustment(), fill("#ffffff")], false);
     let doc = document(vec![
-        left_of(50, "#ff0000"),
+        layer_left_of(50, "#ff0000"),
         inner,
         with(adjustment(), |l| l.visible = false),
         adjustment(),
@@ -357,7 +360,7 @@ fn the_brightest_pixel_beneath_an_adjustment_is_found_in_its_own_scope() {
 
 #[test]
 fn the_brightest_pixel_is_sought_on_the_surface_only() {
-    let lit = with(left_of(100, "#808080"), |l| l.clip_to_surface = false);
+    let lit = with(layer_left_of(100, "#808080"), |l| l.clip_to_surface = false);
     let beyond = with(fill("#ffffff"), |l| {
         l.clip_to_surface = false;
         l.mask = left_mask();

@@ -27,7 +27,7 @@ fn stroke(brush: &Brush, color: Color, path: &[Vec2]) -> Stroke {
 }
 
 /// A paint layer's pixels after some more strokes, one after the other.
-fn painted(mut tiles: TileGrid, strokes: impl IntoIterator<Item = Stroke>) -> TileGrid {
+fn paint_strokes(mut tiles: TileGrid, strokes: impl IntoIterator<Item = Stroke>) -> TileGrid {
     let scene = Scene { size: SIZE, surface: None };
     for stroke in strokes {
         let mut active = ActiveStrokes::new(
@@ -71,7 +71,7 @@ fn levels(values: impl Iterator<Item = u32>) -> usize {
 fn four_hundred_dabs_of_less_than_half_a_percent_reach_what_they_should() {
     let brush = Brush { size: 30.0, hardness: 1.0, flow: 0.004, ..Brush::default() };
     let dab = || stroke(&brush, Color::WHITE, &[vec2(60.5, 60.5)]);
-    let tiles = painted(TileGrid::default(), (0..400).map(|_| dab()));
+    let tiles = paint_strokes(TileGrid::default(), (0..400).map(|_| dab()));
     let (found, wanted) = (f32::from(tiles.pixel16(60, 60)[3]) / 65535.0, 1.0 - 0.996f32.powi(400));
     assert!((found - wanted).abs() < 0.5 / 255.0, "{found} for {wanted}");
     assert_eq!(tiles.pixel(60, 60)[3], (wanted * 255.0).round() as u8, "the screen sees it, too");
@@ -80,11 +80,12 @@ fn four_hundred_dabs_of_less_than_half_a_percent_reach_what_they_should() {
 #[test]
 fn an_eraser_of_less_than_half_a_percent_erases() {
     let full = Brush { size: 60.0, hardness: 1.0, ..Brush::default() };
-    let opaque = painted(TileGrid::default(), [stroke(&full, Color::WHITE, &[vec2(60.5, 60.5)])]);
+    let opaque =
+        paint_strokes(TileGrid::default(), [stroke(&full, Color::WHITE, &[vec2(60.5, 60.5)])]);
     assert_eq!((opaque.pixel(60, 60), tiles16(&opaque)), ([255; 4], 0));
     let brush = Brush { size: 30.0, hardness: 1.0, flow: 0.004, erases: true, ..Brush::default() };
     let rubbed =
-        painted(opaque, (0..400).map(|_| stroke(&brush, Color::WHITE, &[vec2(60.5, 60.5)])));
+        paint_strokes(opaque, (0..400).map(|_| stroke(&brush, Color::WHITE, &[vec2(60.5, 60.5)])));
     let (found, wanted) = (f32::from(rubbed.pixel16(60, 60)[3]) / 65535.0, 0.996f32.powi(400));
     assert!((found - wanted).abs() < 0.5 / 255.0, "{found} for {wanted}");
     assert_eq!(rubbed.pixel(40, 60), [255; 4]);
@@ -93,9 +94,11 @@ fn an_eraser_of_less_than_half_a_percent_erases() {
 #[test]
 fn paint_too_faint_for_a_byte_is_kept_until_more_of_it_is_seen() {
     let brush = Brush { size: 30.0, hardness: 1.0, flow: 0.001, ..Brush::default() };
-    let once = painted(TileGrid::default(), [stroke(&brush, Color::WHITE, &[vec2(30.5, 30.5)])]);
+    let once =
+        paint_strokes(TileGrid::default(), [stroke(&brush, Color::WHITE, &[vec2(30.5, 30.5)])]);
     assert_eq!((once.pixel(30, 30), once.pixel16(30, 30)), ([0; 4], [66; 4]));
-    let often = painted(once, (0..99).map(|_| stroke(&brush, Color::WHITE, &[vec2(30.5, 30.5)])));
+    let often =
+        paint_strokes(once, (0..99).map(|_| stroke(&brush, Color::WHITE, &[vec2(30.5, 30.5)])));
     assert_eq!(often.pixel(30, 30)[3], (255.0 * (1.0 - 0.999f32.powi(100))).round() as u8);
 }
 
@@ -111,7 +114,7 @@ fn faint_paint_burns_colors_as_floats_do() {
             stroke(&brush, color, &[at(0), at(1)])
         })
         .collect();
-    let tiles = painted(TileGrid::default(), strokes.clone());
+    let tiles = paint_strokes(TileGrid::default(), strokes.clone());
     let ground = || Layer::new("ground", Content::Fill(Color { r: 250, g: 240, b: 225, a: 255 }));
     let burning =
         |layer: Layer| document(vec![ground(), Layer { blend: BlendMode::ColorBurn, ..layer }]);
@@ -136,7 +139,7 @@ fn an_airbrush_over_sixty_strokes_has_no_bands() {
     let brush = Brush { size: 150.0, hardness: 0.0, flow: 0.004, spacing: 0.1, ..Brush::default() };
     let lines = (0..60)
         .map(|i| stroke(&brush, Color::BLACK, &[vec2(20.0 + i as f32, -40.0), vec2(20.0, 200.0)]));
-    let tiles = painted(TileGrid::default(), lines);
+    let tiles = paint_strokes(TileGrid::default(), lines);
     let document = document(vec![Layer::new("paper", Content::Fill(Color::WHITE)), paint(tiles)]);
     let floats = flatten_to_floats(&document, Highlights::Clipped, &Progress::default()).unwrap();
     let shown = flatten(&document, &Progress::default()).unwrap();
@@ -163,26 +166,29 @@ fn inked_lines_stay_in_bytes_whatever_they_cross() {
             let pressed = |j: u32| Sample { pressure: hash::unit(j, k, 3), ..Sample::at(at(j)) };
             Stroke::new(brush.clone(), Operator::None, color, (0..5).map(pressed).collect())
         });
-        tiles = painted(tiles, lines);
+        tiles = paint_strokes(tiles, lines);
     }
     assert_eq!(tiles16(&tiles), 0, "of {}", tiles.iter().count());
     assert_eq!(tiles.bytes() - 9 * 8, 9 * 16384);
     let soft = Brush { size: 60.0, hardness: 0.0, flow: 0.02, ..Brush::default() };
-    let aired = painted(tiles.clone(), [stroke(&soft, Color::BLACK, &[vec2(30.0, 30.0)])]);
+    let aired = paint_strokes(tiles.clone(), [stroke(&soft, Color::BLACK, &[vec2(30.0, 30.0)])]);
     assert_eq!(tiles16(&aired), 1, "the airbrush met one tile");
     assert_eq!(aired.bytes(), tiles.bytes() + 2 * 16384);
-    let inked =
-        painted(aired.clone(), [stroke(&Brush::default(), Color::WHITE, &[vec2(30.0, 10.0)])]);
+    let inked = paint_strokes(
+        aired.clone(),
+        [stroke(&Brush::default(), Color::WHITE, &[vec2(30.0, 10.0)])],
+    );
     assert_eq!(tiles16(&inked), 1, "it stays so while it is painted on");
     let gone = Brush { size: 200.0, hardness: 1.0, ..Brush::default() };
-    let covered = painted(aired, [stroke(&gone, Color::WHITE, &[vec2(30.0, 30.0)])]);
+    let covered = paint_strokes(aired, [stroke(&gone, Color::WHITE, &[vec2(30.0, 30.0)])]);
     assert_eq!(tiles16(&covered), 0, "what bytes hold is of bytes again");
 }
 
 #[test]
 fn retouched_paint_is_kept_as_it_was_and_as_it_becomes() {
     let ink = Brush { size: 50.0, hardness: 1.0, ..Brush::default() };
-    let tiles = painted(TileGrid::default(), [stroke(&ink, Color::WHITE, &[vec2(60.0, 60.0)])]);
+    let tiles =
+        paint_strokes(TileGrid::default(), [stroke(&ink, Color::WHITE, &[vec2(60.0, 60.0)])]);
     let scene = Scene { size: SIZE, surface: None };
     let retouched = |tiles: &TileGrid, mode: BrushMode, offset: Vec2| {
         let brush = Brush { size: 70.0, hardness: 0.2, mode, ..Brush::default() };
@@ -205,7 +211,8 @@ fn retouched_paint_is_kept_as_it_was_and_as_it_becomes() {
     let blurred = retouched(&tiles, BrushMode::Blur { width: 0.4 }, Vec2::ZERO);
     assert!(tiles16(&blurred) > 0, "a blurred edge is smooth");
     let faint = Brush { size: 50.0, hardness: 1.0, flow: 0.001, ..Brush::default() };
-    let faint = painted(TileGrid::default(), [stroke(&faint, Color::WHITE, &[vec2(40.0, 60.0)])]);
+    let faint =
+        paint_strokes(TileGrid::default(), [stroke(&faint, Color::WHITE, &[vec2(40.0, 60.0)])]);
     let clone = BrushMode::Clone { aligned: true, picture: false };
     assert_eq!(retouched(&faint, clone, vec2(-50.0, 0.0)).pixel16(90, 60), [66; 4]);
 }
@@ -213,7 +220,7 @@ fn retouched_paint_is_kept_as_it_was_and_as_it_becomes() {
 #[test]
 fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     let brush = Brush { size: 150.0, hardness: 0.0, flow: 0.03, ..Brush::default() };
-    let soft = painted(
+    let soft = paint_strokes(
         TileGrid::default(),
         [stroke(&brush, Color::WHITE, &[vec2(70.0, 70.0), vec2(100.0, 60.0)])],
     );
@@ -263,7 +270,7 @@ fn what_is_moved_scaled_cut_and_merged_stays_as_fine() {
     let noise: Vec<[u16; 4]> =
         (0..64 * 64).map(|i| [(hash::unit(i, 0, 0) * 65535.0) as u16; 4]).collect();
     let noise = TileGrid::from_straight16(&noise, 64, 64, 0, 0);
-    let ink = painted(
+    let ink = paint_strokes(
         TileGrid::default(),
         [stroke(&Brush::default(), Color::WHITE, &[vec2(20.0, 20.0)])],
     );

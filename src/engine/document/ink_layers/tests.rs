@@ -23,7 +23,7 @@ fn drawing() -> TileGrid {
 }
 
 /// The drawing, a gray that multiplies it, and its lines on top of that.
-fn lit() -> Document {
+fn lit_drawing() -> Document {
     let base = Layer {
         blend: crate::raster::BlendMode::Multiply,
         clip_below: true,
@@ -41,7 +41,7 @@ fn pixel(document: &Document, x: i32, y: i32) -> [u8; 4] {
 
 #[test]
 fn ink_is_as_it_was_drawn_and_the_flats_beneath_are_lit() {
-    let document = lit();
+    let document = lit_drawing();
     assert!(document.is_shaped());
     for (x, y) in [(7, 30), (39, 30), (20, 7), (72, 50)] {
         assert_eq!(pixel(&document, x, y), INK, "{x} {y}");
@@ -55,7 +55,7 @@ fn ink_is_as_it_was_drawn_and_the_flats_beneath_are_lit() {
 
 #[test]
 fn lines_follow_a_drawing_that_is_painted_on_renamed_or_moved() {
-    let document = lit();
+    let document = lit_drawing();
     let id = document.layers[0].id;
     let mut painted = drawing();
     painted.set(crate::raster::TileAt::new(1, 0), None);
@@ -83,7 +83,7 @@ fn lines_follow_a_drawing_that_is_painted_on_renamed_or_moved() {
 
 #[test]
 fn without_a_line_layer_the_ink_is_on_the_drawing_again() {
-    let document = lit();
+    let document = lit_drawing();
     let alone = document.without_layer(document.layers[2].id).unwrap();
     assert!(!alone.is_shaped());
     let alone = alone.reshaped();

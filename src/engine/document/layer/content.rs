@@ -194,8 +194,8 @@ trait LayerKind {
     }
 
     /// Where it can be seen; `scene`: what it sees, if that is the same before and after an edit.
-    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
-        Touched::Canvas
+    fn visible_area(&self, _scene: Option<&Scene>) -> VisibleArea {
+        VisibleArea::Canvas
     }
 
     /// Where it may look different from `old`, of the same kind; `scene`: what both see.
@@ -205,7 +205,7 @@ trait LayerKind {
 }
 
 /// Where a layer can be seen.
-pub(in crate::document) enum Touched {
+pub(in crate::document) enum VisibleArea {
     Nowhere,
     Canvas,
     Rects(Vec<Rect>),
@@ -386,8 +386,8 @@ impl Content {
         self.kind().draft()
     }
 
-    pub(in crate::document) fn painted_tiles(&self, scene: Option<&Scene>) -> Touched {
-        self.kind().painted_tiles(scene)
+    pub(in crate::document) fn visible_area(&self, scene: Option<&Scene>) -> VisibleArea {
+        self.kind().visible_area(scene)
     }
 
     /// Whether it is the very same value in memory, or the same number.

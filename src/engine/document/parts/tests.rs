@@ -35,19 +35,19 @@ fn document(layers: Vec<Layer>) -> Document {
     Document { layers: layers.into_iter().map(Arc::new).collect(), ..Document::empty(SIZE) }
 }
 
-fn inflated(id: &str, layer: &str) -> Arc<Part> {
+fn inflated_part(id: &str, layer: &str) -> Arc<Part> {
     Arc::new(Part::of_layer(id, layer, Inflation::default()))
 }
 
 #[test]
 fn a_layer_gets_a_shape_and_loses_it_with_its_parts() {
     let flat = document(vec![discs("Ink", &[(vec2(80.0, 60.0), 40.0, [200, 90, 40])])]);
-    let shaped = flat.with_parts(vec![inflated("a", "Ink")]);
+    let shaped = flat.with_parts(vec![inflated_part("a", "Ink")]);
     let surface = shaped.surface.as_ref().unwrap();
     assert!(surface.normal(80, 60).z > 0.999 && surface.normal(45, 60).x < -0.7);
     assert!((surface.depth_range_px() - 40.0).abs() < 3.0, "{} px deep", surface.depth_range_px());
     assert!(shaped.with_parts(Vec::new()).surface.is_none());
-    assert!(flat.with_parts(vec![inflated("a", "no such layer")]).surface.is_none());
+    assert!(flat.with_parts(vec![inflated_part("a", "no such layer")]).surface.is_none());
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn the_part_follows_its_layer_and_what_did_not_change_is_kept() {
         discs("A", &[(vec2(50.0, 60.0), 30.0, [200, 90, 40])]),
         discs("B", &[(vec2(110.0, 60.0), 30.0, [20, 90, 40])]),
     ]);
-    let shaped = flat.with_parts(vec![inflated("a", "A"), inflated("b", "B")]);
+    let shaped = flat.with_parts(vec![inflated_part("a", "A"), inflated_part("b", "B")]);
     assert!(Arc::ptr_eq(
         shaped.surface.as_ref().unwrap(),
         shaped.reshaped().surface.as_ref().unwrap()
@@ -150,7 +150,7 @@ fn colors_become_parts_and_what_bulges_into_another_lies_in_front() {
 #[test]
 fn a_part_that_is_moved_by_whole_pixels_moves_its_surface_byte_for_byte() {
     let flat = document(vec![discs("A", &[(vec2(60.0, 50.0), 30.3, [200, 90, 40])])]);
-    let still = inflated("a", "A");
+    let still = inflated_part("a", "A");
     let moved = Part { matrix: Affine2::from_translation(vec2(21.0, 9.0)), ..Part::clone(&still) };
     let (a, b) = (flat.with_parts(vec![still]), flat.with_parts(vec![Arc::new(moved)]));
     let (a, b) = (a.surface.unwrap(), b.surface.unwrap());
@@ -168,7 +168,7 @@ fn every_kind_makes_a_surface() {
     let flat = document(vec![discs("A", &[(vec2(80.0, 60.0), 40.0, [200, 90, 40])])]);
     let layer = || OutlineSource::Layer { layer: "A".into(), color: None };
     let path = vec![vec2(20.0, 20.0), vec2(90.0, 25.0), vec2(60.0, 90.0)];
-    let disc = flat.with_parts(vec![inflated("a", "A")]);
+    let disc = flat.with_parts(vec![inflated_part("a", "A")]);
     let kinds = [
         PartKind::Inflate {
             outline: OutlineSource::Path(path),
@@ -256,7 +256,7 @@ fn every_kind_makes_a_surface() {
     ];
     for kind in changes {
         let name = kind.name();
-        let with = flat.with_parts(vec![inflated("a", "A"), Arc::new(Part::new("b", kind))]);
+        let with = flat.with_parts(vec![inflated_part("a", "A"), Arc::new(Part::new("b", kind))]);
         let (before, after) = (disc.surface.as_ref().unwrap(), with.surface.unwrap());
         let changed = (60..100)
             .filter(|x| before.normal(*x, 60).distance(after.normal(*x, 60)) > 0.01)
@@ -282,7 +282,7 @@ fn maps_lie_beneath_all_parts() {
             ..Primitive::new(Body::Box, vec2(80.0, 60.0), 50.0)
         }),
     ))]);
-    let on_maps = flat.with_maps(plate.surface.clone()).with_parts(vec![inflated("a", "A")]);
+    let on_maps = flat.with_maps(plate.surface.clone()).with_parts(vec![inflated_part("a", "A")]);
     let surface = on_maps.surface.as_ref().unwrap();
     assert_eq!((surface.coverage(20, 60), surface.coverage(80, 60)), (255, 255));
     assert!(surface.depth(80, 60) < surface.depth(20, 60));
@@ -304,12 +304,12 @@ fn numbers_beyond_their_range_and_ids_that_stand_twice_are_refused() {
             .contains("raised")
     );
     assert!(
-        flat.with_parts(vec![inflated("a", "A"), inflated("a", "B")])
+        flat.with_parts(vec![inflated_part("a", "A"), inflated_part("a", "B")])
             .fits(None)
             .unwrap_err()
             .contains("id")
     );
-    assert_eq!(flat.with_parts(vec![inflated("a", "A")]).fits(None), Ok(()));
+    assert_eq!(flat.with_parts(vec![inflated_part("a", "A")]).fits(None), Ok(()));
 }
 
 #[test]

@@ -108,7 +108,7 @@ fn picture(document: &Document) -> TileGrid {
     flatten(document, &Progress::default()).unwrap()
 }
 
-fn reduced(grid: &TileGrid, factor: f32) -> TileGrid {
+fn reduce(grid: &TileGrid, factor: f32) -> TileGrid {
     CanvasScale::of(SIZE, factor).unwrap().grid(grid)
 }
 
@@ -117,11 +117,11 @@ fn a_preview_at_half_size_looks_like_the_full_picture_reduced() {
     let full = document();
     let half = full.scaled(0.5).unwrap();
     assert_eq!(half.size, Size::new(120, 80));
-    let (mean, _) = difference(&picture(&half), &reduced(&picture(&full), 0.5), half.size);
+    let (mean, _) = difference(&picture(&half), &reduce(&picture(&full), 0.5), half.size);
     assert!(mean < 1.5, "mean difference {mean}");
     // The measure can fail: without scaling the lengths it is far larger.
     let wrong = Document { layers: full.layers.clone(), ..half.clone() };
-    let (wrong, _) = difference(&picture(&wrong), &reduced(&picture(&full), 0.5), half.size);
+    let (wrong, _) = difference(&picture(&wrong), &reduce(&picture(&full), 0.5), half.size);
     assert!(wrong > 5.0 * mean, "{wrong} is not far from {mean}");
 }
 
@@ -129,7 +129,7 @@ fn a_preview_at_half_size_looks_like_the_full_picture_reduced() {
 fn twice_as_large_and_reduced_again_is_the_picture() {
     let full = document();
     let double = full.scaled(2.0).unwrap();
-    let (mean, _) = difference(&reduced(&picture(&double), 0.5), &picture(&full), SIZE);
+    let (mean, _) = difference(&reduce(&picture(&double), 0.5), &picture(&full), SIZE);
     assert!(mean < 1.5, "mean difference {mean}");
 }
 
@@ -211,7 +211,7 @@ fn an_image_size_samples_paint_as_it_is_told_and_keeps_the_rest_live() {
     let full = document();
     let (mean, _) = difference(
         &picture(&full.resampled(Size::new(120, 80), crate::raster::Resampling::Smooth).unwrap()),
-        &reduced(&picture(&full), 0.5),
+        &reduce(&picture(&full), 0.5),
         Size::new(120, 80),
     );
     assert!(mean < 2.0, "mean difference {mean}");

@@ -42,7 +42,7 @@ fn pixel(picture: &Picture, x: usize, y: usize) -> [u8; 4] {
     texels[y * picture.size.width as usize + x]
 }
 
-fn drawn(view: SurfaceView) -> Picture {
+fn render(view: SurfaceView) -> Picture {
     draw(&ball(), None, view, &ViewOptions::default()).unwrap()
 }
 
@@ -52,7 +52,7 @@ fn every_view_has_a_name_of_its_own_and_a_picture_of_the_canvas() {
         assert_eq!(SurfaceView::from_name(name), Some(view));
         assert_eq!(view.name(), name);
         if !view.is_of_nothing() && view != SurfaceView::Unwrapped {
-            assert_eq!(drawn(view).size, Size::new(160, 160), "{name}");
+            assert_eq!(render(view).size, Size::new(160, 160), "{name}");
         }
     }
     assert_eq!(
@@ -64,12 +64,12 @@ fn every_view_has_a_name_of_its_own_and_a_picture_of_the_canvas() {
 
 #[test]
 fn the_top_of_a_ball_shows_green_in_the_normals_and_is_near_in_the_middle() {
-    let [r, g, ..] = pixel(&drawn(SurfaceView::Normals), 79, 25);
+    let [r, g, ..] = pixel(&render(SurfaceView::Normals), 79, 25);
     assert!(g > 230 && r.abs_diff(128) < 6, "{r} {g}");
-    assert!(pixel(&drawn(SurfaceView::Depth), 80, 80)[0] < 5);
-    assert!(pixel(&drawn(SurfaceView::Depth), 80, 136)[0] > 130);
-    assert_eq!(pixel(&drawn(SurfaceView::Normals), 3, 3)[3], 0);
-    assert_eq!(pixel(&drawn(SurfaceView::Mask), 3, 3), [0, 0, 0, 255]);
+    assert!(pixel(&render(SurfaceView::Depth), 80, 80)[0] < 5);
+    assert!(pixel(&render(SurfaceView::Depth), 80, 136)[0] > 130);
+    assert_eq!(pixel(&render(SurfaceView::Normals), 3, 3)[3], 0);
+    assert_eq!(pixel(&render(SurfaceView::Mask), 3, 3), [0, 0, 0, 255]);
 }
 
 #[test]
@@ -81,13 +81,13 @@ fn a_ball_is_convex_blue_and_light_and_lit_from_the_upper_left() {
     assert!(
         pixel(&draw(&ball(), None, SurfaceView::CurvatureGray, &options).unwrap(), 80, 80)[0] > 200
     );
-    let lit = drawn(SurfaceView::Lit);
+    let lit = render(SurfaceView::Lit);
     assert!(pixel(&lit, 55, 50)[0] > pixel(&lit, 105, 110)[0]);
 }
 
 #[test]
 fn each_anchor_has_the_color_of_what_it_holds() {
-    let weights = drawn(SurfaceView::Weights);
+    let weights = render(SurfaceView::Weights);
     let ([r0, _, b0, _], [_, g1, b1, _]) = (pixel(&weights, 30, 80), pixel(&weights, 130, 80));
     assert!(b0 > r0 && g1 > b1, "the first anchor is blue, the second green");
 }
@@ -117,11 +117,11 @@ fn what_cannot_be_shown_says_why() {
 #[test]
 fn a_sheet_holds_every_picture_in_order() {
     let pictures = [
-        drawn(SurfaceView::Mask),
-        drawn(SurfaceView::Normals),
-        drawn(SurfaceView::Depth),
-        drawn(SurfaceView::Lit),
-        drawn(SurfaceView::Mask),
+        render(SurfaceView::Mask),
+        render(SurfaceView::Normals),
+        render(SurfaceView::Depth),
+        render(SurfaceView::Lit),
+        render(SurfaceView::Mask),
     ];
     let sheet = sheet(&pictures).unwrap();
     assert_eq!(sheet.size, Size::new(4 * 168 + 8, 2 * 168 + 8));
@@ -131,7 +131,7 @@ fn a_sheet_holds_every_picture_in_order() {
 }
 
 /// The document with the picture of its planes as its only layer.
-fn laid_back(document: &Document, seen: &UnwrappedPicture, filter: ImageFilter) -> Document {
+fn lay_back(document: &Document, seen: &UnwrappedPicture, filter: ImageFilter) -> Document {
     let source = PictureSource::new("plane.png".into(), seen.picture().unwrap(), Adjust::default());
     let image = PlacedImage {
         source,
@@ -181,7 +181,7 @@ fn a_picture_of_the_unwrapped_plane_lies_on_the_surface_as_what_it_was_taken_fro
             seen.size
         );
         for filter in [ImageFilter::Bilinear, ImageFilter::Antialias] {
-            let (mean, most) = differences(&document, &laid_back(&document, &seen, filter));
+            let (mean, most) = differences(&document, &lay_back(&document, &seen, filter));
             assert!(
                 mean < 2.0,
                 "scale {scale}, {filter:?}: {mean} of 255 in the mean, {most} at most"

@@ -5,7 +5,7 @@
 use super::round::{RoundTip, RowPaint, fill_bent_row, flat_row};
 use super::shape::{self, TipShape};
 use super::softened::SoftenedStamps;
-use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbors, TouchedBlocks};
+use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, ReachedBlocks, SpanNeighbors};
 use crate::math::{Affine2, Mat2, Rect};
 use crate::paint::brush_options::Falloff;
 use crate::paint::image::transform;
@@ -23,7 +23,7 @@ pub enum Footprint<'t> {
     Textured(&'t SoftenedStamps),
 }
 
-impl TouchedBlocks {
+impl ReachedBlocks {
     /// Where a span lies among the pixels of the area, row by row.
     fn range(&self, span: PixelSpan) -> std::ops::Range<usize> {
         let start =
@@ -45,7 +45,7 @@ impl PlacedDab<'_> {
         stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        let part = self.touched_blocks(at);
+        let part = self.reached_blocks(at);
         if part.area.is_empty() {
             return;
         }
@@ -93,7 +93,7 @@ impl PlacedDab<'_> {
         if let SoftenedStamps::One(stamp) = stamps {
             return self.add_stamp(stamp, at, stroke_tile, scratch);
         }
-        let part = self.touched_blocks(at);
+        let part = self.reached_blocks(at);
         if part.area.is_empty() {
             return;
         }
@@ -109,7 +109,7 @@ impl PlacedDab<'_> {
     /// `scratch.deformed`.
     fn cover_round(
         &self,
-        part: &TouchedBlocks,
+        part: &ReachedBlocks,
         scratch: &mut DabScratch,
         (covered, shares): (&mut [f32], &mut [f32]),
     ) {
@@ -134,7 +134,7 @@ impl PlacedDab<'_> {
     fn cover_shape(
         &self,
         (shape, falloff): (TipShape, Falloff),
-        part: &TouchedBlocks,
+        part: &ReachedBlocks,
         deformed: &mut DeformedRect,
         (covered, shares): (&mut [f32], &mut [f32]),
     ) {
@@ -187,7 +187,7 @@ impl PlacedDab<'_> {
 
     /// Reads the picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed`
     /// is converted to texels.
-    fn read(&self, stamps: &SoftenedStamps, part: &TouchedBlocks, scratch: &mut DabScratch) {
+    fn read(&self, stamps: &SoftenedStamps, part: &ReachedBlocks, scratch: &mut DabScratch) {
         let (stamp, above) = stamps.at(self.dab.softness);
         scratch.stamped.clear();
         scratch.stamped.resize(part.pixels(), [0; 4]);
@@ -210,7 +210,7 @@ impl PlacedDab<'_> {
         &self,
         stamp: &TipStamp,
         map: Affine2,
-        part: &TouchedBlocks,
+        part: &ReachedBlocks,
         scratch: &mut DabScratch,
         mix: impl Fn([u8; 4], [u8; 4]) -> [u8; 4],
     ) {

@@ -125,11 +125,11 @@ fn slope() -> Scene {
     }
 }
 
-fn timed(points: &[(f32, f32, f32)]) -> Vec<Sample> {
+fn timed_samples(points: &[(f32, f32, f32)]) -> Vec<Sample> {
     points.iter().map(|&(x, y, time_secs)| Sample { time_secs, ..Sample::at(vec2(x, y)) }).collect()
 }
 
-fn driven(property: Property, input: Input, scene: &Scene, samples: &[Sample]) -> Vec<Dab> {
+fn walk_driven(property: Property, input: Input, scene: &Scene, samples: &[Sample]) -> Vec<Dab> {
     let dynamics = Dynamics::none().with(property, input, Curve::Share(1.0));
     let brush = Brush { dynamics, ..brush(20.0) };
     super::dabs(
@@ -143,8 +143,8 @@ fn driven(property: Property, input: Input, scene: &Scene, samples: &[Sample]) -
 
 #[test]
 fn every_input_reads_what_it_says() {
-    let up = timed(&[(500.0, 450.0, 0.0), (500.0, 350.0, 0.1), (500.0, 250.0, 0.2)]);
-    let flow = |input, scene: &Scene| driven(Property::Flow, input, scene, &up);
+    let up = timed_samples(&[(500.0, 450.0, 0.0), (500.0, 350.0, 0.1), (500.0, 250.0, 0.2)]);
+    let flow = |input, scene: &Scene| walk_driven(Property::Flow, input, scene, &up);
     // 1000 px/s of 2 · 1000.
     assert!(flow(Input::Speed, &flat()).iter().all(|dab| (dab.flow - 0.5).abs() < 1e-4));
     assert!(flow(Input::Direction, &flat()).iter().all(|dab| (dab.flow - 0.25).abs() < 1e-4));
@@ -166,9 +166,9 @@ fn every_input_reads_what_it_says() {
         assert!((dab.flow - expected).abs() < 2e-3, "{}: {}", dab.at, dab.flow);
     }
     let leaning = [Sample { tilt: vec2(0.0, 45.0), ..Sample::at(vec2(9.0, 9.0)) }];
-    assert_eq!(driven(Property::Flow, Input::Tilt, &flat(), &leaning)[0].flow, 0.5);
+    assert_eq!(walk_driven(Property::Flow, Input::Tilt, &flat(), &leaning)[0].flow, 0.5);
     assert_eq!(
-        driven(Property::Flow, Input::TiltDirection, &flat(), &leaning)[0].flow,
+        walk_driven(Property::Flow, Input::TiltDirection, &flat(), &leaning)[0].flow,
         0.75,
         "it leans down"
     );
@@ -180,7 +180,7 @@ fn every_input_reads_what_it_says() {
 #[test]
 fn every_property_follows_what_drives_it() {
     let pressed = [Sample { pressure: 0.25, ..Sample::at(vec2(40.0, 40.0)) }];
-    let dab = |property| driven(property, Input::Pressure, &flat(), &pressed)[0];
+    let dab = |property| walk_driven(property, Input::Pressure, &flat(), &pressed)[0];
     let plain = dab(Property::Spacing);
     assert_eq!((plain.radius, plain.hardness, plain.ceiling), (10.0, 0.5, 1.0));
     assert_eq!(dab(Property::Size).radius, 2.5);
@@ -198,7 +198,7 @@ fn every_property_follows_what_drives_it() {
     );
     let line = [(10.0, 10.0), (60.0, 10.0)]
         .map(|(x, y)| Sample { pressure: 0.5, ..Sample::at(vec2(x, y)) });
-    let close = driven(Property::Spacing, Input::Pressure, &flat(), &line);
+    let close = walk_driven(Property::Spacing, Input::Pressure, &flat(), &line);
     assert!((close[1].at.x - close[0].at.x - 2.5).abs() < 1e-4, "half of a quarter of 20 px");
     let depth = Dynamics::none().with(Property::Gamma, Input::Pressure, Curve::Share(1.0));
     let brush = Brush { dynamics: depth, ..brush(20.0) };
@@ -215,7 +215,7 @@ fn hollows_read_low_and_ridges_high() {
     let maps = Maps { normals, depth: Plane::full(size, 0.5), coverage: Plane::full(size, 255) };
     let scene = Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
     let at = |x: f32| {
-        driven(Property::Flow, Input::Curvature, &scene, &[Sample::at(vec2(x, 32.0))])[0].flow
+        walk_driven(Property::Flow, Input::Curvature, &scene, &[Sample::at(vec2(x, 32.0))])[0].flow
     };
     // The slope −n̄/n_z turns at 0.0785 per px there, s is 10 px: κ = tanh(0.785), less a little
     // for the blur.
@@ -257,13 +257,17 @@ fn colors_vary_only_where_the_brush_says() {
 
 #[test]
 fn time_that_runs_backward_and_clocks_that_stand_still_do_no_harm() {
-    let good = timed(&[(0.0, 0.0, 0.0), (50.0, 0.0, 0.1), (100.0, 0.0, 0.2)]);
+    let good = timed_samples(&[(0.0, 0.0, 0.0), (50.0, 0.0, 0.1), (100.0, 0.0, 0.2)]);
     let mut bad = good.clone();
     bad.insert(2, Sample { time_secs: 0.05, ..Sample::at(vec2(70.0, 300.0)) });
     bad.insert(1, Sample { time_secs: f32::NAN, ..Sample::at(vec2(20.0, 300.0)) });
     assert_eq!(dabs(&brush(20.0), &bad), dabs(&brush(20.0), &good));
-    let still =
-        driven(Property::Flow, Input::Speed, &flat(), &timed(&[(0.0, 0.0, 1.0), (50.0, 0.0, 1.0)]));
+    let still = walk_driven(
+        Property::Flow,
+        Input::Speed,
+        &flat(),
+        &timed_samples(&[(0.0, 0.0, 1.0), (50.0, 0.0, 1.0)]),
+    );
     assert!(still.is_empty(), "without time there is no speed");
 }
 
@@ -297,7 +301,7 @@ proptest! {
     }
 }
 
-fn added(points: &[(f32, f32)]) -> Curve {
+fn additive(points: &[(f32, f32)]) -> Curve {
     Curve::additive(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
 }
 
@@ -379,7 +383,7 @@ fn dabs_stand_aside_to_where_the_offset_says() {
 fn a_cycle_rises_is_held_and_begins_again() {
     let cycle = Cycle { length: 1.0, hold: 1.0, pressure: 0.0 };
     let dynamics =
-        Dynamics::none().with(Property::Flow, Input::Cycle, added(&[(0.0, -0.9), (1.0, 0.0)]));
+        Dynamics::none().with(Property::Flow, Input::Cycle, additive(&[(0.0, -0.9), (1.0, 0.0)]));
     let dabs = dabs(&Brush { cycle, dynamics, ..brush(20.0) }, &steady(50));
     let flows: Vec<f32> = dabs.iter().map(|dab| (dab.flow * 1000.0).round()).collect();
     assert_eq!(
@@ -391,8 +395,8 @@ fn a_cycle_rises_is_held_and_begins_again() {
 #[test]
 fn what_drives_the_custom_input_drives_what_follows_it_a_dab_later() {
     let dynamics = Dynamics::none()
-        .with(Property::Custom, Input::Distance, added(&[(0.0, 0.0), (1.0, 1.0)]))
-        .with(Property::Hardness, Input::Custom, added(&[(0.0, 0.0), (1.0, 1.0)]));
+        .with(Property::Custom, Input::Distance, additive(&[(0.0, 0.0), (1.0, 1.0)]))
+        .with(Property::Hardness, Input::Custom, additive(&[(0.0, 0.0), (1.0, 1.0)]));
     let dabs = dabs(&Brush { hardness: 0.0, dynamics, ..brush(20.0) }, &steady(50));
     let hardness: Vec<f32> =
         dabs.iter().map(|dab| (dab.hardness * 1000.0).round()).take(4).collect();
@@ -416,7 +420,7 @@ fn an_elongation_that_is_driven_flattens_the_tip() {
     let dynamics = Dynamics::none().with(
         Property::Elongation,
         Input::Pressure,
-        added(&[(0.0, 0.0), (1.0, 3.0)]),
+        additive(&[(0.0, 0.0), (1.0, 3.0)]),
     );
     let dab = |tip: Tip| {
         dabs(&Brush { tip, dynamics: dynamics.clone(), ..brush(20.0) }, &steady(20))[0].ratio

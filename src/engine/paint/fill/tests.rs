@@ -13,7 +13,7 @@ fn picture(color: impl Fn(i32, i32) -> [u8; 4]) -> TileGrid {
     TileGrid::from_straight_rgba(&rgba, 200, 150, 0, 0)
 }
 
-fn filled(fill: Fill, start: Vec2, grid: &TileGrid) -> Option<FilledArea> {
+fn fill_from(fill: Fill, start: Vec2, grid: &TileGrid) -> Option<FilledArea> {
     fill.from(start, CANVAS, &CanvasPart::Whole, |at| grid.tile(at).cloned())
 }
 
@@ -54,7 +54,7 @@ fn what_is_filled_is_what_a_path_of_like_pixels_joins() {
     };
     let grid = picture(|x, y| [shade(x, y), 40, 90, 255]);
     let found =
-        filled(Fill { tolerance: 32.0 / 255.0, ..plain() }, vec2(100.5, 75.5), &grid).unwrap();
+        fill_from(Fill { tolerance: 32.0 / 255.0, ..plain() }, vec2(100.5, 75.5), &grid).unwrap();
     let like = shade(100, 75);
     let mut joined = vec![false; CANVAS.area()];
     let mut paths = vec![(100i32, 75i32)];
@@ -75,7 +75,7 @@ fn what_is_filled_is_what_a_path_of_like_pixels_joins() {
 #[test]
 fn a_gap_is_closed_up_to_its_width_and_corners_are_filled_all_the_same() {
     let gap_of = |gap: i32, gap_px: f32| {
-        filled(Fill { gap_px, ..plain() }, vec2(60.0, 60.0), &room(gap)).unwrap()
+        fill_from(Fill { gap_px, ..plain() }, vec2(60.0, 60.0), &room(gap)).unwrap()
     };
     let open = gap_of(8, 5.0);
     assert!(is_in(&open, 5, 5), "a gap wider than said lets the fill out");
@@ -100,7 +100,7 @@ fn a_gap_is_closed_up_to_its_width_and_corners_are_filled_all_the_same() {
 fn closing_gaps_keeps_an_even_corridor_that_is_as_narrow() {
     // A slanted corridor, 5 px wide, between two walls; no gap in it.
     let corridor = picture(|x, y| if (y - 30 - x / 3).abs() <= 2 { PAPER } else { INK });
-    let found = filled(Fill { gap_px: 16.0, ..plain() }, vec2(100.5, 63.5), &corridor).unwrap();
+    let found = fill_from(Fill { gap_px: 16.0, ..plain() }, vec2(100.5, 63.5), &corridor).unwrap();
     for x in 0..200 {
         assert!(is_in(&found, x, 30 + x / 3), "column {x}");
     }
@@ -112,8 +112,9 @@ fn the_edge_grows_by_so_many_pixels_and_is_smoothed_where_it_is_slanted() {
         let r = vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(100.0, 75.0));
         if r < 40.0 { PAPER } else { INK }
     });
-    let grown = filled(Fill { grow_px: 6.0, antialias: true, ..plain() }, vec2(100.0, 75.0), &disc)
-        .unwrap();
+    let grown =
+        fill_from(Fill { grow_px: 6.0, antialias: true, ..plain() }, vec2(100.0, 75.0), &disc)
+            .unwrap();
     for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
         let r = vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(100.0, 75.0));
         let ideal = (46.5 - r).clamp(0.0, 1.0);
@@ -128,8 +129,9 @@ fn the_edge_grows_by_so_many_pixels_and_is_smoothed_where_it_is_slanted() {
     }
     let partly = (0..200).filter(|&x| (0.1..0.9).contains(&grown.coverage(x, 40))).count();
     assert!(partly > 0, "some pixels of the rim are covered in part");
-    let sharp = filled(plain(), vec2(100.0, 75.0), &room(0)).unwrap();
-    let smooth = filled(Fill { antialias: true, ..plain() }, vec2(100.0, 75.0), &room(0)).unwrap();
+    let sharp = fill_from(plain(), vec2(100.0, 75.0), &room(0)).unwrap();
+    let smooth =
+        fill_from(Fill { antialias: true, ..plain() }, vec2(100.0, 75.0), &room(0)).unwrap();
     assert!(
         (0..200).all(|x| sharp.coverage(x, 75) == smooth.coverage(x, 75)),
         "straight edges stay sharp"
@@ -141,12 +143,12 @@ fn hostile_settings_and_places_fill_nothing_or_something_finite() {
     let grid = room(4);
     for start in [vec2(f32::NAN, 3.0), vec2(-1.0, 3.0), vec2(200.0, 3.0), vec2(f32::INFINITY, 0.0)]
     {
-        assert!(filled(Fill::default(), start, &grid).is_none());
+        assert!(fill_from(Fill::default(), start, &grid).is_none());
     }
     for hostile in [f32::NAN, f32::INFINITY, -f32::INFINITY, 1e30] {
         let fill =
             Fill { tolerance: hostile, gap_px: hostile, grow_px: hostile, ..Fill::default() };
-        let found = filled(fill, vec2(60.0, 60.0), &grid).unwrap();
+        let found = fill_from(fill, vec2(60.0, 60.0), &grid).unwrap();
         assert!((0.0..=1.0).contains(&found.coverage(60, 60)));
     }
 }

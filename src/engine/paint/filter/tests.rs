@@ -20,7 +20,7 @@ fn picture() -> FilterWindow {
     FilterWindow::new(RECT, pixels.map(pixel).collect())
 }
 
-fn filtered(filter: &PictureFilter, source: &FilterWindow, out: Rect) -> FilterWindow {
+fn apply(filter: &PictureFilter, source: &FilterWindow, out: Rect) -> FilterWindow {
     let scene = flat();
     LiveFilter::new(filter.clone())
         .apply(&FilterPlace { scene: &scene, out, brightest: 1.0 }, source)
@@ -59,7 +59,7 @@ fn direct_gaussian(source: &FilterWindow, sigma: f64) -> Vec<[f32; 4]> {
 fn a_gaussian_of_any_width_is_the_sum_within_half_a_level() {
     for sigma in [0.6, 1.5, 4.0, 4.9, 5.0, 7.3, 10.0, 19.0] {
         let filter = PictureFilter::GaussianBlur(GaussianBlur { radius: sigma });
-        let found = filtered(&filter, &picture(), RECT);
+        let found = apply(&filter, &picture(), RECT);
         let off =
             largest_difference(found.pixels(), &direct_gaussian(&picture(), f64::from(sigma)));
         assert!(off < 0.5 / 255.0, "σ {sigma}: {} levels", off * 255.0);
@@ -70,10 +70,10 @@ fn a_gaussian_of_any_width_is_the_sum_within_half_a_level() {
 fn blocks_fit_together_without_seams() {
     let source = picture();
     for filter in PictureFilter::all() {
-        let whole = filtered(&filter, &source, RECT);
+        let whole = apply(&filter, &source, RECT);
         for part in [Rect::new(0, 0, 64, 64), Rect::new(64, 0, 96, 64), Rect::new(0, 64, 64, 80)] {
             let off =
-                largest_difference(filtered(&filter, &source, part).pixels(), &whole.cropped(part));
+                largest_difference(apply(&filter, &source, part).pixels(), &whole.cropped(part));
             // Around a point, a part is read on circles and rays of its own.
             let most = if filter.name() == "spin-blur" || filter.name() == "zoom-blur" {
                 0.02
@@ -130,7 +130,7 @@ fn one_color_stays_one_color_under_what_blurs_and_sharpens() {
         "flow-blur",
     ];
     for name in names {
-        let found = filtered(&of(name), &source, RECT);
+        let found = apply(&of(name), &source, RECT);
         let off = largest_difference(found.pixels(), source.pixels());
         assert!(off < 1e-4, "{name}: {off}");
     }
@@ -146,7 +146,7 @@ fn blurs_keep_the_sum_of_a_dot() {
             if let PictureFilter::MotionBlur(own) = &mut filter {
                 own.angle = angle;
             }
-            let found = filtered(&filter, &source, RECT);
+            let found = apply(&filter, &source, RECT);
             let sum: f32 = found.pixels().iter().map(|p| p[3]).sum();
             assert!((sum - 1.0).abs() < most, "{name} at {angle}: {sum}");
         }
@@ -158,7 +158,7 @@ fn motion_spreads_a_dot_along_its_way_alone() {
     let mut source = FilterWindow::new(RECT, Vec::new());
     source.pixels_mut()[40 * 96 + 48] = [1.0; 4];
     let filter = PictureFilter::MotionBlur(MotionBlur { angle: 90.0, length: 11.0 });
-    let found = filtered(&filter, &source, RECT);
+    let found = apply(&filter, &source, RECT);
     for (i, pixel) in found.pixels().iter().enumerate() {
         let (x, y) = (i as i32 % 96, i as i32 / 96);
         let expected = if x == 48 && (35..=45).contains(&y) { 1.0 / 11.0 } else { 0.0 };
@@ -166,7 +166,7 @@ fn motion_spreads_a_dot_along_its_way_alone() {
     }
     // Counter-clockwise from the right: at 45° the way rises to the right.
     let rising = PictureFilter::MotionBlur(MotionBlur { angle: 45.0, length: 12.0 });
-    let found = filtered(&rising, &source, RECT);
+    let found = apply(&rising, &source, RECT);
     assert!(found.at(51, 37)[3] > 0.05 && found.at(45, 37)[3] == 0.0);
 }
 
@@ -179,14 +179,17 @@ fn transparent_edges_stay_as_bright_as_they_were() {
     let source = FilterWindow::new(RECT, pixels);
     for name in ["gaussian-blur", "box-blur", "motion-blur", "zoom-blur", "sharpen", "unsharp-mask"]
     {
-        for pixel in filtered(&of(name), &source, RECT).pixels().iter().filter(|p| p[3] > 0.01) {
+        for pixel in apply(&of(name), &source, RECT).pixels().iter().filter(|p| p[3] > 0.01) {
             assert!((pixel[0] / pixel[3] - 1.0).abs() < 1e-2, "{name}: {pixel:?}");
         }
     }
 }
 
 /// Two planes that face the viewer, the right one farther away, or one cylinder along y.
-fn shaped(depth: impl Fn(usize) -> f32 + Sync, normal: impl Fn(usize) -> f32 + Sync) -> Scene {
+fn scene_of_two_planes(
+    depth: impl Fn(usize) -> f32 + Sync,
+    normal: impl Fn(usize) -> f32 + Sync,
+) -> Scene {
     use crate::math::vec3;
     use crate::raster::Plane;
     let size = Size::new(96, 80);
@@ -201,8 +204,8 @@ fn shaped(depth: impl Fn(usize) -> f32 + Sync, normal: impl Fn(usize) -> f32 + S
     Scene { size, surface: Some(Arc::new(crate::surface::Surface::new(maps).unwrap())) }
 }
 
-fn stepped() -> Scene {
-    shaped(|x| if x < 48 { 0.0 } else { 0.9 }, |_| 0.0)
+fn stepped_scene() -> Scene {
+    scene_of_two_planes(|x| if x < 48 { 0.0 } else { 0.9 }, |_| 0.0)
 }
 
 fn on(scene: &Scene, filter: PictureFilter, source: &FilterWindow) -> FilterWindow {
@@ -222,14 +225,14 @@ fn black_and_white() -> FilterWindow {
 #[test]
 fn over_the_surface_a_blur_stops_at_contours_and_follows_the_distance() {
     let blur = || PictureFilter::SurfaceBlur(SurfaceBlur { radius: 6.0 });
-    let cut = on(&stepped(), blur(), &black_and_white());
+    let cut = on(&stepped_scene(), blur(), &black_and_white());
     assert!(largest_difference(cut.pixels(), black_and_white().pixels()) < 1e-5);
-    let whole = on(&shaped(|_| 0.5, |_| 0.0), blur(), &black_and_white());
+    let whole = on(&scene_of_two_planes(|_| 0.5, |_| 0.0), blur(), &black_and_white());
     // A step of which a standard deviation lies on each side.
     let at = |x: i32| whole.at(x, 40)[0];
     assert!((at(47) + at(48) - 1.0).abs() < 0.02, "{} {}", at(47), at(48));
     assert!((at(54) - 0.86).abs() < 0.04, "{}", at(54));
-    let steep = shaped(|x| x as f32 / 96.0 * 0.9, |_| 0.9);
+    let steep = scene_of_two_planes(|x| x as f32 / 96.0 * 0.9, |_| 0.9);
     let narrow = on(&steep, blur(), &black_and_white());
     assert!(narrow.at(52, 40)[0] > whole.at(52, 40)[0] + 0.03);
 }
@@ -240,17 +243,17 @@ fn sharpening_that_stops_at_contours_leaves_no_rim() {
     let gray = |v: f32| [v, v, v, 1.0];
     let pixels = (0..96 * 80).map(|i| gray(if i % 96 < 48 { 0.3 } else { 0.7 })).collect();
     let source = FilterWindow::new(RECT, pixels);
-    let found = on(&stepped(), PictureFilter::UnsharpMask(mask), &source);
+    let found = on(&stepped_scene(), PictureFilter::UnsharpMask(mask), &source);
     assert!(largest_difference(found.pixels(), source.pixels()) < 1e-4);
     let rimmed = UnsharpMask { stop_at_contours: false, ..mask };
-    let found = on(&stepped(), PictureFilter::UnsharpMask(rimmed), &source);
+    let found = on(&stepped_scene(), PictureFilter::UnsharpMask(rimmed), &source);
     assert!(largest_difference(found.pixels(), source.pixels()) > 0.1);
 }
 
 #[test]
 fn along_the_form_a_dot_is_smeared_along_a_cylinder() {
     let round = |x: usize| (x as f32 - 47.5) / 60.0;
-    let cylinder = shaped(|x| 1.0 - (1.0 - round(x).powi(2)).sqrt(), round);
+    let cylinder = scene_of_two_planes(|x| 1.0 - (1.0 - round(x).powi(2)).sqrt(), round);
     let mut source = FilterWindow::new(RECT, vec![[0.0, 0.0, 0.0, 1.0]; 96 * 80]);
     source.pixels_mut()[40 * 96 + 48] = [1.0; 4];
     let blur = |across| FlowBlur { length: 16.0, smooth: 2.0, across };
@@ -267,7 +270,7 @@ fn along_the_form_a_dot_is_smeared_along_a_cylinder() {
 fn a_lens_keeps_what_is_in_focus_and_spreads_what_is_not() {
     let lens = LensBlur { radius: 8.0, ..LensBlur::default() };
     let source = picture();
-    let found = on(&stepped(), PictureFilter::LensBlur(lens), &source);
+    let found = on(&stepped_scene(), PictureFilter::LensBlur(lens), &source);
     for (x, y) in [(3, 5), (30, 60), (47, 20)] {
         let off = largest_difference(&[found.at(x, y)], &[source.at(x, y)]);
         assert!(off < 2e-3, "the near plane is in focus: {off} at {x}, {y}");
@@ -275,7 +278,7 @@ fn a_lens_keeps_what_is_in_focus_and_spreads_what_is_not() {
     assert!(largest_difference(&[found.at(70, 30)], &[source.at(70, 30)]) > 0.05);
     // One color at any depth stays.
     let plain = FilterWindow::new(RECT, vec![[0.4, 0.2, 0.1, 0.8]; 96 * 80]);
-    for scene in [stepped(), shaped(|x| x as f32 / 96.0, |_| 0.3)] {
+    for scene in [stepped_scene(), scene_of_two_planes(|x| x as f32 / 96.0, |_| 0.3)] {
         let found = on(&scene, PictureFilter::LensBlur(lens), &plain);
         let off = largest_difference(found.pixels(), plain.pixels());
         assert!(off < 2e-3, "{off}");
@@ -297,8 +300,8 @@ fn grain_on_the_surface_is_bent_with_it() {
     let grain =
         |on_surface| PictureFilter::FilmGrain(FilmGrain { on_surface, ..FilmGrain::default() });
     let gray = FilterWindow::new(RECT, vec![[0.5, 0.5, 0.5, 1.0]; 96 * 80]);
-    let facing = shaped(|_| 0.5, |_| 0.0);
-    let steep = shaped(|x| x as f32 / 96.0 * 0.9, |_| 0.8);
+    let facing = scene_of_two_planes(|_| 0.5, |_| 0.0);
+    let steep = scene_of_two_planes(|x| x as f32 / 96.0 * 0.9, |_| 0.8);
     // How often it crosses mid-gray along rows.
     let crossings = |scene: &Scene| {
         let found = on(scene, grain(true), &gray);
@@ -315,7 +318,7 @@ fn noise_has_no_mean_and_is_the_same_every_time() {
     let gray = FilterWindow::new(RECT, vec![[0.5, 0.5, 0.5, 1.0]; area]);
     let noise = |gaussian, monochrome, seed| {
         let own = PixelNoise { amount: 20.0, gaussian, monochrome, seed, ..PixelNoise::default() };
-        filtered(&PictureFilter::PixelNoise(own), &gray, RECT)
+        apply(&PictureFilter::PixelNoise(own), &gray, RECT)
     };
     for (gaussian, deviation) in [(false, 0.2 / 3f32.sqrt()), (true, 0.2)] {
         let found = noise(gaussian, false, 0.0);
@@ -328,7 +331,7 @@ fn noise_has_no_mean_and_is_the_same_every_time() {
     assert_eq!(noise(true, true, 3.0), noise(true, true, 3.0));
     assert_ne!(noise(true, true, 3.0), noise(true, true, 4.0));
     assert!(noise(false, true, 0.0).pixels().iter().all(|p| p[0] == p[1] && p[1] == p[2]));
-    let grain = filtered(&of("grain"), &gray, RECT);
+    let grain = apply(&of("grain"), &gray, RECT);
     let mean = grain.pixels().iter().map(|p| p[0] - 0.5).sum::<f32>() / area as f32;
     assert!(mean.abs() < 0.01, "grain {mean}");
 }
@@ -337,7 +340,7 @@ fn noise_has_no_mean_and_is_the_same_every_time() {
 fn an_unsharp_mask_adds_what_its_blur_takes_away() {
     let source = picture();
     let mask = UnsharpMask { amount: 80.0, radius: 1.5, ..UnsharpMask::default() };
-    let found = filtered(&PictureFilter::UnsharpMask(mask), &source, RECT);
+    let found = apply(&PictureFilter::UnsharpMask(mask), &source, RECT);
     let blurred = direct_gaussian(&source, 1.5);
     for ((own, mean), found) in source.pixels().iter().zip(&blurred).zip(found.pixels()) {
         let x = own[1] / own[3];
@@ -348,7 +351,7 @@ fn an_unsharp_mask_adds_what_its_blur_takes_away() {
     let none = UnsharpMask { threshold: 255.0, ..mask };
     assert!(
         largest_difference(
-            filtered(&PictureFilter::UnsharpMask(none), &source, RECT).pixels(),
+            apply(&PictureFilter::UnsharpMask(none), &source, RECT).pixels(),
             source.pixels()
         ) < 1e-6
     );
@@ -357,7 +360,7 @@ fn an_unsharp_mask_adds_what_its_blur_takes_away() {
 #[test]
 fn a_median_is_the_middle_of_all_sorted() {
     let source = picture();
-    let found = filtered(&of("median"), &source, RECT);
+    let found = apply(&of("median"), &source, RECT);
     for (x, y) in [(3, 4), (50, 39), (95, 79), (20, 60)] {
         let around = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| (x + dx, y + dy)));
         let mut reds: Vec<f32> = around.map(|(x, y)| source.at(x, y)[0]).collect();
@@ -370,19 +373,19 @@ fn a_median_is_the_middle_of_all_sorted() {
 #[test]
 fn shifted_twice_by_half_a_picture_is_the_picture() {
     let source = picture();
-    let once = filtered(&of("offset"), &source, RECT);
+    let once = apply(&of("offset"), &source, RECT);
     assert_eq!(once.at(0, 0), source.at(48, 40));
-    assert_eq!(filtered(&of("offset"), &once, RECT), source);
+    assert_eq!(apply(&of("offset"), &once, RECT), source);
 }
 
 #[test]
 fn squares_have_the_mean_of_their_pixels_and_edges_lie_where_colors_differ() {
     let source = picture();
-    let squares = filtered(&of("pixelate"), &source, RECT);
+    let squares = apply(&of("pixelate"), &source, RECT);
     let mean = (0..64).map(|i| source.at(16 + i % 8, 8 + i / 8)[0]).sum::<f32>() / 64.0;
     assert!((squares.at(20, 12)[0] - mean).abs() < 1e-5);
     assert_eq!(squares.at(16, 8), squares.at(23, 15));
-    let edges = filtered(&of("edges"), &source, RECT);
+    let edges = apply(&of("edges"), &source, RECT);
     let on = edges.at(50, 40);
     assert!(on[2] / on[3] > 0.99, "a step from black to white is white: {on:?}");
     assert!(edges.at(50, 60)[2] < 1e-5);
@@ -433,7 +436,7 @@ fn numbers_that_are_no_numbers_are_held_and_lengths_scale() {
     for value in [f32::NAN, f32::INFINITY, -1e30, 1e30, 0.0] {
         for mut filter in PictureFilter::all() {
             filter.visit(&mut Spoil(value));
-            let found = filtered(&filter, &source, Rect::new(30, 30, 40, 40));
+            let found = apply(&filter, &source, Rect::new(30, 30, 40, 40));
             assert!(found.pixels().as_flattened().iter().all(|v| v.is_finite()), "{filter:?}");
         }
     }

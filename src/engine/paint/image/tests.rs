@@ -8,7 +8,7 @@ use crate::surface::{Anchor, Maps, Operator, Surface};
 use std::sync::Arc;
 
 /// Every tile of the layer, as straight bytes of the canvas.
-fn rendered(image: &PlacedImage, scene: &Scene) -> Vec<u8> {
+fn render(image: &PlacedImage, scene: &Scene) -> Vec<u8> {
     let mut grid = TileGrid::for_rect(scene.size.rect());
     for at in TileAt::covering(scene.size.rect()) {
         grid.set(at, image.render_tile(scene, at).map(Arc::new));
@@ -22,7 +22,7 @@ fn noise(size: Size) -> Picture {
     Picture::srgb8(size, (0..size.area() as u32).map(texel).collect()).unwrap()
 }
 
-fn placed(picture: Picture, canvas: Size) -> PlacedImage {
+fn place(picture: Picture, canvas: Size) -> PlacedImage {
     PlacedImage {
         source: PictureSource::new("noise.png".into(), picture, Adjust::default()),
         placement: Placement::covering(canvas),
@@ -41,8 +41,8 @@ fn an_unbent_picture_of_the_canvas_size_equals_its_file_byte_for_byte() {
     let texels = texels.as_flattened().to_vec();
     let scene = Scene { size, surface: None };
     for filter in [ImageFilter::Bilinear, ImageFilter::Antialias] {
-        let image = PlacedImage { filter, ..placed(picture.clone(), size) };
-        assert!(rendered(&image, &scene) == texels, "{filter:?}");
+        let image = PlacedImage { filter, ..place(picture.clone(), size) };
+        assert!(render(&image, &scene) == texels, "{filter:?}");
     }
 }
 
@@ -50,7 +50,7 @@ fn an_unbent_picture_of_the_canvas_size_equals_its_file_byte_for_byte() {
 fn a_tile_beyond_the_canvas_or_the_picture_is_nothing() {
     let size = Size::new(100, 100);
     let scene = Scene { size, surface: None };
-    let mut image = placed(noise(size), size);
+    let mut image = place(noise(size), size);
     assert!(image.render_tile(&scene, TileAt::new(2, 0)).is_none());
     assert!(image.render_tile(&scene, TileAt::new(-1, 0)).is_none());
     image.placement.center = vec2(-400.0, 50.0);
@@ -62,9 +62,9 @@ fn dragged_content_shows_its_source_point_at_the_anchor() {
     let size = Size::new(64, 64);
     let picture = noise(size);
     let scene = Scene { size, surface: None };
-    let mut image = placed(picture.clone(), size);
+    let mut image = place(picture.clone(), size);
     image.bend.anchors = vec![Anchor { at: vec2(10.5, 20.5), source: vec2(40.5, 7.5) }];
-    let bytes = rendered(&image, &scene);
+    let bytes = render(&image, &scene);
     let Texels::Srgb8(texels) = &picture.texels else { unreachable!() };
     assert_eq!(bytes[(20 * 64 + 10) * 4..][..4], texels[7 * 64 + 40]);
 }
@@ -98,8 +98,8 @@ fn an_angular_map_that_covers_the_mirror_leaves_no_holes() {
             anchors: vec![Anchor::pin(at)],
             ..Bend::default()
         };
-        let image = PlacedImage { placement, bend, ..placed(map.clone(), size) };
-        let alphas = rendered(&image, &scene).into_iter().skip(3).step_by(4).enumerate();
+        let image = PlacedImage { placement, bend, ..place(map.clone(), size) };
+        let alphas = render(&image, &scene).into_iter().skip(3).step_by(4).enumerate();
         let covered = |i: usize| on(i % 96, i / 96).length() < 1.0;
         alphas.filter(|(i, a)| covered(*i) && *a < 250).count()
     };
@@ -151,7 +151,7 @@ fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel()
     };
     let picture = Picture::srgb8(Size::new(192, 192), (0..192 * 192).map(check).collect()).unwrap();
     let (alpha, beta, center) = (0.5, 1.0, vec2(48.5, 48.5));
-    let mut image = placed(picture, size);
+    let mut image = place(picture, size);
     image.outside = Outside::Mirror;
     image.bend.operator = Operator::Normal { alpha, beta, detail: 0.0 };
     image.bend.anchors = vec![Anchor::pin(center)];
@@ -172,7 +172,7 @@ fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel()
     let pixels: Vec<(usize, usize)> = (2..94).flat_map(|y| (2..94).map(move |x| (x, y))).collect();
     let reference: Vec<f32> = pixels.iter().map(|&(x, y)| supersampled(x, y)).collect();
     let error = |filter| {
-        let bytes = rendered(&PlacedImage { filter, ..image.clone() }, &scene);
+        let bytes = render(&PlacedImage { filter, ..image.clone() }, &scene);
         let squares = pixels
             .iter()
             .zip(&reference)
@@ -193,16 +193,16 @@ fn nothing_bleeds_across_a_silhouette() {
         |q| if q.x < 32.0 { Vec2::ZERO } else { vec2(0.5, 0.0) },
         |x| if x < 32 { 0.0 } else { 1.0 - 0.577 * (64 - x) as f32 / 64.0 * 0.1 },
     );
-    let mut image = placed(noise(size), size);
+    let mut image = place(noise(size), size);
     image.outside = Outside::Mirror;
     image.bend.operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
     image.bend.anchors = vec![Anchor::pin(vec2(10.5, 30.5))];
-    let bilinear = rendered(&image, &plates);
+    let bilinear = render(&image, &plates);
     image.filter = ImageFilter::Antialias;
-    let antialias = rendered(&image, &plates);
+    let antialias = render(&image, &plates);
     assert!(
         bilinear[(30 * 64 + 40) * 4..][..3]
-            != rendered(&placed(noise(size), size), &plates)[(30 * 64 + 40) * 4..][..3]
+            != render(&place(noise(size), size), &plates)[(30 * 64 + 40) * 4..][..3]
     );
     assert!(antialias == bilinear, "a pixel at the jump was blurred over both plates");
 }

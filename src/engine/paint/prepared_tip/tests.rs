@@ -29,7 +29,7 @@ fn flat() -> Scene {
     Scene { size: SIZE, surface: None }
 }
 
-fn painted(brush: Brush, operator: Operator, samples: Vec<Sample>, scene: &Scene) -> TileGrid {
+fn paint(brush: Brush, operator: Operator, samples: Vec<Sample>, scene: &Scene) -> TileGrid {
     let stroke = [Arc::new(Stroke::new(brush, operator, Color::WHITE, samples))];
     let mut grid = TileGrid::default();
     for at in TileAt::covering(SIZE.rect()) {
@@ -39,7 +39,7 @@ fn painted(brush: Brush, operator: Operator, samples: Vec<Sample>, scene: &Scene
 }
 
 fn dab(brush: &Brush, operator: Operator, scene: &Scene) -> TileGrid {
-    painted(brush.clone(), operator, vec![Sample::at(AT)], scene)
+    paint(brush.clone(), operator, vec![Sample::at(AT)], scene)
 }
 
 fn pixels() -> impl Iterator<Item = (i32, i32)> {
@@ -51,7 +51,7 @@ fn alpha(grid: &TileGrid) -> Vec<u8> {
 }
 
 /// A shape's coverage at a pixel by the definition, one pixel at a time.
-fn defined(
+fn coverage_by_definition(
     shape: TipShape,
     brush: &Brush,
     operator: Operator,
@@ -114,7 +114,7 @@ fn ellipses_and_squares_over_tile_borders_equal_their_definition_pixel_by_pixel(
             for (x, y) in pixels() {
                 let (a, b) = (
                     f32::from(grid.pixel(x, y)[3]),
-                    255.0 * defined(shape, &brush, operator, &scene, (x, y)),
+                    255.0 * coverage_by_definition(shape, &brush, operator, &scene, (x, y)),
                 );
                 assert!(
                     (a - b).abs() <= 1.0,
@@ -188,7 +188,7 @@ fn a_hose_stamps_its_pictures_in_turn_in_their_own_colors_and_sizes() {
     let hose = Hose::new(pictures, vec![HoseRank { count: 2, select: RankSelect::Incremental }]);
     let brush = Brush { size: 20.0, spacing: 1.5, tip: Tip::Hose(hose), ..Brush::default() };
     let samples = vec![Sample::at(vec2(20.0, 60.0)), Sample::at(vec2(115.0, 60.0))];
-    let grid = painted(brush, Operator::None, samples, &flat());
+    let grid = paint(brush, Operator::None, samples, &flat());
     let (red, blue) = ([255, 0, 0, 255], [0, 0, 255, 255]);
     assert_eq!([20, 50, 80, 110].map(|x| grid.pixel(x, 60)), [red, blue, red, blue]);
     assert_eq!(grid.pixel(28, 60), red, "the first is 20 px wide");
@@ -212,7 +212,7 @@ fn a_softness_that_follows_the_pen_blurs_every_tip_without_popping() {
         let brush =
             Brush { size: 50.0, hardness: 0.9, softness: 1.0, tip, dynamics, ..Brush::default() };
         let at = |pressure: f32| {
-            alpha(&painted(
+            alpha(&paint(
                 brush.clone(),
                 Operator::None,
                 vec![Sample { pressure, ..Sample::at(AT) }],

@@ -42,7 +42,7 @@ fn plates() -> Scene {
 }
 const BEND: Operator = Operator::Normal { alpha: 0.3, beta: 0.0, detail: 0.0 };
 /// D of a dab at `center` by that operator, as the paper writes it: L is the longer side.
-fn bent(q: Vec2, center: Vec2) -> Vec2 {
+fn bend(q: Vec2, center: Vec2) -> Vec2 {
     let pixel_of_center = center.floor() + 0.5;
     let turn = nbar(q) - nbar(pixel_of_center);
     // f_n(u) = α u at β = 0 (SF eq. 14).
@@ -54,7 +54,7 @@ fn brush(mode: BrushMode) -> Brush {
 }
 
 /// A layer after a stroke.
-fn rubbed(
+fn rub(
     brush: Brush,
     operator: Operator,
     points: &[Vec2],
@@ -79,14 +79,14 @@ fn touch(area: Rect) -> TileDab {
 }
 
 /// The position that a color of [`places`] encodes.
-fn encoded_place(color: [f32; 4]) -> Vec2 {
+fn decode_place(color: [f32; 4]) -> Vec2 {
     vec2(color[0], color[1]) * 255.0 + 0.5
 }
 
 #[test]
 fn a_smudge_drags_paint_along_and_touches_nothing_else() {
     let half = layer(|x, _| if x < 60 { [200, 30, 10, 255] } else { [0; 4] });
-    let dragged = rubbed(
+    let dragged = rub(
         brush(BrushMode::Smudge { length: 1.0 }),
         Operator::None,
         &[vec2(45.0, 70.0), vec2(110.0, 70.0)],
@@ -97,7 +97,7 @@ fn a_smudge_drags_paint_along_and_touches_nothing_else() {
     let pixel = dragged.pixel(100, 70);
     assert!(pixel[3] > 240 && pixel[0].abs_diff(200) < 12, "{pixel:?}");
     assert_eq!((dragged.pixel(100, 90), dragged.pixel(30, 90)), ([0; 4], [200, 30, 10, 255]));
-    let short = rubbed(
+    let short = rub(
         brush(BrushMode::Smudge { length: 0.02 }),
         Operator::None,
         &[vec2(45.0, 70.0), vec2(110.0, 70.0)],
@@ -128,8 +128,8 @@ fn what_a_smudge_drags_lies_at_the_same_place_of_the_image_plane_under_both_dabs
     let mut farthest: f32 = 0.0;
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
-        let p = encoded_place(color);
-        let (there, here) = (bent(p, before.at) - before.at, bent(q, now.at) - now.at);
+        let p = decode_place(color);
+        let (there, here) = (bend(p, before.at) - before.at, bend(q, now.at) - now.at);
         assert!(there.distance(here) < 0.12, "{q} takes {p}: {there} is not {here}");
         farthest = farthest.max((q - p - vec2(4.0, 2.0)).length());
     }
@@ -143,7 +143,7 @@ fn what_a_smudge_drags_lies_at_the_same_place_of_the_image_plane_under_both_dabs
 fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surface() {
     let base = places();
     let line = [vec2(120.0, 70.0), vec2(150.0, 75.0)];
-    let flat = rubbed(
+    let flat = rub(
         brush(BrushMode::Clone { aligned: true, picture: false }),
         Operator::None,
         &line,
@@ -158,11 +158,11 @@ fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surfa
     let colors = drag::clone_colors(&touch(area), &center, offset, &base, &scene);
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
-        let expected = bent(q, center.at) + offset;
+        let expected = bend(q, center.at) + offset;
         assert!(
-            encoded_place(color).distance(expected) < 0.1,
+            decode_place(color).distance(expected) < 0.1,
             "{q}: {} is not {expected}",
-            encoded_place(color)
+            decode_place(color)
         );
     }
 }
@@ -173,7 +173,7 @@ fn a_blurred_edge_is_as_soft_as_said_whatever_the_spacing() {
     for spacing in [0.05, 0.25] {
         let mode = BrushMode::Blur { width: 0.4 };
         let brush = Brush { size: 60.0, spacing, ..brush(mode) };
-        let soft = rubbed(
+        let soft = rub(
             brush,
             Operator::None,
             &[vec2(100.0, 10.0), vec2(100.0, 140.0)],
@@ -194,7 +194,7 @@ fn what_a_blur_makes_of_one_color_is_that_color_up_to_the_canvas_s_edge() {
     for (color, size) in [([200, 90, 30, 255], 24.0), ([10, 220, 130, 100], 400.0)] {
         let even = layer(|_, _| color);
         let brush = Brush { size, ..brush(BrushMode::Blur { width: 1.0 }) };
-        let blurred = rubbed(
+        let blurred = rub(
             brush,
             Operator::None,
             &[vec2(-5.0, 3.0), vec2(80.0, 70.0)],
@@ -213,7 +213,7 @@ fn a_mark_bounded_to_an_object_neither_leaves_it_nor_takes_from_others() {
     let scene = plates();
     let two = layer(|x, _| if x < 100 { [255, 0, 0, 255] } else { [0, 0, 255, 255] });
     let brush = Brush { bounded: PaintLimit::Object, ..brush(BrushMode::Blur { width: 0.5 }) };
-    let blurred = rubbed(
+    let blurred = rub(
         brush,
         Operator::None,
         &[vec2(95.0, 40.0), vec2(105.0, 90.0)],
@@ -234,7 +234,7 @@ fn kept_alpha_keeps_the_shape_of_the_paint() {
     });
     for mode in [BrushMode::Smudge { length: 0.9 }, BrushMode::Blur { width: 0.5 }] {
         let brush = Brush { keeps_alpha: true, ..brush(mode) };
-        let kept = rubbed(
+        let kept = rub(
             brush,
             Operator::None,
             &[vec2(60.0, 70.0), vec2(140.0, 70.0)],
@@ -307,7 +307,7 @@ fn hostile_samples_and_settings_end_in_finite_pixels() {
             BrushMode::Blur { width: hostile },
             BrushMode::Clone { aligned: false, picture: false },
         ] {
-            let left = rubbed(brush(mode), BEND, &points, vec2(hostile, 3.0), &places(), &waves());
+            let left = rub(brush(mode), BEND, &points, vec2(hostile, 3.0), &places(), &waves());
             assert_eq!(left.pixel(199, 149), places().pixel(199, 149));
         }
     }
@@ -326,8 +326,7 @@ fn a_brush_carries_paint_along_and_loses_it_as_fast_as_its_length_says() {
     let halves = layer(|x, _| if x < 100 { [255, 0, 0, 255] } else { [0, 0, 255, 255] });
     let along = [vec2(40.0, 70.0), vec2(180.0, 70.0)];
     let at = |length: f32, x: i32| {
-        let after =
-            rubbed(picking(1.0, length), Operator::None, &along, Vec2::ZERO, &halves, &FLAT);
+        let after = rub(picking(1.0, length), Operator::None, &along, Vec2::ZERO, &halves, &FLAT);
         after.pixel(x, 70)
     };
     assert_eq!(at(0.0, 60), [255, 0, 0, 255]);
@@ -347,15 +346,15 @@ fn a_brush_carries_paint_along_and_loses_it_as_fast_as_its_length_says() {
 fn a_brush_that_picks_nothing_up_paints_as_plain_paint_does() {
     let ground = layer(|_, _| [200, 100, 50, 255]);
     let along = [vec2(40.0, 70.0), vec2(150.0, 90.0)];
-    let plain = rubbed(picking(0.0, 0.5), Operator::None, &along, Vec2::ZERO, &ground, &FLAT);
+    let plain = rub(picking(0.0, 0.5), Operator::None, &along, Vec2::ZERO, &ground, &FLAT);
     assert_eq!(plain.pixel(90, 79), [0, 0, 0, 255]);
-    let half = rubbed(picking(0.5, 0.0), Operator::None, &[along[0]], Vec2::ZERO, &ground, &FLAT);
+    let half = rub(picking(0.5, 0.0), Operator::None, &[along[0]], Vec2::ZERO, &ground, &FLAT);
     assert_eq!(half.pixel(40, 70), [100, 50, 25, 255]);
 }
 
 #[test]
 fn paint_that_is_taken_up_from_nothing_leaves_less_than_paint() {
-    let half = rubbed(
+    let half = rub(
         picking(0.5, 0.0),
         Operator::None,
         &[vec2(40.0, 70.0)],

@@ -327,7 +327,7 @@ fn every_dab_has_its_own_color_where_the_brush_varies_it() {
 
 /// D of a dab by MATH 2, written out again: q + L Σ …, or q + f_p (q − q_0), with the ball's own n̄
 /// and z.
-fn moved_by_math(operator: Operator, q: Vec2, anchor: Vec2) -> Option<Vec2> {
+fn deform_by_math(operator: Operator, q: Vec2, anchor: Vec2) -> Option<Vec2> {
     let over = |q: Vec2| {
         // The pixel that holds q, as the maps do.
         let p = (q.floor() + 0.5 - SIZE.center()) / 62.0;
@@ -380,7 +380,8 @@ fn driven_dabs_on_a_ball_lie_where_math_puts_them() {
         {
             let q = vec2(x as f32 + 0.5, y as f32 + 0.5);
             // At the silhouette depth falls so steeply that a pixel spans more than the dab.
-            let Some(d) = moved_by_math(driven, q, at).filter(|_| q.distance(SIZE.center()) < 58.0)
+            let Some(d) =
+                deform_by_math(driven, q, at).filter(|_| q.distance(SIZE.center()) < 58.0)
             else {
                 continue;
             };

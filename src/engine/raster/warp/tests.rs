@@ -38,7 +38,7 @@ fn noise() -> TileGrid {
     TileGrid::from_straight_rgba(&rgba, SIDE as usize, SIDE as usize, 0, 0)
 }
 
-fn seen(grid: &TileGrid, map: PlaneMap, filter: Resampling) -> TileGrid {
+fn warp(grid: &TileGrid, map: PlaneMap, filter: Resampling) -> TileGrid {
     warp_tiles(grid, &Through(map, CANVAS), filter, &tiles())
 }
 
@@ -61,14 +61,14 @@ fn mirrors_quarter_turns_and_shifts_there_and_back_give_the_same_bytes() {
     let shift = |dx: f32| PlaneMap::translation(vec2(dx, 0.0));
     for steps in [vec![mirror, mirror], vec![PlaneMap::rotation(90.0, middle); 4]] {
         let back =
-            steps.iter().fold(picture.clone(), |grid, step| seen(&grid, *step, Resampling::Smooth));
+            steps.iter().fold(picture.clone(), |grid, step| warp(&grid, *step, Resampling::Smooth));
         assert!(
             tiles()
                 .iter()
                 .all(|&at| back.tile(at).unwrap().bytes() == picture.tile(at).unwrap().bytes())
         );
     }
-    let moved = seen(&picture, shift(7.0), Resampling::Smooth);
+    let moved = warp(&picture, shift(7.0), Resampling::Smooth);
     assert_eq!(moved.pixel(17, 5), picture.pixel(10, 5));
     assert_eq!(moved.pixel(3, 5), [0; 4]);
 }
@@ -80,7 +80,7 @@ fn a_flat_color_stays_one_however_it_is_turned_or_reduced() {
         [PlaneMap::rotation(17.0, vec2(128.0, 128.0)), affine([0.31, 0.1, -0.2, 0.4, 90.0, 80.0])]
     {
         for (filter, _) in Resampling::ALL {
-            let out = seen(&grid, map, filter);
+            let out = warp(&grid, map, filter);
             assert_eq!(out.pixel(128, 128), [153, 153, 153, 255], "{filter:?}");
         }
     }
@@ -89,7 +89,7 @@ fn a_flat_color_stays_one_however_it_is_turned_or_reduced() {
 #[test]
 fn a_zone_plate_at_half_size_is_what_supersampling_gives() {
     let half = affine([0.5, 0.0, 0.0, 0.5, 0.0, 0.0]);
-    let shown = seen(&picture(rings), half, Resampling::Smooth);
+    let shown = warp(&picture(rings), half, Resampling::Smooth);
     let (mut own, mut unfiltered) = (0.0f64, 0.0f64);
     for y in 0..SIDE / 2 {
         for x in 0..SIDE / 2 {
@@ -113,8 +113,8 @@ fn a_sharp_turn_there_and_back_loses_little() {
     let soft = |x: f32, y: f32| 0.5 + 0.3 * (x * 0.15).sin() * (y * 0.11).cos();
     let grid = picture(soft);
     let turn = |degrees: f64| PlaneMap::rotation(degrees, vec2(128.0, 128.0));
-    let there = seen(&grid, turn(30.0), Resampling::Sharp);
-    let back = seen(&there, turn(-30.0), Resampling::Sharp);
+    let there = warp(&grid, turn(30.0), Resampling::Sharp);
+    let back = warp(&there, turn(-30.0), Resampling::Sharp);
     let off = |x: i32, y: i32| i32::from(back.pixel(x, y)[0]) - i32::from(grid.pixel(x, y)[0]);
     let worst =
         (64..192).flat_map(|y| (64..192).map(move |x| (x, y))).map(|(x, y)| off(x, y).abs()).max();
@@ -127,9 +127,9 @@ fn a_horizon_and_a_speck_of_a_picture_are_shown_without_stalling() {
     let grid = noise();
     let near = [dvec2(0.0, 0.0), dvec2(256.0, 0.0), dvec2(128.5, 200.0), dvec2(127.5, 200.0)];
     let map = PlaneMap::quad(CANVAS, near).unwrap();
-    assert!(seen(&grid, map, Resampling::Smooth).pixel(128, 20)[3] > 0);
+    assert!(warp(&grid, map, Resampling::Smooth).pixel(128, 20)[3] > 0);
     let speck = affine([1e-4, 0.0, 0.0, 1e-4, 40.0, 40.0]);
-    assert!(seen(&grid, speck, Resampling::Smooth).pixel(200, 200)[3] == 0);
+    assert!(warp(&grid, speck, Resampling::Smooth).pixel(200, 200)[3] == 0);
 }
 
 #[test]

@@ -229,7 +229,7 @@ fn a_highlight_stretches_along_the_direction_of_the_smaller_exponent() {
 }
 
 /// n̄ of a pixel in the frame of its view.
-fn seen_nbar(surface: &Surface, x: usize, y: usize) -> crate::math::Vec2 {
+fn nbar_of_view(surface: &Surface, x: usize, y: usize) -> crate::math::Vec2 {
     let n = in_view(surface.view(x, y), surface.normal(x, y));
     crate::math::vec2(n.x, -n.y)
 }
@@ -259,7 +259,7 @@ fn two_lit_spheres_are_blended_by_curvature_and_scaled_by_their_luminance() {
     assert_shows(&shading, 1.0, |surface, x, y| {
         let kappa = shading.features.on(surface).at(x, y, Vec3::Z);
         let at = |sphere: &crate::shading::sphere::SphereLight| {
-            Vec3::from(sphere.at(seen_nbar(surface, x, y)))
+            Vec3::from(sphere.at(nbar_of_view(surface, x, y)))
         };
         let shown = at(concave).lerp(at(convex), 0.5 + 0.5 * kappa);
         let delta = srgb::luminance(shown.x, shown.y, shown.z) / most;
@@ -271,7 +271,7 @@ fn two_lit_spheres_are_blended_by_curvature_and_scaled_by_their_luminance() {
 fn a_lit_sphere_that_names_no_picture_is_clay() {
     let shading = Shading::new(Model::LitSphere);
     assert_shows(&shading, 1.0, |surface, x, y| {
-        Vec3::from(LitSphere::clay().light().at(seen_nbar(surface, x, y)))
+        Vec3::from(LitSphere::clay().light().at(nbar_of_view(surface, x, y)))
     });
 }
 

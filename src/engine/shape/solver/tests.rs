@@ -1,7 +1,7 @@
 use super::*;
 
 /// −∇²v + held v at a pixel, as the equation reads.
-fn applied_at(inside: &Plane<bool>, held: &Plane<f32>, v: &[f32], x: usize, y: usize) -> f32 {
+fn apply_at(inside: &Plane<bool>, held: &Plane<f32>, v: &[f32], x: usize, y: usize) -> f32 {
     let w = inside.width();
     let beside = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
     let inner = beside.iter().filter(|p| inside.at(p.0, p.1));
@@ -33,7 +33,7 @@ fn the_equation_holds_on_a_ragged_grid_from_any_start() {
         for (x, y) in
             (1..60).flat_map(|y| (1..96).map(move |x| (x, y))).filter(|p| inside.at(p.0, p.1))
         {
-            let left = b[y * 97 + x] - applied_at(&inside, &held, &v, x, y);
+            let left = b[y * 97 + x] - apply_at(&inside, &held, &v, x, y);
             assert!(left.abs() < 2e-3, "{left} left at ({x}, {y})");
         }
     }
@@ -60,7 +60,7 @@ fn few_steps_from_nothing_solve_a_large_disc() {
 }
 
 /// A ragged square whose rim is held.
-fn ragged(n: usize) -> (Plane<bool>, Plane<f32>) {
+fn ragged_square(n: usize) -> (Plane<bool>, Plane<f32>) {
     let is_inner = |x: usize, y: usize| x > 0 && y > 0 && x + 1 < n && y + 1 < n;
     let inside = Plane::from_fn(Size::new(n as u32, n as u32), |x, y| {
         is_inner(x, y) && (x / 19 + y / 23) % 5 != 4
@@ -78,7 +78,7 @@ fn ragged(n: usize) -> (Plane<bool>, Plane<f32>) {
 
 #[test]
 fn pixels_that_are_held_later_are_held_as_if_they_always_had_been() {
-    let (inside, held) = ragged(97);
+    let (inside, held) = ragged_square(97);
     let pixels: Vec<(usize, usize)> =
         (30..41).flat_map(|y| (24..31).map(move |x| (x, y))).collect();
     let more = Plane::from_fn(inside.size(), |x, y| {
@@ -95,7 +95,7 @@ fn pixels_that_are_held_later_are_held_as_if_they_always_had_been() {
 
 #[test]
 fn a_field_that_is_nearly_right_comes_ten_times_nearer() {
-    let (inside, held) = ragged(97);
+    let (inside, held) = ragged_square(97);
     let (here, radius) = ((47.0f32, 34.0f32), 3.0);
     let is_near = |x: usize, y: usize| (x as f32 - here.0).hypot(y as f32 - here.1) < radius;
     let more = Plane::from_fn(inside.size(), |x, y| {

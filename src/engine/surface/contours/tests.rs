@@ -6,14 +6,14 @@ use super::*;
 use crate::math::{Vec3, vec3};
 use crate::raster::Plane;
 use crate::surface::{Maps, Surface};
-use spheres::seen;
+use spheres::hit_at;
 use std::sync::Arc;
 
 const SIZE: Size = Size::new(spheres::CANVAS[0], spheres::CANVAS[1]);
 
 /// `bits`: of the stored normals; 0 is exact.
 fn surface(bits: u32) -> Arc<Surface> {
-    let at = |x: usize, y: usize| seen(x as f32 + 0.5, y as f32 + 0.5);
+    let at = |x: usize, y: usize| hit_at(x as f32 + 0.5, y as f32 + 0.5);
     let (low, high) = (-60.0, 220.0);
     let levels = ((1u32 << bits) - 1) as f32;
     let stored = |v: f32| {
@@ -41,7 +41,7 @@ enum Told {
 /// The same with a mask of shades.
 fn shaded_surface(told: Told) -> Arc<Surface> {
     let covered = |x: usize, y: usize| samples(x as i32, y as i32).flatten();
-    let of_center = |x: usize, y: usize| seen(x as f32 + 0.5, y as f32 + 0.5);
+    let of_center = |x: usize, y: usize| hit_at(x as f32 + 0.5, y as f32 + 0.5);
     let is_mean =
         |x: usize, y: usize| told == Told::Means && (1..144).contains(&covered(x, y).count());
     let normals = Plane::from_fn(SIZE, |x, y| match is_mean(x, y) {
@@ -61,7 +61,7 @@ fn shaded_surface(told: Told) -> Arc<Surface> {
 }
 
 /// Light of a matt body with a highlight on a light ground.
-fn shaded(normal: Option<Vec3>) -> f32 {
+fn shade(normal: Option<Vec3>) -> f32 {
     let Some(n) = normal else { return 0.9 };
     let light = vec3(0.4, 0.5, 0.77).normalize();
     let lit = n.dot(light);
@@ -72,10 +72,10 @@ fn shaded(normal: Option<Vec3>) -> f32 {
 /// The mean over the samples of a pixel, and whether they show more than one thing.
 fn reference(x: usize, y: usize) -> (f32, bool) {
     let at = |k: usize| (k as f32 + 0.5) / 12.0;
-    let samples = (0..144).map(|k| seen(x as f32 + at(k % 12), y as f32 + at(k / 12)));
+    let samples = (0..144).map(|k| hit_at(x as f32 + at(k % 12), y as f32 + at(k / 12)));
     let shows: Vec<_> = samples.collect();
     let first = shows[0].map(|s| s.0);
-    let mean = shows.iter().map(|s| shaded(s.map(|s| s.1))).sum::<f32>() / 144.0;
+    let mean = shows.iter().map(|s| shade(s.map(|s| s.1))).sum::<f32>() / 144.0;
     (mean, shows.iter().any(|s| s.map(|s| s.0) != first))
 }
 
@@ -83,7 +83,7 @@ fn reference(x: usize, y: usize) -> (f32, bool) {
 fn errors(surface: &Arc<Surface>) -> [f32; 2] {
     let far = surface.far_side().unwrap();
     let mut mixed = Plane::from_fn(SIZE, |x, y| {
-        shaded((surface.coverage(x, y) > 0).then(|| surface.normal(x, y)))
+        shade((surface.coverage(x, y) > 0).then(|| surface.normal(x, y)))
     });
     for at in TileAt::covering(SIZE.rect()) {
         let Some(contours) = surface.contours().on(at) else { continue };
@@ -99,7 +99,7 @@ fn errors(surface: &Arc<Surface>) -> [f32; 2] {
                 );
                 far.normal(sx, sy)
             });
-            mixed.set(x, y, pixel.share * mixed.at(x, y) + (1.0 - pixel.share) * shaded(other));
+            mixed.set(x, y, pixel.share * mixed.at(x, y) + (1.0 - pixel.share) * shade(other));
         }
     }
     let (mut sums, mut count) = ([0.0; 2], 0);
@@ -107,8 +107,8 @@ fn errors(surface: &Arc<Surface>) -> [f32; 2] {
         for x in 0..SIZE.width as usize {
             let (mean, is_contour) = reference(x, y);
             if is_contour {
-                let one = seen(x as f32 + 0.5, y as f32 + 0.5).map(|s| s.1);
-                sums[0] += (shaded(one) - mean).abs();
+                let one = hit_at(x as f32 + 0.5, y as f32 + 0.5).map(|s| s.1);
+                sums[0] += (shade(one) - mean).abs();
                 sums[1] += (mixed.at(x, y) - mean).abs();
                 count += 1;
             }
@@ -130,7 +130,7 @@ fn smooth_bodies_come_within_a_fifth_of_one_samples_error() {
 /// The samples of a pixel.
 fn samples(x: i32, y: i32) -> impl Iterator<Item = Option<(usize, Vec3, f32)>> {
     let at = |k: usize| (k as f32 + 0.5) / 12.0;
-    (0..144).map(move |k| seen(x as f32 + at(k % 12), y as f32 + at(k / 12)))
+    (0..144).map(move |k| hit_at(x as f32 + at(k % 12), y as f32 + at(k / 12)))
 }
 
 /// How far the maps' n̄ are from the mean of what a pixel's own side sees, and how far its
@@ -156,7 +156,7 @@ fn errors_of_own_normals(
 #[test]
 fn a_pixel_s_own_normal_is_that_of_the_middle_of_its_own_share() {
     let at_center =
-        |pixel: &ContourPixel| seen(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5).map(|s| s.0);
+        |pixel: &ContourPixel| hit_at(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5).map(|s| s.0);
     let [before, after] = errors_of_own_normals(&surface(0), at_center);
     assert!(after < 0.5 * before, "{before} became {after}");
 }

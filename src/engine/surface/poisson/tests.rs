@@ -2,7 +2,7 @@ use super::*;
 use crate::math::hash;
 
 /// A ragged disc and a band that touches it along a row of slack couplings.
-fn ragged(w: usize, h: usize) -> PoissonGrid {
+fn ragged_grid(w: usize, h: usize) -> PoissonGrid {
     let held = |x: usize, y: usize| {
         let (dx, dy) = (x as f32 / w as f32 - 0.5, y as f32 / h as f32 - 0.5);
         dx.hypot(dy) < 0.45 && !(x * 7 + y * 13).is_multiple_of(41) || y < 4
@@ -16,7 +16,7 @@ fn ragged(w: usize, h: usize) -> PoissonGrid {
     PoissonGrid::new(w, plane(1, 0), plane(0, 1))
 }
 
-fn applied(grid: &PoissonGrid, v: &[f32]) -> Vec<f32> {
+fn apply(grid: &PoissonGrid, v: &[f32]) -> Vec<f32> {
     let force = |i: usize| {
         let (sum, pull) = grid.pull(v, i);
         sum * v[i] - pull
@@ -33,12 +33,12 @@ fn a_known_solution_is_found_on_a_ragged_grid_in_few_steps() {
     for (w, h) in [(53, 38), (200, 131), (1, 40), (40, 1), (1, 1)] {
         let truth: Vec<f32> =
             (0..w * h).map(|i| ((i % w) as f32 * 0.2).sin() * 5.0 + (i / w) as f32 * 0.3).collect();
-        let b = applied(&ragged(w, h), &truth);
-        let solver = PoissonSolver::new(ragged(w, h));
+        let b = apply(&ragged_grid(w, h), &truth);
+        let solver = PoissonSolver::new(ragged_grid(w, h));
         let mut found = vec![0.0; w * h];
         let steps = solver.solve(&b, &mut found, Effort::EXACT, &mut SolveScratch::default());
         let off: Vec<f32> =
-            applied(solver.grid(), &found).iter().zip(&b).map(|(a, b)| a - b).collect();
+            apply(solver.grid(), &found).iter().zip(&b).map(|(a, b)| a - b).collect();
         assert!(length(&off) <= 3e-5 * length(&b), "{w} × {h}: {} of {}", length(&off), length(&b));
         assert!(steps <= 16, "{w} × {h}: {steps} steps");
     }
@@ -49,8 +49,8 @@ fn a_good_beginning_saves_steps() {
     let (w, h) = (120, 90);
     let truth: Vec<f32> =
         (0..w * h).map(|i| (i % w) as f32 * 0.3 + ((i / w) as f32 * 0.1).cos()).collect();
-    let b = applied(&ragged(w, h), &truth);
-    let solver = PoissonSolver::new(ragged(w, h));
+    let b = apply(&ragged_grid(w, h), &truth);
+    let solver = PoissonSolver::new(ragged_grid(w, h));
     let mut scratch = SolveScratch::default();
     let cold = solver.solve(&b, &mut vec![0.0; w * h], Effort::EXACT, &mut scratch);
     let warm = solver.solve(&b, &mut truth.clone(), Effort::EXACT, &mut scratch);
@@ -59,10 +59,10 @@ fn a_good_beginning_saves_steps() {
 
 #[test]
 fn rows_do_as_the_equation_says() {
-    let grid = ragged(70, 40);
+    let grid = ragged_grid(70, 40);
     let v: Vec<f32> = (0..70 * 40).map(|i| hash::unit(9, i, 0)).collect();
     let b: Vec<f32> = (0..70 * 40).map(|i| hash::unit(9, i, 1)).collect();
-    let (mut out, force) = (vec![0.0; 70], applied(&grid, &v));
+    let (mut out, force) = (vec![0.0; 70], apply(&grid, &v));
     for y in 0..40 {
         let at = y * 70..(y + 1) * 70;
         rows::residual_row(grid.row(y), neighboring_rows(&v, 70, y), &b[at.clone()], &mut out);

@@ -34,13 +34,13 @@ fn view(eye: Eye, at: Vec2) -> (Vec3, Vec3) {
 }
 
 /// What a pixel's center shows: the place and the normal.
-fn shown(balls: &[Ball], eye: Eye, at: Vec2) -> Option<(Vec3, Vec3)> {
+fn hit_at(balls: &[Ball], eye: Eye, at: Vec2) -> Option<(Vec3, Vec3)> {
     let (from, toward) = view(eye, at);
     cast(balls, from, toward).map(|(t, n)| (from + toward * t, n))
 }
 
 fn surface(balls: &[Ball], eye: Eye) -> Surface {
-    let at = |x: usize, y: usize| shown(balls, eye, vec2(x as f32 + 0.5, y as f32 + 0.5));
+    let at = |x: usize, y: usize| hit_at(balls, eye, vec2(x as f32 + 0.5, y as f32 + 0.5));
     let heights = (0..SIZE.area()).filter_map(|i| at(i % 161, i / 161)).map(|(p, _)| p.z);
     let (low, high) = heights.fold((f32::MAX, f32::MIN), |(a, b), z| (a.min(z), b.max(z)));
     let maps = Maps {
@@ -54,14 +54,14 @@ fn surface(balls: &[Ball], eye: Eye) -> Surface {
 }
 
 /// The ray that a pixel mirrors.
-fn mirrored(surface: &Surface, map: &RayMap, x: usize, y: usize) -> SurfaceRay {
+fn mirror_ray(surface: &Surface, map: &RayMap, x: usize, y: usize) -> SurfaceRay {
     let (n, v) = (surface.normal(x, y), surface.view(x, y));
     let (at, nearness) =
         (vec2(x as f32 + 0.5, y as f32 + 0.5), map.nearness_of(surface.depth(x, y)));
     SurfaceRay { at, nearness, direction: 2.0 * n.dot(v) * n - v, inward: false }
 }
 
-fn covered(surface: &Surface) -> impl Iterator<Item = (usize, usize)> {
+fn covered_pixels(surface: &Surface) -> impl Iterator<Item = (usize, usize)> {
     let at = (0..SIZE.area()).map(|i| (i % 161, i / 161));
     at.filter(|&(x, y)| surface.coverage(x, y) > 0)
 }
@@ -72,9 +72,9 @@ fn rays_between_balls_meet_where_geometry_says() {
         let surface = surface(&balls, eye);
         let map = surface.ray_map();
         let (mut met, mut missed) = (0, 0);
-        for (x, y) in covered(&surface) {
-            let ray = mirrored(&surface, &map, x, y);
-            let (from, n) = shown(&balls, eye, ray.at).unwrap();
+        for (x, y) in covered_pixels(&surface) {
+            let ray = mirror_ray(&surface, &map, x, y);
+            let (from, n) = hit_at(&balls, eye, ray.at).unwrap();
             let exact = cast(&balls, from + n * 0.05, ray.direction);
             let Some((t, n)) = exact else {
                 // Only beside a rim, where a picture of pixels cannot tell.
@@ -133,9 +133,9 @@ fn jumping_over_blocks_changes_no_ray() {
         let mut every_pixel = RayMap::of(&surface);
         every_pixel.blocks = BLOCKS.map(|side| Plane::full(blocks_of(SIZE, side), -NOWHERE));
         let (mut met, mut jumped) = (0, 0);
-        for (x, y) in covered(&surface) {
+        for (x, y) in covered_pixels(&surface) {
             for turn in 0..3 {
-                let mut ray = mirrored(&surface, &map, x, y);
+                let mut ray = mirror_ray(&surface, &map, x, y);
                 let (sin, cos) = (2.1 * turn as f32).sin_cos();
                 let r = ray.direction;
                 ray.direction = vec3(
@@ -172,8 +172,8 @@ fn planes_and_single_balls_are_never_met() {
     };
     for surface in [ball, plane(vec2(0.0, 0.0)), plane(vec2(1.2, 0.0)), plane(vec2(-0.6, 2.0))] {
         let map = surface.ray_map();
-        for (x, y) in covered(&surface) {
-            let ray = mirrored(&surface, &map, x, y);
+        for (x, y) in covered_pixels(&surface) {
+            let ray = mirror_ray(&surface, &map, x, y);
             assert!(surface.trace(&map, &ray).is_none(), "({x}, {y})");
         }
     }

@@ -66,7 +66,13 @@ fn highest(
 
 /// How much of a ray is hidden beyond a distance: what is far fades, and near, low things hide as
 /// well as far, high ones.
-fn hidden_beyond(heights: &HeightMaps, q: Vec2, lamp: LampPlace, ray: &LampRay, from: f32) -> f32 {
+fn share_hidden_beyond(
+    heights: &HeightMaps,
+    q: Vec2,
+    lamp: LampPlace,
+    ray: &LampRay,
+    from: f32,
+) -> f32 {
     let split = 0.5 * ray.reach_px;
     let [near, far] = [(from, split), (split, ray.reach_px)].map(|window| {
         let (above, t, rise) = highest(heights, q, lamp, ray, window);
@@ -76,19 +82,19 @@ fn hidden_beyond(heights: &HeightMaps, q: Vec2, lamp: LampPlace, ray: &LampRay, 
 }
 
 /// The share of a lamp that a pixel sees: the equation, pixel after pixel along each ray.
-fn seen_from(heights: &HeightMaps, (x, y): (usize, usize), lamp: &ShadowLamp) -> f32 {
+fn share_seen_from(heights: &HeightMaps, (x, y): (usize, usize), lamp: &ShadowLamp) -> f32 {
     let q = vec2(x as f32, y as f32);
     if let LampPlace::At(_) = lamp.place {
         let rays = lamp.rays(heights.highest);
         let hidden: f32 =
-            rays.iter().map(|ray| hidden_beyond(heights, q, lamp.place, ray, 0.0)).sum();
+            rays.iter().map(|ray| share_hidden_beyond(heights, q, lamp.place, ray, 0.0)).sum();
         return seen_share(hidden / lamp.rays as f32);
     }
     let rays = parallel::RayGroups::of(lamp, heights.highest);
     let of_group = |group: &parallel::RayGroup| {
         let (above, t, rise) = highest(heights, q, lamp.place, &group.near, (0.0, rays.near_px));
         let near = hidden_share(above, t, rise, group.near.spread) * group.far.len() as f32;
-        let beyond = |ray| hidden_beyond(heights, q, lamp.place, ray, rays.near_px);
+        let beyond = |ray| share_hidden_beyond(heights, q, lamp.place, ray, rays.near_px);
         near.max(group.far.iter().map(beyond).sum())
     };
     seen_share(rays.groups.iter().map(of_group).sum::<f32>() / rays.count as f32)
@@ -103,7 +109,7 @@ fn differences(surface: &Surface, lamp: &ShadowLamp) -> (f32, f32) {
         .step_by(7)
         .flat_map(|y| (2..surface.size().width as usize).step_by(5).map(move |x| (x, y)))
     {
-        let off = (fast.at(x, y) - seen_from(&heights, (x, y), lamp)).abs();
+        let off = (fast.at(x, y) - share_seen_from(&heights, (x, y), lamp)).abs();
         (sum, far, count) = (sum + off, far + u32::from(off > 0.05), count + 1);
     }
     (sum / count as f32, far as f32 / count as f32)

@@ -39,7 +39,7 @@ fn file(is_big_endian: bool, size: [u16; 2], tags: &[(u16, &[u16])], data: &[u8]
     [&begin[..], &long(8 + spare.len() as u32), &spare, &directory, &[0; 4]].concat()
 }
 
-fn decoded(bytes: &[u8]) -> DynamicImage {
+fn decode_bytes(bytes: &[u8]) -> DynamicImage {
     decode(Path::new("a.tif"), bytes, &Budget::default()).unwrap_or_else(|e| panic!("{e}")).image
 }
 const PHOTOMETRIC: u16 = 262;
@@ -55,7 +55,7 @@ fn a_palette_gives_its_colors() {
     (map[3], map[16 + 3], map[32 + 3], map[32 + 9]) = (65535, 0x8000, 0, 0x1234);
     let tags: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[3]), (BITS, &[4]), (SAMPLES, &[1]), (320, &map)];
     for is_big_endian in [false, true] {
-        let image = decoded(&file(is_big_endian, [3, 1], tags, &[0x39, 0x30]));
+        let image = decode_bytes(&file(is_big_endian, [3, 1], tags, &[0x39, 0x30]));
         assert_eq!(image.into_rgb8().into_raw(), [255, 128, 0, 0, 0, 0x12, 255, 128, 0]);
     }
 }
@@ -64,7 +64,7 @@ fn a_palette_gives_its_colors() {
 fn gray_with_alpha_and_white_zero_are_light() {
     let tags: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[0]), (BITS, &[8, 8]), (SAMPLES, &[2]), (EXTRA, &[2])];
-    let image = decoded(&file(true, [2, 1], tags, &[0, 255, 200, 100]));
+    let image = decode_bytes(&file(true, [2, 1], tags, &[0, 255, 200, 100]));
     assert_eq!(image.into_luma_alpha8().into_raw(), [255, 255, 55, 100]);
 }
 
@@ -72,7 +72,7 @@ fn gray_with_alpha_and_white_zero_are_light() {
 fn inks_are_printed_and_a_big_tiff_is_known() {
     let tags: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[5]), (BITS, &[8]), (SAMPLES, &[5]), (EXTRA, &[2])];
-    let image = decoded(&file(true, [1, 1], tags, &[255, 0, 51, 127, 9]));
+    let image = decode_bytes(&file(true, [1, 1], tags, &[255, 0, 51, 127, 9]));
     assert_eq!(image.into_rgba8().into_raw(), [0, 128, 102, 9]);
     let mut bytes = Cursor::new(Vec::new());
     let mut encoder = tiff::encoder::TiffEncoder::new_big(&mut bytes).unwrap();
@@ -86,12 +86,12 @@ fn inks_are_printed_and_a_big_tiff_is_known() {
 fn floats_of_any_width_are_read_and_gray_ones_become_rgb() {
     let tags: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[1]), (BITS, &[16]), (SAMPLES, &[1]), (FORMAT, FLOATS)];
-    let image = decoded(&file(false, [2, 1], tags, &[0x00, 0x3c, 0x00, 0x34]));
+    let image = decode_bytes(&file(false, [2, 1], tags, &[0x00, 0x3c, 0x00, 0x34]));
     assert_eq!(image.into_rgb32f().into_raw(), [1.0, 1.0, 1.0, 0.25, 0.25, 0.25]);
     let wide: Vec<u8> = [2.5f64, 0.5].iter().flat_map(|v| v.to_be_bytes()).collect();
     let tags: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[1]), (BITS, &[64]), (SAMPLES, &[1]), (FORMAT, FLOATS)];
-    let image = decoded(&file(true, [2, 1], tags, &wide));
+    let image = decode_bytes(&file(true, [2, 1], tags, &wide));
     assert_eq!(image.into_rgb32f().into_raw(), [2.5, 2.5, 2.5, 0.5, 0.5, 0.5]);
 }
 
@@ -99,11 +99,11 @@ fn floats_of_any_width_are_read_and_gray_ones_become_rgb() {
 fn colors_multiplied_by_alpha_and_planes_come_straight_and_in_turn() {
     let rgba: &[(u16, &[u16])] =
         &[(PHOTOMETRIC, &[2]), (BITS, &[8]), (SAMPLES, &[4]), (EXTRA, &[1])];
-    let image = decoded(&file(false, [1, 1], rgba, &[64, 32, 0, 128]));
+    let image = decode_bytes(&file(false, [1, 1], rgba, &[64, 32, 0, 128]));
     assert_eq!(image.into_rgba8().into_raw(), [128, 64, 0, 128]);
     let strips: &[(u16, &[u16])] = &[(273, &[8, 10, 12]), (279, &[2, 2, 2]), (284, &[2])];
     let planes = [&[(PHOTOMETRIC, &[2][..]), (BITS, &[8]), (SAMPLES, &[3])], strips].concat();
-    let image = decoded(&file(false, [2, 1], &planes, &[1, 2, 3, 4, 5, 6]));
+    let image = decode_bytes(&file(false, [2, 1], &planes, &[1, 2, 3, 4, 5, 6]));
     assert_eq!(image.into_rgb8().into_raw(), [1, 3, 5, 2, 4, 6]);
 }
 
@@ -141,7 +141,7 @@ fn jpeg(side: u32) -> Vec<u8> {
 #[test]
 fn tiles_that_are_jpegs_are_read() {
     assert_eq!(
-        decoded(&tiles_of_jpeg([32, 32], &jpeg(16))).into_rgb8().get_pixel(20, 20).0,
+        decode_bytes(&tiles_of_jpeg([32, 32], &jpeg(16))).into_rgb8().get_pixel(20, 20).0,
         [90; 3]
     );
 }
@@ -205,7 +205,7 @@ fn zstd_is_unpacked_strip_by_strip() {
                 &[strips, colors].concat(),
                 &[&first[..], &second].concat(),
             );
-            assert_eq!(decoded(&bytes).into_luma8().into_raw(), [1, 2, 3, 4, 5, 6]);
+            assert_eq!(decode_bytes(&bytes).into_luma8().into_raw(), [1, 2, 3, 4, 5, 6]);
         }
     }
 }
@@ -218,13 +218,13 @@ fn a_fax_of_group_3_is_read_with_and_without_its_first_mark_and_from_either_end_
     let text = [mark, rows[0], mark, rows[1]].concat();
     let pixels = [255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255];
     let marked = bits(&text);
-    assert_eq!(decoded(&file(false, [8, 2], tags, &marked)).into_luma8().into_raw(), pixels);
+    assert_eq!(decode_bytes(&file(false, [8, 2], tags, &marked)).into_luma8().into_raw(), pixels);
     let bare = bits(&text[mark.len()..]);
-    assert_eq!(decoded(&file(true, [8, 2], tags, &bare)).into_luma8().into_raw(), pixels);
+    assert_eq!(decode_bytes(&file(true, [8, 2], tags, &bare)).into_luma8().into_raw(), pixels);
     let mirrored: Vec<u8> = marked.iter().map(|byte| byte.reverse_bits()).collect();
     let from_the_right = [tags, &[(266, &[2][..])]].concat();
     assert_eq!(
-        decoded(&file(false, [8, 2], &from_the_right, &mirrored)).into_luma8().into_raw(),
+        decode_bytes(&file(false, [8, 2], &from_the_right, &mirrored)).into_luma8().into_raw(),
         pixels
     );
     let in_two_dimensions = [tags, &[(292, &[1][..])]].concat();

@@ -14,7 +14,7 @@ fn group(name: &str, pass_through: bool, layers: Vec<Layer>) -> Layer {
     Layer::new(name, Content::Group(Group { layers, pass_through }))
 }
 
-fn planned(layers: Vec<Layer>) -> String {
+fn describe_plan(layers: Vec<Layer>) -> String {
     let layers = layers.into_iter().map(Arc::new).collect();
     let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
     text(&plan(&document, FormatSupport::OPENRASTER))
@@ -46,16 +46,16 @@ fn text(items: &[PlanItem]) -> String {
 fn plain_layers_and_groups_are_shown_as_they_are() {
     let layers =
         vec![fill("a"), group("g", false, vec![fill("b")]), group("p", true, vec![fill("c")])];
-    assert_eq!(planned(layers), "a g[b] pthrough[c]");
+    assert_eq!(describe_plan(layers), "a g[b] pthrough[c]");
 }
 
 #[test]
 fn clipped_layers_are_composed_and_kept_hidden_beside() {
     let clipped = Layer { clip_below: true, ..fill("c") };
-    assert_eq!(planned(vec![fill("a"), fill("b"), clipped.clone()]), "a b[-b~[b c] b*2]");
+    assert_eq!(describe_plan(vec![fill("a"), fill("b"), clipped.clone()]), "a b[-b~[b c] b*2]");
     let hidden = Layer { visible: false, ..fill("b") };
-    assert_eq!(planned(vec![hidden, clipped.clone()]), "-b -c", "clipped to what is hidden");
-    assert_eq!(planned(vec![clipped]), "-c", "clipped to nothing");
+    assert_eq!(describe_plan(vec![hidden, clipped.clone()]), "-b -c", "clipped to what is hidden");
+    assert_eq!(describe_plan(vec![clipped]), "-c", "clipped to nothing");
 }
 
 #[test]
@@ -103,20 +103,20 @@ fn layers_that_keep_to_a_soft_edge_stand_in_a_group_whose_mask_it_is() {
 #[test]
 fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {
     let adjustment = || Layer::new("r", Content::RadianceScaling(RadianceScaling::default()));
-    assert_eq!(planned(vec![fill("a"), adjustment(), fill("b")]), "-r~[a r0] r*2 b");
+    assert_eq!(describe_plan(vec![fill("a"), adjustment(), fill("b")]), "-r~[a r0] r*2 b");
     let clipped = Layer { clip_below: true, ..fill("c") };
     assert_eq!(
-        planned(vec![clipped, adjustment()]),
+        describe_plan(vec![clipped, adjustment()]),
         "-r~[-c r0] r*1",
         "clipped to nothing, it is not composed"
     );
     assert_eq!(
-        planned(vec![fill("a"), group("g", false, vec![fill("b"), adjustment()])]),
+        describe_plan(vec![fill("a"), group("g", false, vec![fill("b"), adjustment()])]),
         "a g[-r~[b r0] r*2]",
         "an isolated group is a scope of its own"
     );
     let through = group("g", true, vec![adjustment()]);
-    assert_eq!(planned(vec![fill("a"), through]), "-g~[a gthrough[-r~[r0] r*1]] g*2");
+    assert_eq!(describe_plan(vec![fill("a"), through]), "-g~[a gthrough[-r~[r0] r*1]] g*2");
 }
 
 #[test]
@@ -132,9 +132,9 @@ fn a_filter_is_composed_with_all_beneath_it_in_photoshop_too() {
 #[test]
 fn what_openraster_cannot_blend_is_composed() {
     let exclusion = Layer { blend: BlendMode::Exclusion, ..fill("e") };
-    assert_eq!(planned(vec![fill("a"), exclusion.clone()]), "-e~[a e] e*2");
-    assert_eq!(planned(vec![fill("a"), Layer { visible: false, ..exclusion }]), "a -e");
+    assert_eq!(describe_plan(vec![fill("a"), exclusion.clone()]), "-e~[a e] e*2");
+    assert_eq!(describe_plan(vec![fill("a"), Layer { visible: false, ..exclusion }]), "a -e");
     let mask = LayerMask::new(crate::document::DerivedMask::Fresnel { f0: 0.1, power: 1.0 });
     let masked = Layer { mask: Some(mask), ..group("g", false, vec![fill("b")]) };
-    assert_eq!(planned(vec![fill("a"), masked]), "a g[-g~[b] g*1]");
+    assert_eq!(describe_plan(vec![fill("a"), masked]), "a g[-g~[b] g*1]");
 }

@@ -12,7 +12,7 @@ fn foreign(size: Size, layers: &[&str], pictures: &[(&str, Vec<u8>)]) -> Vec<u8>
     let stack = format!("<image w=\"{w}\" h=\"{h}\"><stack>{layers}</stack></image>");
     let mut entries = vec![(MIMETYPE.into(), MIME.into()), (STACK.into(), stack.into_bytes())];
     entries.extend(pictures.iter().map(|(name, bytes)| (format!("data/{name}"), bytes.clone())));
-    packed(&entries)
+    pack(&entries)
 }
 
 fn picture(size: Size) -> Vec<u8> {
@@ -75,7 +75,7 @@ fn on_parts() -> Document {
 #[test]
 fn what_lies_on_parts_stays_live_when_something_else_is_damaged_or_changed() {
     let document = on_parts();
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     let live = |back: &ProjectContents, name: &str| {
         let layer =
             back.document.layer_named(name).unwrap_or_else(|| panic!("{name}: {:?}", back.notes));
@@ -83,10 +83,11 @@ fn what_lies_on_parts_stays_live_when_something_else_is_damaged_or_changed() {
     };
     let attachment = |name: &str| document.layer_named(name).unwrap().on.clone();
     // The pixels of a layer are gone.
-    let damaged =
-        changed(&bytes, |name, bytes| (!name.starts_with("rilievo/pixels/")).then_some(bytes));
+    let damaged = change_entries(&bytes, |name, bytes| {
+        (!name.starts_with("rilievo/pixels/")).then_some(bytes)
+    });
     // Another program moved a layer away and kept our entries.
-    let reordered = changed(&bytes, |name, bytes| {
+    let reordered = change_entries(&bytes, |name, bytes| {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
         Some(if name == STACK {
             text(bytes).replace("name=\"Top\"", "name=\"Up\"").into_bytes()

@@ -26,7 +26,7 @@ fn of(layers: Vec<Layer>) -> Document {
 /// It fits, and comes back equal when saved and opened: nothing became pixels.
 fn is_stored_as(document: &Document) -> Vec<u8> {
     assert_eq!(document.fits(None), Ok(()));
-    let bytes = written(document);
+    let bytes = write_bytes(document);
     let back = read_back(&bytes);
     assert_eq!(back.notes, [""; 0]);
     assert!(back.is_whole);
@@ -41,7 +41,7 @@ fn is_stored_as(document: &Document) -> Vec<u8> {
 }
 
 /// A stroke as a pen at 240 Hz draws it.
-fn drawn(count: usize) -> Arc<Stroke> {
+fn draw_stroke(count: usize) -> Arc<Stroke> {
     let one = |i: usize| {
         let t = i as f32 / 240.0;
         let at = vec2(24.0 + 18.0 * (0.7 * t).sin(), 20.0 + 15.0 * (0.3 * t).cos());
@@ -63,7 +63,7 @@ fn forty_nested_groups_come_back() {
         Layer::new(format!("Group {i}"), Content::Group(group))
     };
     is_stored_as(&of(vec![(0..40).fold(fill(), into)]));
-    is_stored_as(&of(vec![(0..Document::DEEPEST).fold(strokes(vec![drawn(5)]), into)]));
+    is_stored_as(&of(vec![(0..Document::DEEPEST).fold(strokes(vec![draw_stroke(5)]), into)]));
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn two_thousand_and_a_hundred_layers_come_back() {
 
 #[test]
 fn a_stroke_of_nine_hundred_thousand_readings_comes_back() {
-    let bytes = is_stored_as(&of(vec![strokes(vec![drawn(900_000), drawn(40)])]));
+    let bytes = is_stored_as(&of(vec![strokes(vec![draw_stroke(900_000), draw_stroke(40)])]));
     let description = entries(&bytes).into_iter().find(|(name, _)| name == DOCUMENT).unwrap().1;
     assert!(description.len() < 12_000_000, "{} bytes", description.len());
 }
@@ -87,7 +87,11 @@ fn sculpting_comes_back_whatever_the_number_of_readings() {
         size: 9.0,
         hardness: 0.5,
         strength: 0.5,
-        samples: drawn(count).samples().iter().map(|sample| (sample.at, sample.pressure)).collect(),
+        samples: draw_stroke(count)
+            .samples()
+            .iter()
+            .map(|sample| (sample.at, sample.pressure))
+            .collect(),
     };
     let strokes = [1, 2, 32, 33, 200, 5_000].map(stroke).to_vec();
     let ball =
@@ -165,7 +169,7 @@ fn what_dots_far_apart_take_is_counted_by_the_dots() {
         )
     };
     let document = of((0..3).map(dots).collect());
-    let bytes = written(&document);
+    let bytes = write_bytes(&document);
     // Four million pixels of rectangles each, of which two tiles are painted.
     let budget = Budget { document_px: 100_000, ..Budget::default() };
     let back = read(Path::new("a.ora"), &bytes, &budget).unwrap();
@@ -184,8 +188,8 @@ fn a_description_takes_no_more_values_than_edits_are_held_to() {
             })
             .sum::<usize>()
     };
-    let lines = |n: usize| strokes((0..n).map(|_| drawn(40)).collect());
-    let few = |n: usize| strokes((0..n).map(|_| drawn(20)).collect());
+    let lines = |n: usize| strokes((0..n).map(|_| draw_stroke(40)).collect());
+    let few = |n: usize| strokes((0..n).map(|_| draw_stroke(20)).collect());
     let many = [
         of(vec![lines(400)]),
         of(vec![few(400)]),
@@ -193,7 +197,7 @@ fn a_description_takes_no_more_values_than_edits_are_held_to() {
         everything(64),
     ];
     for document in many {
-        let text = String::from_utf8(entries(&written(&document)).remove(1).1).unwrap();
+        let text = String::from_utf8(entries(&write_bytes(&document)).remove(1).1).unwrap();
         let value = json::parse(Path::new("d"), text.as_bytes(), &Budget::default()).unwrap();
         let (layers, strokes) =
             (document.walk().len(), value.to_string().matches("samples").count());

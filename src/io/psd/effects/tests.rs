@@ -11,7 +11,7 @@ fn read_again(effects: &[LayerEffect]) -> Vec<LayerEffect> {
 }
 
 /// What is set for each kind besides its defaults.
-fn changed(kind: EffectKind) -> LayerEffect {
+fn changed_effect(kind: EffectKind) -> LayerEffect {
     let mut effect = LayerEffect::new(kind);
     let s = &mut effect.settings;
     (s.size, s.opacity, s.blend) = (17.0, 0.25, BlendMode::Overlay);
@@ -31,7 +31,7 @@ fn changed(kind: EffectKind) -> LayerEffect {
 fn effects_are_read_as_they_were_written() {
     for (kind, _) in EffectKind::ALL.iter().filter(|(kind, _)| *kind != EffectKind::PatternOverlay)
     {
-        for effect in [LayerEffect::new(*kind), changed(*kind)] {
+        for effect in [LayerEffect::new(*kind), changed_effect(*kind)] {
             let read = read_again(std::slice::from_ref(&effect));
             // What a kind does not use is not written; what is read is read the same again.
             assert_eq!(read_again(&read), read, "{kind:?}");
@@ -73,7 +73,7 @@ fn check_field(field: crate::paint::effect::EffectField, read: &LayerEffect, mea
 
 #[test]
 fn several_effects_of_one_kind_need_the_newer_block() {
-    let one = changed(EffectKind::DropShadow);
+    let one = changed_effect(EffectKind::DropShadow);
     let other = LayerEffect { on: false, ..LayerEffect::new(EffectKind::DropShadow) };
     let both = [one.clone(), other];
     assert_eq!(blocks(&both).iter().map(|(key, _)| *key).collect::<Vec<_>>(), KEYS);

@@ -9,7 +9,7 @@ use crate::math::srgb::Color;
 use crate::project::ProjectContents;
 use std::path::Path;
 
-fn opened(made: &Made) -> ProjectContents {
+fn open(made: &Made) -> ProjectContents {
     let bytes = made.bytes();
     attack(&bytes);
     read_back(&bytes)
@@ -84,7 +84,7 @@ fn every_kind_of_colors_opens_from_the_file_s_picture() {
     ];
     for (mode, bits, table, merged, rgb) in kinds {
         let made = Made { mode, bits, table, merged, layers: None, ..plain(1, 1, [0; 3]) };
-        let back = opened(&made);
+        let back = open(&made);
         let [r, g, b, a] = pixel(&back.document, 0, 0);
         let far = [r, g, b].iter().zip(rgb).map(|(v, w)| v.abs_diff(w)).max();
         assert!(far <= Some(1) && a == 255, "mode {mode}, {bits} bits: {:?}", [r, g, b, a]);
@@ -106,9 +106,9 @@ fn every_kind_of_colors_opens_from_the_file_s_picture() {
 fn a_spare_channel_with_a_name_is_no_transparency() {
     let mut made = Made { layers: None, ..plain(1, 1, [9, 9, 9]) };
     made.merged.push(vec![0]);
-    assert_eq!(pixel(&opened(&made).document, 0, 0)[3], 0);
+    assert_eq!(pixel(&open(&made).document, 0, 0)[3], 0);
     made.resources = vec![(1053, vec![0, 0, 0, 5])];
-    assert_eq!(pixel(&opened(&made).document, 0, 0), [9, 9, 9, 255]);
+    assert_eq!(pixel(&open(&made).document, 0, 0), [9, 9, 9, 255]);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn what_is_left_out_and_missed_brings_the_file_s_own_picture() {
     let mut made = plain(4, 4, [100; 3]);
     made.layers.as_mut().unwrap().push(empty("dark", vec![(b"levl", vec![0; 4])]));
     made.merged = vec![vec![30; 16]; 3];
-    let back = opened(&made);
+    let back = open(&made);
     assert_eq!(names(&back.document), HIDDEN);
     assert_eq!(pixel(&back.document, 1, 1), [30, 30, 30, 255]);
     assert!(back.notes[0].contains("“dark”: its adjustment is left out"), "{:?}", back.notes);
@@ -128,37 +128,37 @@ fn what_is_left_out_and_missed_brings_the_file_s_own_picture() {
     );
     // If it changes nothing, the layers stay visible.
     made.merged = vec![vec![100; 16]; 3];
-    let back = opened(&made);
+    let back = open(&made);
     assert_eq!(
         names(&back.document),
         [("ground", true), ("dark", true), ("The file's own picture", false)]
     );
     // If nothing is left out and the pictures agree, there is nothing to add.
-    assert_eq!(opened(&plain(4, 4, [100; 3])).notes, [""; 0]);
+    assert_eq!(open(&plain(4, 4, [100; 3])).notes, [""; 0]);
 }
 
 #[test]
 fn nothing_looks_otherwise_without_a_note() {
     let made = Made { merged: vec![(0..16).collect(); 3], ..plain(4, 4, [100; 3]) };
-    let back = opened(&made);
+    let back = open(&made);
     assert_eq!(names(&back.document), HIDDEN);
     assert!(back.notes.len() == 1 && back.notes[0].contains("differ"), "{:?}", back.notes);
 }
 
 #[test]
 fn knockout_blend_if_and_channels_that_are_left_alone_are_told() {
-    let mut layer = colored("top", 4, 4, [100; 3]);
+    let mut layer = colored_layer("top", 4, 4, [100; 3]);
     layer.ranges = [[0, 0, 255, 255], [0, 0, 200, 255]].concat();
     layer.blocks = vec![(b"knko", vec![1, 0, 0, 0]), (b"brst", vec![0; 4]), (b"clbl", vec![0; 4])];
     let mut made = plain(4, 4, [100; 3]);
     made.layers = Some(vec![layer]);
-    let notes = opened(&made).notes.join("\n");
+    let notes = open(&made).notes.join("\n");
     for part in ["“blend if”", "knockout", "channels that it leaves alone", "clipped to it"] {
         assert!(notes.contains(part), "{part}: {notes}");
     }
     let mut made = plain(4, 4, [100; 3]);
     made.layers.as_mut().unwrap()[0].ranges = [0, 0, 255, 255].repeat(8);
-    assert_eq!(opened(&made).notes, [""; 0], "ranges that let everything through");
+    assert_eq!(open(&made).notes, [""; 0], "ranges that let everything through");
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn effects_are_live_and_shown_where_they_are_switched_on() {
         // The old block repeats them.
         made.layers.as_mut().unwrap()[0].blocks =
             vec![(b"lrFX", vec![0; 4]), (b"lfx2", effects(master, shadow))];
-        let opened = opened(&made);
+        let opened = open(&made);
         let all = opened.document.walk();
         let layer = all.iter().map(|(_, layer)| layer).find(|layer| !layer.effects.is_empty());
         let on: Vec<bool> = layer.unwrap().effects.iter().map(|effect| effect.on).collect();
@@ -181,7 +181,7 @@ fn effects_are_live_and_shown_where_they_are_switched_on() {
     }
     let mut made = plain(4, 4, [100; 3]);
     made.layers.as_mut().unwrap()[0].blocks = vec![(b"lrFX", vec![0; 4])];
-    let notes = opened(&made).notes.join("\n");
+    let notes = open(&made).notes.join("\n");
     assert!(notes.contains("its effects are left out"), "{notes}");
 }
 
@@ -207,7 +207,7 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
     made.layers.as_mut().unwrap().push(shape);
     let row = |v: u8| [v, v, 100, 100].repeat(4);
     made.merged = vec![row(200), row(10), row(20)];
-    let back = opened(&made);
+    let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
     let layer = &back.document.layers[1];
     assert!(matches!(layer.content, Content::Fill(Color { r: 200, g: 10, b: 20, a: 255 })));
@@ -217,11 +217,11 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
         [[200, 10, 20, 255], [100, 100, 100, 255]]
     );
     // Later versions store its pixels too, which show the mask.
-    let mut with_pixels = colored("shape", 2, 4, [200, 10, 20]);
+    let mut with_pixels = colored_layer("shape", 2, 4, [200, 10, 20]);
     with_pixels.channels.push((-1, vec![255; 8]));
     with_pixels.blocks = vec![(b"SoCo", fill), (b"vmsk", mask)];
     made.layers.as_mut().unwrap()[1] = with_pixels;
-    let back = opened(&made);
+    let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
     assert!(matches!(back.document.layers[1].content, Content::Fill(_)));
     assert_eq!(
@@ -242,12 +242,12 @@ fn a_straight_gradient_fill_is_a_gradient_and_others_are_pixels() {
     let mut made = plain(8, 1, [100; 3]);
     made.merged = vec![(0..8).map(|x| (x * 32 + 16) as u8).collect(); 3];
     made.layers.as_mut().unwrap().push(empty("ramp", vec![(b"GdFl", fill("Lnr "))]));
-    let back = opened(&made);
+    let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
     assert!(matches!(back.document.layers[1].content, Content::Gradient(_)));
     made.layers.as_mut().unwrap()[1] = empty("ramp", vec![(b"GdFl", fill("Rflc"))]);
     made.merged = vec![[7i32, 5, 3, 1, 1, 3, 5, 7].map(|v| (v * 32) as u8).to_vec(); 3];
-    let back = opened(&made);
+    let back = open(&made);
     assert!(
         matches!(&back.notes[..], [note] if note.contains("gradient became pixels")),
         "{:?}",
@@ -276,7 +276,7 @@ fn a_pattern_fill_is_drawn_from_the_file_s_pattern() {
         |id: &str| descriptor(&[("Ptrn", objc(&[("Idnt", text(id))])), ("Scl ", percent(100.0))]);
     made.layers.as_mut().unwrap().push(empty("tiles", vec![(b"PtFl", fill("ab"))]));
     made.merged = [[10, 40], [20, 50], [30, 60]].map(|pair: [u8; 2]| pair.repeat(2)).to_vec();
-    let back = opened(&made);
+    let back = open(&made);
     assert!(
         matches!(&back.notes[..], [note] if note.contains("pattern became pixels")),
         "{:?}",
@@ -284,7 +284,7 @@ fn a_pattern_fill_is_drawn_from_the_file_s_pattern() {
     );
     assert_eq!(pixel(&back.document, 3, 0), [40, 50, 60, 255]);
     made.layers.as_mut().unwrap()[1] = empty("tiles", vec![(b"PtFl", fill("cd"))]);
-    assert!(opened(&made).notes[0].contains("not in the file"));
+    assert!(open(&made).notes[0].contains("not in the file"));
 }
 
 #[test]
@@ -294,7 +294,7 @@ fn an_artboard_has_its_ground_and_cuts_off_what_lies_beyond() {
         objc(&[("Top ", side(0.0)), ("Left", side(0.0)), ("Btom", side(2.0)), ("Rght", side(4.0))]);
     let kind = ("artboardBackgroundType", long(4));
     let board = descriptor(&[("artboardRect", rect), kind, ("Clr ", rgb([1, 2, 3]))]);
-    let mut big = colored("big", 2, 4, [200, 200, 200]);
+    let mut big = colored_layer("big", 2, 4, [200, 200, 200]);
     big.channels.push((-1, vec![255; 8]));
     let group =
         vec![(b"lsct", [1u32.to_be_bytes(), *b"8BIM", *b"pass"].concat()), (b"artb", board)];
@@ -308,7 +308,7 @@ fn an_artboard_has_its_ground_and_cuts_off_what_lies_beyond() {
     };
     let merged = vec![plane(200, 1), plane(200, 2), plane(200, 3)];
     let made = Made { layers: Some(layers), merged, ..plain(4, 4, [0; 3]) };
-    let back = opened(&made);
+    let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
     let seen = [(0, 0), (3, 1), (0, 3)].map(|(x, y)| pixel(&back.document, x, y));
     assert_eq!(seen, [[200, 200, 200, 255], [1, 2, 3, 255], [0; 4]]);
@@ -320,11 +320,11 @@ fn masks_are_switched_off_dense_and_inverted_as_the_file_says() {
     let masked = |tail: &[u8]| {
         // The picture is unlike the layers, so that both are there.
         let mut made = Made { merged: vec![(0..16).collect(); 3], ..plain(4, 4, [0; 3]) };
-        let mut layer = colored("top", 4, 4, [200; 3]);
+        let mut layer = colored_layer("top", 4, 4, [200; 3]);
         layer.channels.push((-2, vec![255; 8]));
         layer.mask_data = [&rect, tail].concat();
         made.layers.as_mut().unwrap().push(layer);
-        let document = opened(&made).document;
+        let document = open(&made).document;
         let Content::Group(group) = &document.layers[0].content else {
             panic!("the picture is another")
         };
@@ -355,7 +355,7 @@ fn kept_selections_open_by_their_names_and_inks_do_not() {
     made.merged.extend([vec![0, 255, 128, 0, 0, 0, 0, 0, 0, 0, 0, 7], vec![255; 12], vec![9; 12]]);
     made.resources = vec![(1006, ["Eye", "Gold", "Eye"].map(text).concat())];
     made.resources.push((1077, [&[0, 0, 0, 1][..], &shown(1), &shown(2), &shown(1)].concat()));
-    let read = opened(&made);
+    let read = open(&made);
     let kept = &read.document.selections;
     assert_eq!(kept.iter().map(|kept| kept.name.as_str()).collect::<Vec<_>>(), ["Eye", "Eye 2"]);
     let coverage = &kept[0].selection.coverage;
@@ -363,7 +363,7 @@ fn kept_selections_open_by_their_names_and_inks_do_not() {
     assert!(read.notes.iter().any(|note| note.contains("inks")), "{:?}", read.notes);
     // Letters beyond a byte, and channels that nobody named.
     made.resources = vec![(1045, wide("Auge – 目"))];
-    let read = opened(&made);
+    let read = open(&made);
     let names: Vec<&str> = read.document.selections.iter().map(|kept| kept.name.as_str()).collect();
     assert_eq!(names, ["Auge – 目", "Alpha 2", "Alpha 3"]);
 }

@@ -41,14 +41,14 @@ pub fn plain(width: u32, height: u32, rgb: [u8; 3]) -> Made {
         height,
         table: Vec::new(),
         resources: Vec::new(),
-        layers: Some(vec![colored("ground", width, height, rgb)]),
+        layers: Some(vec![colored_layer("ground", width, height, rgb)]),
         blocks: Vec::new(),
         merged: rgb.map(|v| vec![v; area]).to_vec(),
     }
 }
 
 /// An opaque layer of the canvas's size.
-pub fn colored(name: &'static str, width: u32, height: u32, rgb: [u8; 3]) -> MadeLayer {
+pub fn colored_layer(name: &'static str, width: u32, height: u32, rgb: [u8; 3]) -> MadeLayer {
     let area = (width * height) as usize;
     let channels = (0..3).map(|c| (c as i16, vec![rgb[c]; area])).collect();
     MadeLayer {
@@ -65,12 +65,12 @@ pub fn empty(name: &'static str, blocks: Vec<(&'static [u8; 4], Vec<u8>)>) -> Ma
     MadeLayer { name, blend: *b"norm", blocks, ..MadeLayer::default() }
 }
 
-fn sized(bytes: &[u8]) -> Vec<u8> {
+fn with_length(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_be_bytes(), bytes].concat()
 }
 
 fn block((key, data): &(&'static [u8; 4], Vec<u8>)) -> Vec<u8> {
-    [b"8BIM".as_slice(), *key, &sized(data)].concat()
+    [b"8BIM".as_slice(), *key, &with_length(data)].concat()
 }
 
 impl MadeLayer {
@@ -87,7 +87,9 @@ impl MadeLayer {
         let mut name = [&[self.name.len() as u8], self.name.as_bytes()].concat();
         name.resize(name.len().next_multiple_of(4), 0);
         let blocks: Vec<u8> = self.blocks.iter().flat_map(block).collect();
-        out.extend(sized(&[sized(&self.mask_data), sized(&self.ranges), name, blocks].concat()));
+        out.extend(with_length(
+            &[with_length(&self.mask_data), with_length(&self.ranges), name, blocks].concat(),
+        ));
         out
     }
 }
@@ -98,14 +100,14 @@ impl Made {
         out.extend((self.merged.len() as u16).to_be_bytes());
         out.extend([self.height.to_be_bytes(), self.width.to_be_bytes()].concat());
         out.extend([self.bits.to_be_bytes(), self.mode.to_be_bytes()].concat());
-        out.extend(sized(&self.table));
+        out.extend(with_length(&self.table));
         let resource = |(id, data): &(u16, Vec<u8>)| {
-            let mut data = sized(data);
+            let mut data = with_length(data);
             data.resize(data.len().next_multiple_of(2), 0);
             [b"8BIM".as_slice(), &id.to_be_bytes(), &[0, 0], &data].concat()
         };
-        out.extend(sized(&self.resources.iter().flat_map(resource).collect::<Vec<u8>>()));
-        out.extend(sized(&self.section()));
+        out.extend(with_length(&self.resources.iter().flat_map(resource).collect::<Vec<u8>>()));
+        out.extend(with_length(&self.section()));
         // Plain.
         out.extend([0, 0]);
         out.extend(self.merged.concat());
@@ -121,7 +123,8 @@ impl Made {
             info.extend(data);
         }
         info.resize(info.len().next_multiple_of(4), 0);
-        [sized(&info), sized(&[]), self.blocks.iter().flat_map(block).collect()].concat()
+        [with_length(&info), with_length(&[]), self.blocks.iter().flat_map(block).collect()]
+            .concat()
     }
 }
 

@@ -1,11 +1,11 @@
 //! Guides and labels, to other programs and from them.
 
-use super::made::{Made, colored, plain};
+use super::made::{Made, colored_layer, plain};
 use super::*;
 use crate::document::LayerLabel;
 
 /// Layers of every label, and guides between pixels.
-fn marked() -> Document {
+fn marked_document() -> Document {
     let mut document = Document::empty(Size::new(64, 32));
     document.layers = (LayerLabel::ALL.iter())
         .map(|(label, name)| {
@@ -23,15 +23,15 @@ fn labels(document: &Document) -> Vec<LayerLabel> {
 
 #[test]
 fn our_guides_and_labels_come_back_to_the_last_digit() {
-    let document = marked();
-    let back = read_back(&written(&document)).document;
+    let document = marked_document();
+    let back = read_back(&write_bytes(&document)).document;
     assert_eq!((labels(&back), &back.guides), (labels(&document), &document.guides));
 }
 
 #[test]
 fn other_programs_find_guides_and_labels() {
-    let back = read_back(&without_ours(&written(&marked()))).document;
-    let expected: Vec<LayerLabel> = labels(&marked())
+    let back = read_back(&without_ours(&write_bytes(&marked_document()))).document;
+    let expected: Vec<LayerLabel> = labels(&marked_document())
         .into_iter()
         .map(|label| if label == LayerLabel::Brown { LayerLabel::Orange } else { label })
         .collect();
@@ -41,8 +41,8 @@ fn other_programs_find_guides_and_labels() {
 
 #[test]
 fn guides_that_another_program_moved_are_believed_and_the_layers_stay_live() {
-    let document = Document { guides: marked().guides, ..everything(32) };
-    let mut bytes = written(&document);
+    let document = Document { guides: marked_document().guides, ..everything(32) };
+    let mut bytes = write_bytes(&document);
     let place = 240i32.to_be_bytes();
     let at = bytes.windows(5).position(|w| w[..4] == place && w[4] == 1).unwrap();
     bytes[at..at + 4].copy_from_slice(&320i32.to_be_bytes());
@@ -54,7 +54,7 @@ fn guides_that_another_program_moved_are_believed_and_the_layers_stay_live() {
 #[test]
 fn labels_and_guides_of_photoshop_are_read_and_too_many_told() {
     let label = |number: u8| vec![0, number, 0, 0, 0, 0, 0, 0];
-    let mut ground = colored("ground", 4, 4, [100; 3]);
+    let mut ground = colored_layer("ground", 4, 4, [100; 3]);
     ground.blocks.push((b"lclr", label(6)));
     let guide = |at: i32, is_level: u8| [&at.to_be_bytes()[..], &[is_level]].concat();
     let head = |count: u32| [1u32, 576, 576, count].map(u32::to_be_bytes).concat();

@@ -37,7 +37,7 @@ fn light(v: u16) -> Vec<u8> {
 fn file_of(bits: u16, stored: impl Fn(u16) -> Vec<u8>, has_layer: bool) -> Made {
     let planes: Vec<Vec<u8>> = (0..3).map(|c| plane(c, &stored)).collect();
     let channels = planes.iter().zip(0..).map(|(plane, c)| (c, plane.clone())).collect();
-    let layer = MadeLayer { channels, ..colored("soft", SIDE, SIDE, [0; 3]) };
+    let layer = MadeLayer { channels, ..colored_layer("soft", SIDE, SIDE, [0; 3]) };
     Made {
         bits,
         merged: planes,

@@ -14,7 +14,7 @@ fn read(value: &Value) -> crate::Result<Document> {
     recipe::read_value(value, source)
 }
 
-fn refused(value: &Value) -> String {
+fn refusal_of(value: &Value) -> String {
     read(value).err().map(|error| error.to_string()).unwrap_or_default()
 }
 
@@ -92,7 +92,7 @@ fn a_project_gives_attachments_back() {
 
 #[test]
 fn an_attachment_to_no_part_is_refused_by_its_path() {
-    let says = |layers: Value| refused(&body(&json!({ "layers": layers })));
+    let says = |layers: Value| refusal_of(&body(&json!({ "layers": layers })));
     let fill = json!({ "kind": "fill", "on": "nose" });
     assert_eq!(
         says(json!([fill])),
@@ -114,7 +114,8 @@ fn an_attachment_to_no_part_is_refused_by_its_path() {
     );
     let canvas = json!([{ "id": "canvas", "kind": "sweep", "balls": [[9, 9, 3]] }]);
     assert!(
-        refused(&body(&json!({ "surface": { "parts": canvas } }))).contains("cannot have the id")
+        refusal_of(&body(&json!({ "surface": { "parts": canvas } })))
+            .contains("cannot have the id")
     );
 }
 
@@ -151,7 +152,7 @@ fn a_part_may_be_made_of_a_selection_in_whatever_order_they_stand() {
     );
     assert!(unnamed.surface.is_some() && unnamed.fits(None) == Ok(()));
     assert_eq!(
-        refused(&with("s2", json!([]))),
+        refusal_of(&with("s2", json!([]))),
         "r.json: surface.parts[0].outline.selection: is “s2”; there is no selection with that id"
     );
     // It stays linked, and is a picture once the selection is gone.

@@ -7,7 +7,7 @@ use serde_json::json;
 
 /// As a pen moves: smooth, with a little noise in every reading, from the hand's own grid unless it
 /// is `raw`.
-fn drawn(count: usize, raw: bool) -> Vec<Sample> {
+fn draw_samples(count: usize, raw: bool) -> Vec<Sample> {
     let noise = |i: usize, column: u32| {
         hash::mix(i as u32 ^ hash::mix(column)) as f32 / u32::MAX as f32 - 0.5
     };
@@ -36,11 +36,11 @@ fn read_value(value: &Value) -> Result<Vec<Sample>> {
 #[test]
 fn every_reading_comes_back_in_its_very_bits() {
     for samples in [
-        drawn(2_000, false),
-        drawn(2_000, true),
-        drawn(3, true),
+        draw_samples(2_000, false),
+        draw_samples(2_000, true),
+        draw_samples(3, true),
         Vec::new(),
-        vec![drawn(1, false)[0]; 500],
+        vec![draw_samples(1, false)[0]; 500],
     ] {
         assert!(bits(&unpack(&pack(&samples), 2_000).unwrap()) == bits(&samples));
         assert!(bits(&read_value(&write(&samples)).unwrap()) == bits(&samples));
@@ -67,7 +67,7 @@ fn no_readings_take_more_than_their_share_of_a_text() {
     let far: Vec<Sample> = (0..10_000).map(far).collect();
     assert!(far.iter().all(|sample| trouble(sample).is_none()));
     let mut most = 0.0f32;
-    for samples in [far, drawn(10_000, true), drawn(10_000, false)] {
+    for samples in [far, draw_samples(10_000, true), draw_samples(10_000, false)] {
         let chars = pack(&samples).len() as f32 / samples.len() as f32;
         assert!(chars <= Sample::MOST_CHARS as f32, "{chars}");
         most = most.max(chars);
@@ -82,7 +82,7 @@ fn no_readings_take_more_than_their_share_of_a_text() {
 
 #[test]
 fn what_the_hand_draws_takes_few_bytes() {
-    let (settled, raw) = (drawn(10_000, false), drawn(10_000, true));
+    let (settled, raw) = (draw_samples(10_000, false), draw_samples(10_000, true));
     let bytes = |samples: &[Sample]| pack(samples).len() as f32 / samples.len() as f32;
     assert!(bytes(&settled) < 13.0, "{}", bytes(&settled));
     assert!(bytes(&raw) < 25.0, "{}", bytes(&raw));
@@ -90,7 +90,7 @@ fn what_the_hand_draws_takes_few_bytes() {
 
 #[test]
 fn what_the_hand_settles_on_stays_there() {
-    for sample in drawn(1_000, true) {
+    for sample in draw_samples(1_000, true) {
         let settled = sample.normalized();
         assert!(bits(&[settled]) == bits(&[settled.normalized()]));
         assert!(
@@ -115,12 +115,14 @@ fn what_the_hand_settles_on_stays_there() {
 fn few_readings_are_rows_that_can_be_read() {
     let value = json!([[12, 9, 0.5], [30.25, 33], [50, 12, 0.25, 5, -4, 1.5]]);
     assert_eq!(write(&read_value(&value).unwrap()), value);
-    assert!(write(&drawn(32, false)).is_array() && write(&drawn(33, false)).is_string());
+    assert!(
+        write(&draw_samples(32, false)).is_array() && write(&draw_samples(33, false)).is_string()
+    );
 }
 
 #[test]
 fn rows_of_any_length_open_and_are_packed_before_they_are_values() {
-    let samples = drawn(500, false);
+    let samples = draw_samples(500, false);
     let rows: Value = samples.iter().map(row).collect();
     let text = json!({ "name": "\"samples\": [[1, 2]]", "samples": rows, "other": [{ "samples" : [[1, 2]] }] });
     for text in [text.to_string(), format!("{text:#}")] {
@@ -178,7 +180,7 @@ fn what_is_not_wholly_rows_is_left_to_the_parser() {
 
 #[test]
 fn strokes_that_only_press_read_what_others_do_and_refuse_the_rest() {
-    let (samples, mut left) = (drawn(300, true), 1_000);
+    let (samples, mut left) = (draw_samples(300, true), 1_000);
     let pressed: Vec<(Vec2, f32)> =
         samples.iter().map(|sample| (sample.at, sample.pressure)).collect();
     let mut read =
@@ -201,7 +203,7 @@ fn damage_is_told_and_asks_for_no_memory() {
         let said = read_value(&value).unwrap_err().to_string();
         assert!(said.contains(what), "{said}");
     };
-    let text = pack(&drawn(100, false));
+    let text = pack(&draw_samples(100, false));
     says(text[..text.len() - 8].into(), "is no text of readings");
     says((text.clone() + "AAAA").into(), "is no text of readings");
     says("!".into(), "is no text of readings");
@@ -210,11 +212,11 @@ fn damage_is_told_and_asks_for_no_memory() {
     put(&mut bomb, 1 << 30);
     bomb.extend([CONSTANT, 0, 0, 0, 0].repeat(COLUMNS));
     says(base64::encode(&bomb).into(), "has more than 1000000 readings");
-    let mut samples = drawn(100, false);
+    let mut samples = draw_samples(100, false);
     samples[7].pressure = 1.5;
     says(pack(&samples).into(), "[7]: has the pressure 1.5; it must be between 0 and 1");
     says(json!([[1, 2, 2]]), "[0]: has the pressure 2");
-    let (value, mut left) = (write(&drawn(50, false)), 70);
+    let (value, mut left) = (write(&draw_samples(50, false)), 70);
     let node = JsonNode::root(Path::new("r.json"), &value);
     assert!(
         read(&node, 100, &mut left).is_ok() && left == 20 && read(&node, 100, &mut left).is_err()

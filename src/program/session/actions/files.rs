@@ -45,8 +45,8 @@ actions! {
         /// it ends in that.
         "export maps" ExportMaps { file: PathBuf, maps: Vec<ShapeMap>, directx: bool, bits: u8 }
         /// The painting, or the layer that is seen alone, as it lies in the planes of the unwrapped
-        /// surface, `scale` pixels per pixel of the plane.
-        "export unwrapped" ExportUnwrapped { file: PathBuf, scale: u32, deep: bool }
+        /// surface, `scale` pixels per pixel of the plane, with so many bits per channel.
+        "export unwrapped" ExportUnwrapped { file: PathBuf, scale: u32, bits: u8 }
         /// A picture of those planes becomes an image layer that lies on the surface.
         "import unwrapped" ImportUnwrapped { file: PathBuf }
         /// A picture that the selected layer is made of.
@@ -121,10 +121,10 @@ impl FileAction {
                 let terms = Terms::export(unless_forced(session), session.reads());
                 export_maps(open.document(), file, maps, options, &terms)?;
             }
-            FileAction::ExportUnwrapped { file, scale, deep } => {
+            FileAction::ExportUnwrapped { file, scale, bits } => {
                 let Some(open) = session.active() else { return Ok(()) };
                 let settings = session.unwrap_settings();
-                let floats = deep.then_some(Highlights::Clipped);
+                let floats = (*bits > 8).then_some(Highlights::Clipped);
                 let options = UnwrapOptions { scale: *scale, settings, floats };
                 let terms = Terms::export(unless_forced(session), session.reads());
                 unwrapped::export(

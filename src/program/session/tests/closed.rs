@@ -1,6 +1,6 @@
 //! Strokes on layers that cannot be painted on.
 
-use super::targets::{act, drawn_with, two_layers};
+use super::targets::{act, stroke_with, two_layers};
 use super::*;
 
 #[test]
@@ -13,7 +13,7 @@ fn a_stroke_that_would_not_be_kept_or_seen_names_the_layer_and_what_to_do() {
     };
     let refused = |session: &mut Session, tool: &str| {
         let before = session.active().unwrap().document().clone();
-        act(session, &drawn_with(tool));
+        act(session, &stroke_with(tool));
         assert!(is_same(&before, session.active().unwrap().document()), "{tool} changed something");
         std::mem::take(&mut session.notes).join("|")
     };
@@ -41,7 +41,7 @@ fn a_stroke_that_would_not_be_kept_or_seen_names_the_layer_and_what_to_do() {
             .contains("“Paint 2” is hidden, since “Paint” is shown alone")
     );
     act(&mut session, r#"{"in":"layer","do":"solo","layer":"2"}"#);
-    act(&mut session, &drawn_with("brush"));
+    act(&mut session, &stroke_with("brush"));
     assert!(
         session.notes.is_empty()
             && session.active().unwrap().history.undo_label() == Some("Brush stroke")

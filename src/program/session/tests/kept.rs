@@ -55,7 +55,7 @@ fn maps_in(folder: &Path) -> [PathBuf; 3] {
 }
 
 /// A drawing of every kind of layer: flat, on maps, or on parts with layers that lie on them.
-fn begun(kind: usize, maps: &[PathBuf; 3]) -> Session {
+fn begin_drawing(kind: usize, maps: &[PathBuf; 3]) -> Session {
     let mut session = Session::default();
     let all = Document { surface: None, ..everything() };
     match kind {
@@ -76,7 +76,7 @@ fn begun(kind: usize, maps: &[PathBuf; 3]) -> Session {
 }
 
 /// What became of a drawing that was saved and opened; `None` if it is the same.
-fn changed_by_saving(document: &Document) -> Option<String> {
+fn difference_after_saving(document: &Document) -> Option<String> {
     if let Err(why) = document.fits(None) {
         return Some(format!("does not fit: {why}"));
     }
@@ -109,13 +109,13 @@ fn changed_by_saving(document: &Document) -> Option<String> {
 
 /// Performs lines, and says what became of the drawing; `None` if all is well.
 fn failure(kind: usize, maps: &[PathBuf; 3], story: &[String]) -> Option<String> {
-    let mut session = begun(kind, maps);
+    let mut session = begin_drawing(kind, maps);
     for line in story {
         if let Err(error) = session.replay(Path::new("story"), line) {
             return Some(format!("{line}: {error}"));
         }
     }
-    changed_by_saving(session.active().unwrap().document())
+    difference_after_saving(session.active().unwrap().document())
 }
 
 /// As few of the lines as fail in the same way.
@@ -143,7 +143,7 @@ fn what_stands_after_any_story_is_saved_and_opens_as_it_was() {
     for seed in first..first + stories {
         let mut dice = Dice::of(seed);
         let kind = dice.below(3);
-        let mut session = begun(kind, &maps);
+        let mut session = begin_drawing(kind, &maps);
         let mut story = Vec::new();
         for _ in 0..1 + dice.below(9) {
             let line = lines::line(&mut dice, session.active().unwrap().document(), &maps);
@@ -152,7 +152,7 @@ fn what_stands_after_any_story_is_saved_and_opens_as_it_was() {
                 .unwrap_or_else(|error| panic!("{line}: {error}"));
             story.push(line);
         }
-        if let Some(why) = changed_by_saving(session.active().unwrap().document()) {
+        if let Some(why) = difference_after_saving(session.active().unwrap().document()) {
             let short = shortest(kind, &maps, story, &why);
             failures
                 .push(format!("story {seed} of kind {kind}: {why}\n    {}", short.join("\n    ")));

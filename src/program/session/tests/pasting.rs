@@ -13,7 +13,7 @@ fn picture(width: u32, height: u32) -> Picture {
     Picture::srgb8(Size::new(width, height), (0..width * height).map(one).collect()).unwrap()
 }
 
-fn pasted(to: PasteTo, at: Option<Vec2>, picture: Picture) -> Action {
+fn paste(to: PasteTo, at: Option<Vec2>, picture: Picture) -> Action {
     Action::Clipboard(ClipboardAction::PastePicture {
         picture: PastedPicture { name: "Pasted.png".into(), picture },
         to,
@@ -25,7 +25,7 @@ fn pasted(to: PasteTo, at: Option<Vec2>, picture: Picture) -> Action {
 fn a_picture_is_pasted_as_flat_paint_at_its_own_size_with_its_middle_at_the_pointer() {
     let mut session = replay(PAPER);
     let given = picture(40, 30);
-    pasted(PasteTo::Paint, Some(Vec2::new(60.0, 50.0)), given.clone()).apply(&mut session).unwrap();
+    paste(PasteTo::Paint, Some(Vec2::new(60.0, 50.0)), given.clone()).apply(&mut session).unwrap();
     let layer = session.layer().unwrap();
     let Content::Pixels(pixels) = &layer.content else { panic!("paint") };
     assert!(layer.name == "Pasted" && !layer.clip_to_surface && layer.mask.is_none());
@@ -47,7 +47,7 @@ fn without_a_pointer_it_goes_to_the_middle_of_the_view_and_what_lies_outside_the
     let view =
         CanvasView { center: Vec2::new(10.0, 140.0), zoom: 2.0, turn_rad: 0.0, mirrored: false };
     session.active_mut().unwrap().view = Some(view);
-    pasted(PasteTo::Paint, None, picture(300, 20)).apply(&mut session).unwrap();
+    paste(PasteTo::Paint, None, picture(300, 20)).apply(&mut session).unwrap();
     let covered = |session: &Session| {
         let Content::Pixels(pixels) = &session.layer().unwrap().content else { panic!("paint") };
         crate::raster::CoverageGrid::of_alpha(&pixels.tiles).covered_rect()
@@ -69,9 +69,9 @@ fn without_a_pointer_it_goes_to_the_middle_of_the_view_and_what_lies_outside_the
 #[test]
 fn it_becomes_an_image_layer_or_a_document_where_that_is_asked_for() {
     let mut session = replay(PAPER);
-    pasted(PasteTo::Image, None, picture(40, 30)).apply(&mut session).unwrap();
+    paste(PasteTo::Image, None, picture(40, 30)).apply(&mut session).unwrap();
     assert!(matches!(session.layer().unwrap().content, Content::Image(_)));
-    pasted(PasteTo::Document, None, picture(40, 30)).apply(&mut session).unwrap();
+    paste(PasteTo::Document, None, picture(40, 30)).apply(&mut session).unwrap();
     assert_eq!(
         (session.open_documents.len(), session.shown_document().unwrap().size),
         (2, Size::new(40, 30))
@@ -85,7 +85,7 @@ fn it_becomes_an_image_layer_or_a_document_where_that_is_asked_for() {
 #[test]
 fn every_paste_replays_with_the_picture_in_its_line() {
     for to in [PasteTo::Paint, PasteTo::Image, PasteTo::Document] {
-        let action = pasted(to, Some(Vec2::new(20.0, 30.0)), picture(40, 30));
+        let action = paste(to, Some(Vec2::new(20.0, 30.0)), picture(40, 30));
         let mut first = replay(PAPER);
         action.apply(&mut first).unwrap();
         let mut second = replay(PAPER);
@@ -117,7 +117,7 @@ fn smooth_paint_that_is_pasted_as_an_image_layer_is_saved_with_its_16_bits() {
     let mut session = replay(PAPER);
     let value = |i: u16| [i * 11, 65535 - i * 7, i, 65535 - i * 3];
     let soft = Picture::srgb16(Size::new(40, 30), (0..1200).map(value).collect()).unwrap();
-    pasted(PasteTo::Paint, Some(Vec2::new(60.0, 50.0)), soft).apply(&mut session).unwrap();
+    paste(PasteTo::Paint, Some(Vec2::new(60.0, 50.0)), soft).apply(&mut session).unwrap();
     let act = |session: &mut Session, line: &str| session.replay(Path::new("story"), line).unwrap();
     act(&mut session, r#"{"in":"clipboard","do":"copy","merged":false}"#);
     act(&mut session, r#"{"in":"clipboard","do":"paste image","at":[50,60]}"#);

@@ -19,7 +19,7 @@ fn story(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
 
-fn selected(session: &Session) -> Vec<String> {
+fn selected_names(session: &Session) -> Vec<String> {
     let open = session.active().unwrap();
     open.selected_layers()
         .iter()
@@ -27,7 +27,7 @@ fn selected(session: &Session) -> Vec<String> {
         .collect()
 }
 
-fn done(session: &Session) -> &str {
+fn last_edit(session: &Session) -> &str {
     session.active().unwrap().history.undo_label().unwrap_or_default()
 }
 
@@ -39,12 +39,12 @@ fn steps(session: &Session) -> usize {
 fn layers_are_selected_together_and_one_of_them_is_painted_on() {
     let mut session = five();
     assert_eq!(
-        (selected(&session), session.layer().unwrap().name.as_str()),
+        (selected_names(&session), session.layer().unwrap().name.as_str()),
         (vec!["Fill".into(), "Paint".into()], "Paint")
     );
     assert_eq!(session.layer_paths().to_value(), serde_json::json!(["1", "3"]));
     story(&mut session, r#"{"in":"layer","do":"select","layer":"1"}"#);
-    assert_eq!(selected(&session), ["Fill"]);
+    assert_eq!(selected_names(&session), ["Fill"]);
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn several_layers_are_grouped_copied_moved_dissolved_and_deleted() {
     story(&mut session, r#"{"in":"layer","do":"duplicate","layer":["1","3"]}"#);
     assert_eq!(names(&session)[3..6], ["Paint", "Fill copy", "Paint copy"]);
     assert_eq!(
-        (selected(&session), done(&session)),
+        (selected_names(&session), last_edit(&session)),
         (vec!["Fill copy".into(), "Paint copy".into()], "Duplicate layers")
     );
     story(&mut session, r#"{"in":"layer","do":"group","layer":["1","4","5"]}"#);
@@ -90,7 +90,7 @@ fn several_layers_are_grouped_copied_moved_dissolved_and_deleted() {
     story(&mut session, r#"{"in":"layer","do":"move","layer":["1","2"],"group":"3","index":0}"#);
     assert_eq!(names(&session)[1..4], ["Gradient", "Paint", "Fill"]);
     assert_eq!(
-        (selected(&session), done(&session)),
+        (selected_names(&session), last_edit(&session)),
         (vec!["Gradient".into(), "Paint".into()], "Move layers")
     );
     story(&mut session, r#"{"in":"layer","do":"ungroup","layer":["1","2"]}"#);
@@ -100,7 +100,7 @@ fn several_layers_are_grouped_copied_moved_dissolved_and_deleted() {
     );
     story(&mut session, r#"{"in":"layer","do":"delete","layer":["1","3","6"]}"#);
     assert_eq!(
-        (names(&session).join(" "), done(&session)),
+        (names(&session).join(" "), last_edit(&session)),
         ("Background Paint Fill copy Paint copy".into(), "Delete layers")
     );
     story(&mut session, r#"{"in":"edit","do":"undo"}"#);
@@ -116,7 +116,7 @@ fn several_layers_merge_into_one_that_looks_the_same() {
     let (before, count) = (look(&session), steps(&session));
     story(&mut session, r#"{"in":"layer","do":"merge down","layer":["1","2","3"]}"#);
     assert_eq!(
-        (names(&session)[1].as_str(), done(&session), steps(&session)),
+        (names(&session)[1].as_str(), last_edit(&session), steps(&session)),
         ("Fill", "Merge layers", count + 1)
     );
     assert!(matches!(session.layer().unwrap().content, Content::Pixels(_)));
@@ -140,15 +140,15 @@ fn several_layers_are_moved_by_the_tool_and_cut_and_pasted_together() {
 {\"in\":\"pointer\",\"do\":\"release\"}";
     story(&mut session, drag);
     assert_eq!(
-        (done(&session), red(&session, 70), red(&session, 110)),
+        (last_edit(&session), red(&session, 70), red(&session, 110)),
         ("Move layers", false, true)
     );
-    assert_eq!(selected(&session), ["Paint", "Strokes"], "both stay selected");
+    assert_eq!(selected_names(&session), ["Paint", "Strokes"], "both stay selected");
     story(&mut session, r#"{"in":"clipboard","do":"cut"}"#);
     assert!(!red(&session, 110));
     story(&mut session, r#"{"in":"clipboard","do":"paste"}"#);
     assert_eq!(
-        (red(&session, 110), selected(&session)),
+        (red(&session, 110), selected_names(&session)),
         (true, vec!["Paint 2".into(), "Strokes 2".into()])
     );
     let open = session.active().unwrap();

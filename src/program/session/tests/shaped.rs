@@ -10,7 +10,7 @@ use crate::session::{OpenDocument, actions::files, storage};
 use std::path::PathBuf;
 
 /// A drawing in flat colors with a shape, its base lit.
-fn shaped() -> Session {
+fn shaped_drawing() -> Session {
     let size = crate::math::Size::new(160, 120);
     let texel = |i: usize| {
         let (x, y) = ((i % 160) as f32 + 0.5, (i / 160) as f32 + 0.5);
@@ -97,7 +97,7 @@ const LIQUIFY: &str = r##"{"in":"layer","do":"select","layer":"0"}
 
 #[test]
 fn liquify_on_the_layer_that_outlines_parts_shows_what_the_file_shows() {
-    let mut session = shaped();
+    let mut session = shaped_drawing();
     let before = picture(document_of(&session));
     tell(&mut session, LIQUIFY);
     let document = document_of(&session);
@@ -113,7 +113,7 @@ fn liquify_on_the_layer_that_outlines_parts_shows_what_the_file_shows() {
 #[test]
 fn after_a_crash_a_drawing_has_its_shape() {
     let folder = tempfile::tempdir().unwrap();
-    let mut session = shaped();
+    let mut session = shaped_drawing();
     session.autosave = Some(Autosave::new(folder.path().into()));
     session.keep();
     tell(&mut session, LIQUIFY);
@@ -137,7 +137,7 @@ fn after_a_crash_a_drawing_has_its_shape() {
 #[test]
 fn a_recovery_that_is_canceled_is_offered_again() {
     let folder = tempfile::tempdir().unwrap();
-    let mut session = shaped();
+    let mut session = shaped_drawing();
     session.autosave = Some(Autosave::new(folder.path().into()));
     session.keep();
     session.autosave.as_ref().unwrap().wait_until_written();
@@ -152,7 +152,7 @@ fn a_recovery_that_is_canceled_is_offered_again() {
 
 #[test]
 fn a_document_whose_shape_is_still_to_be_made_is_shown_exported_and_saved_with_it() {
-    let session = shaped();
+    let session = shaped_drawing();
     let document = document_of(&session);
     let flat = Document { surface: None, ..document.clone() };
     assert!(picture(&flat) != picture(document) && !flat.is_shaped());
@@ -174,7 +174,7 @@ fn a_document_whose_shape_is_still_to_be_made_is_shown_exported_and_saved_with_i
 
 #[test]
 fn a_lit_drawing_is_made_small_though_its_contact_shade_reaches_as_little_as_it_can() {
-    let mut session = shaped();
+    let mut session = shaped_drawing();
     tell(&mut session, r#"{"in":"canvas","do":"scale","width":40,"height":30,"filter":"smooth"}"#);
     assert_eq!(document_of(&session).size, crate::math::Size::new(40, 30), "{:?}", session.notes);
     assert_same_everywhere(document_of(&session), "made small");

@@ -11,7 +11,7 @@ const AIR: &str = r##"
 {"in":"hand","do":"brush","brush":{"size":120,"hardness":0,"flow":0.004,"spacing":0.1,"dynamics":{}}}"##;
 
 /// A stroke of the current brush or eraser.
-fn drawn(tool: &str, x: u32) -> String {
+fn stroke_line(tool: &str, x: u32) -> String {
     format!(
         r#"
         {{"in":"pointer","do":"press","tool":"{tool}","pen":[{x},10],"px_per_pt":1}}
@@ -24,9 +24,9 @@ fn tell(session: &mut Session, lines: &str) {
     session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
 }
 
-fn airbrushed() -> Session {
+fn airbrush() -> Session {
     let mut session = replay(AIR);
-    (0..60).for_each(|i| tell(&mut session, &drawn("brush", 60 + i)));
+    (0..60).for_each(|i| tell(&mut session, &stroke_line("brush", 60 + i)));
     session
 }
 
@@ -47,7 +47,7 @@ fn levels(paint: &PixelLayer) -> usize {
 
 #[test]
 fn an_airbrush_over_many_strokes_is_kept_finely_through_undo_cut_paste_and_merging() {
-    let mut session = airbrushed();
+    let mut session = airbrush();
     let fine = levels(&paint(&session));
     assert!(fine > 2000, "{fine} levels");
     tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
@@ -67,7 +67,7 @@ fn an_airbrush_over_many_strokes_is_kept_finely_through_undo_cut_paste_and_mergi
         let red = paint(&session).tiles.pixel16(90, 75);
         assert!(red.iter().any(|v| v % 257 != 0), "{copied}: {red:?}");
     }
-    let mut session = airbrushed();
+    let mut session = airbrush();
     assert!(
         session.active().unwrap().document().difference(&all).is_none(),
         "the same strokes, the same paint"
@@ -78,13 +78,13 @@ fn an_airbrush_over_many_strokes_is_kept_finely_through_undo_cut_paste_and_mergi
 
 #[test]
 fn a_faint_eraser_takes_airbrushed_paint_away_and_what_is_left_is_saved() {
-    let mut session = airbrushed();
+    let mut session = airbrush();
     let before = paint(&session).tiles.pixel16(90, 75)[3];
     tell(
         &mut session,
         r#"{"in":"hand","do":"brush","brush":{"size":120,"hardness":0,"flow":0.001,"erases":true}}"#,
     );
-    tell(&mut session, &drawn("eraser", 90));
+    tell(&mut session, &stroke_line("eraser", 90));
     let after = paint(&session).tiles.pixel16(90, 75)[3];
     assert!(after < before && before - after < 900, "{before} to {after}");
     let folder = tempfile::tempdir().unwrap();
@@ -100,7 +100,7 @@ fn a_faint_eraser_takes_airbrushed_paint_away_and_what_is_left_is_saved() {
 #[test]
 fn baked_smooth_strokes_are_as_fine_as_they_were_alive() {
     let mut session = replay(&AIR.replace(r#"{"in":"layer","do":"add","kind":"paint"}"#, ""));
-    (0..6).for_each(|i| tell(&mut session, &drawn("brush", 60 + i)));
+    (0..6).for_each(|i| tell(&mut session, &stroke_line("brush", 60 + i)));
     assert!(matches!(session.active().unwrap().document().layers[1].content, Content::Strokes(_)));
     let bake = Action::Layer(LayerAction::Bake { layer: session.layer_paths() });
     bake.apply(&mut session).unwrap();

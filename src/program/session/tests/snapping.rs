@@ -27,7 +27,7 @@ fn drag(tool: &str, from: [f32; 2], to: [f32; 2], key: &str) -> String {
     )
 }
 
-fn covered(session: &Session) -> Rect {
+fn covered_rect(session: &Session) -> Rect {
     session.active().unwrap().document().active_coverage().map(CoverageGrid::covered_rect).unwrap()
 }
 
@@ -39,10 +39,10 @@ fn document(session: &Session) -> &Document {
 fn selections_gradients_and_layers_go_to_guides_that_they_come_near() {
     let mut session = replay(&format!("{PAPER}{GUIDES}"));
     story(&mut session, &drag("select rectangle", [77.0, 20.0], [150.0, 66.0], ""));
-    assert_eq!(covered(&session), Rect::new(80, 20, 150, 60));
+    assert_eq!(covered_rect(&session), Rect::new(80, 20, 150, 60));
     story(&mut session, &drag("select rectangle", [120.0, 40.0], [118.0, 61.0], ""));
     assert_eq!(
-        covered(&session),
+        covered_rect(&session),
         Rect::new(80, 40, 150, 80),
         "moved: its middle stands at 60, its side at 80"
     );
@@ -92,7 +92,7 @@ fn nothing_snaps_once_it_is_put_off_and_lines_with_shift_do_else() {
     aids.snaps = false;
     Action::Guide(super::super::actions::GuideAction::Aids { aids }).apply(&mut session).unwrap();
     story(&mut session, &drag("select rectangle", [77.0, 20.0], [150.0, 66.0], ""));
-    assert_eq!(covered(&session), Rect::new(77, 20, 150, 66));
+    assert_eq!(covered_rect(&session), Rect::new(77, 20, 150, 66));
 }
 
 #[test]

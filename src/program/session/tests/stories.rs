@@ -41,7 +41,7 @@ struct Fault {
 }
 
 /// Plays so many stories; each fault by its kind.
-fn played(first: u64, count: u64) -> BTreeMap<String, Fault> {
+fn play_all(first: u64, count: u64) -> BTreeMap<String, Fault> {
     let mut faults: BTreeMap<String, Fault> = BTreeMap::new();
     let folder = starts::StoryFolder::new();
     for seed in first..first + count {
@@ -56,7 +56,7 @@ fn played(first: u64, count: u64) -> BTreeMap<String, Fault> {
 }
 
 /// The number that the environment gives, as for property tests.
-fn given(name: &str) -> Option<u64> {
+fn number_from_environment(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
 }
 
@@ -67,7 +67,7 @@ fn replay_of(seed: u64) -> PathBuf {
     let target = std::env::temp_dir().join(format!("rilievo-story-{seed}"));
     starts::write_assets(&target);
     let Some(broken) = outcome.broken else { return target };
-    let (actions, broken) = shrink::shrunk(outcome.actions, broken, &folder);
+    let (actions, broken) = shrink::shrink(outcome.actions, broken, &folder);
     let lines: Vec<String> = actions.iter().map(|action| action.to_value().to_string()).collect();
     let there =
         |text: &str| text.replace(&*folder.path().to_string_lossy(), &target.to_string_lossy());
@@ -84,7 +84,7 @@ fn replay_of(seed: u64) -> PathBuf {
 }
 
 fn assert_no_faults(first: u64, count: u64) {
-    let faults = played(first, count);
+    let faults = play_all(first, count);
     let mut list: Vec<(&String, &Fault)> = faults.iter().collect();
     list.sort_by_key(|(_, fault)| std::cmp::Reverse(fault.count));
     let (mut failed, mut ways) = (0, 0);
@@ -110,11 +110,11 @@ fn whatever_happens_documents_are_kept_undone_and_drawn_the_same() {
 #[test]
 #[ignore = "takes a night"]
 fn whatever_happens_in_a_night_documents_are_kept_undone_and_drawn_the_same() {
-    let first = match given("PROPTEST_RNG_SEED").unwrap_or_default() {
+    let first = match number_from_environment("PROPTEST_RNG_SEED").unwrap_or_default() {
         night @ 0..1_000_000 => night * 1_000_000,
         story => story,
     };
-    assert_no_faults(first, given("PROPTEST_CASES").unwrap_or(MANY));
+    assert_no_faults(first, number_from_environment("PROPTEST_CASES").unwrap_or(MANY));
 }
 
 /// A word that is spelled wrongly would weigh nothing.

@@ -25,7 +25,7 @@ fn redo(session: &mut Session) {
     act(session, r#"{"in":"edit","do":"redo"}"#);
 }
 
-pub(super) fn drawn_with(tool: &str) -> String {
+pub(super) fn stroke_with(tool: &str) -> String {
     format!(
         r#"{{"in":"pointer","do":"press","tool":"{tool}","pen":[20,30],"px_per_pt":1}}
         {{"in":"pointer","do":"drag","pens":[[60,44],[90,60]]}}
@@ -34,7 +34,7 @@ pub(super) fn drawn_with(tool: &str) -> String {
 }
 
 /// The names of the selected layers, the primary one last.
-fn selected(session: &Session) -> Vec<String> {
+fn selected_names(session: &Session) -> Vec<String> {
     let open = session.active().unwrap();
     let mut ids = open.selected_layers();
     ids.sort_by_key(|id| open.primary == Some(*id));
@@ -45,18 +45,18 @@ fn selected(session: &Session) -> Vec<String> {
 fn after_an_undone_gradient_the_next_stroke_goes_where_the_last_one_would_have() {
     let mut session = two_layers();
     act(&mut session, r#"{"in":"hand","do":"live gradients","on":true}"#);
-    for step in [&drawn_with("gradient"), r#"{"in":"layer","do":"add","kind":"group"}"#] {
+    for step in [&stroke_with("gradient"), r#"{"in":"layer","do":"add","kind":"group"}"#] {
         act(&mut session, step);
-        let made = selected(&session);
+        let made = selected_names(&session);
         assert_ne!(made, ["Paint"], "the new layer is selected");
         undo(&mut session);
-        assert_eq!(selected(&session), ["Paint"]);
+        assert_eq!(selected_names(&session), ["Paint"]);
         redo(&mut session);
-        assert_eq!(selected(&session), made);
+        assert_eq!(selected_names(&session), made);
         undo(&mut session);
     }
     let before = names(&session);
-    act(&mut session, &drawn_with("brush"));
+    act(&mut session, &stroke_with("brush"));
     assert_eq!(
         names(&session),
         before,
@@ -67,13 +67,13 @@ fn after_an_undone_gradient_the_next_stroke_goes_where_the_last_one_would_have()
 #[test]
 fn redo_selects_what_was_selected_right_after_the_step_and_not_what_was_selected_later() {
     let mut session = two_layers();
-    act(&mut session, &drawn_with("brush"));
+    act(&mut session, &stroke_with("brush"));
     act(&mut session, r#"{"in":"layer","do":"select","layer":"2"}"#);
     undo(&mut session);
-    assert_eq!(selected(&session), ["Paint"]);
+    assert_eq!(selected_names(&session), ["Paint"]);
     act(&mut session, r#"{"in":"layer","do":"select","layer":"0"}"#);
     redo(&mut session);
-    assert_eq!(selected(&session), ["Paint"]);
+    assert_eq!(selected_names(&session), ["Paint"]);
 }
 
 #[test]
@@ -84,12 +84,12 @@ fn several_deleted_layers_come_back_selected_and_a_click_in_the_history_selects_
         r#"{"in":"layer","do":"choose","layer":["1","2"],"primary":"1","anchor":"2"}"#,
     );
     act(&mut session, r#"{"in":"layer","do":"delete","layer":["1","2"]}"#);
-    act(&mut session, &drawn_with("brush"));
-    assert_eq!(selected(&session), ["Strokes"]);
+    act(&mut session, &stroke_with("brush"));
+    assert_eq!(selected_names(&session), ["Strokes"]);
     act(&mut session, r#"{"in":"edit","do":"walk","steps":-2}"#);
-    assert_eq!(selected(&session), ["Paint 2", "Paint"]);
+    assert_eq!(selected_names(&session), ["Paint 2", "Paint"]);
     act(&mut session, r#"{"in":"edit","do":"walk","steps":1}"#);
-    assert_eq!(selected(&session), ["Background"]);
+    assert_eq!(selected_names(&session), ["Background"]);
 }
 
 #[test]
@@ -97,9 +97,9 @@ fn a_stroke_on_a_mask_is_undone_on_the_mask_and_the_tool_stays_in_hand() {
     let mut session = two_layers();
     let on_mask = |session: &Session| session.active().unwrap().on_mask;
     act(&mut session, r#"{"in":"layer","do":"paint mask","layer":"1","hides":false}"#);
-    act(&mut session, &drawn_with("brush"));
+    act(&mut session, &stroke_with("brush"));
     act(&mut session, r#"{"in":"layer","do":"on mask","layer":"1","on":false}"#);
-    act(&mut session, &drawn_with("brush"));
+    act(&mut session, &stroke_with("brush"));
     act(&mut session, r#"{"in":"hand","do":"tool","tool":"eraser"}"#);
     undo(&mut session);
     assert!(!on_mask(&session));
@@ -131,14 +131,14 @@ fn selected_strokes_are_those_that_were_selected_before_they_were_ordered() {
 #[test]
 fn the_history_says_which_layer_a_step_was_done_to() {
     let mut session = two_layers();
-    act(&mut session, &drawn_with("brush"));
+    act(&mut session, &stroke_with("brush"));
     act(
         &mut session,
         r#"{"in":"layer","do":"set","layer":"1","to":{"do":"opacity","to":0.5},"done":true}"#,
     );
     act(&mut session, r#"{"in":"layer","do":"group","layer":["1","2"]}"#);
     act(&mut session, r#"{"in":"layer","do":"select","layer":"1.0"}"#);
-    act(&mut session, &drawn_with("brush"));
+    act(&mut session, &stroke_with("brush"));
     act(&mut session, r#"{"in":"layer","do":"delete","layer":"1.1"}"#);
     act(&mut session, r#"{"in":"selection","do":"all"}"#);
     let said: Vec<String> =

@@ -6,7 +6,7 @@ use crate::math::Size;
 use crate::paint::PlacedImage;
 use crate::raster::{Outside, TileGrid};
 
-fn written(lines: &[&str]) -> Session {
+fn write(lines: &[&str]) -> Session {
     let mut session = Session::default();
     session.add_document(OpenDocument::new("page", Document::empty(Size::new(200, 120)), None));
     for line in lines {
@@ -25,7 +25,7 @@ fn text_of(session: &Session) -> (String, PlacedImage) {
     found.unwrap()
 }
 
-fn seen(document: &Document) -> TileGrid {
+fn render(document: &Document) -> TileGrid {
     flatten(document, &Progress::default()).unwrap()
 }
 
@@ -34,11 +34,11 @@ const WRITE: &str = r##"{"in":"layer","do":"write","at":[40,60],
 
 #[test]
 fn a_text_is_seen_where_it_was_written_and_keeps_its_place_while_it_is_retyped() {
-    let mut session = written(&[WRITE]);
+    let mut session = write(&[WRITE]);
     let (name, image) = text_of(&session);
     assert_eq!((name.as_str(), image.outside), ("Rel", Outside::None));
     let bounds = |session: &Session| {
-        let picture = seen(session.active().unwrap().document());
+        let picture = render(session.active().unwrap().document());
         let inked = (0..120 * 200).filter(|i| picture.pixel(i % 200, i / 200)[3] > 127);
         inked.fold((200, 120, 0, 0), |(x0, y0, x1, y1), i| {
             let (x, y) = (i % 200, i / 200);
@@ -63,10 +63,10 @@ fn a_text_is_saved_with_its_words_and_outlines_and_opened_as_it_was() {
     let file = folder.path().join("words.ora").to_string_lossy().replace('\\', "/");
     let save = format!(r#"{{"in":"file","do":"save","file":"{file}"}}"#);
     let open = format!(r#"{{"in":"file","do":"open","file":"{file}"}}"#);
-    let session = written(&[WRITE, &save, &open]);
+    let session = write(&[WRITE, &save, &open]);
     let [made, read] = &session.open_documents[..] else { panic!("there are not two documents") };
-    let both =
-        [made, read].map(|open| seen(open.document()).to_straight_rgba(Size::new(200, 120).rect()));
+    let both = [made, read]
+        .map(|open| render(open.document()).to_straight_rgba(Size::new(200, 120).rect()));
     assert!(both[0] == both[1], "other pixels");
     let (_, image) = text_of(&session);
     let text = image.source.text.unwrap();
@@ -76,9 +76,9 @@ fn a_text_is_saved_with_its_words_and_outlines_and_opened_as_it_was() {
 
 #[test]
 fn a_text_is_as_sharp_at_eight_times_the_size() {
-    let session = written(&[WRITE]);
+    let session = write(&[WRITE]);
     let document = session.active().unwrap().document();
-    let larger = seen(&document.scaled(8.0).unwrap());
+    let larger = render(&document.scaled(8.0).unwrap());
     // Along a row through the letters, pixels that are neither ink nor paper are two at an edge.
     let row: Vec<u8> = (0..1600).map(|x| larger.pixel(x, 8 * 50)[3]).collect();
     let edges = row.windows(2).filter(|pair| (pair[0] > 127) != (pair[1] > 127)).count();

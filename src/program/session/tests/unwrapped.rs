@@ -121,8 +121,8 @@ fn without_a_surface_nothing_is_unwrapped_and_that_is_told() {
 #[test]
 fn what_is_exported_unwrapped_and_imported_again_is_the_painting() {
     let folder = tempfile::tempdir().unwrap();
-    for (scale, deep, name) in
-        [(1, false, "one.png"), (2, false, "two.png"), (2, true, "deep.png"), (1, true, "one.exr")]
+    for (scale, bits, name) in
+        [(1, 8, "one.png"), (2, 8, "two.png"), (2, 16, "two16.png"), (1, 16, "one.exr")]
     {
         let mut session = round();
         let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
@@ -131,7 +131,7 @@ fn what_is_exported_unwrapped_and_imported_again_is_the_painting() {
         then(
             &mut session,
             &format!(
-                r#"{{"in":"file","do":"export unwrapped","file":"{file}","scale":{scale},"deep":{deep}}}
+                r#"{{"in":"file","do":"export unwrapped","file":"{file}","scale":{scale},"bits":{bits}}}
 {{"in":"layer","do":"delete","layer":"0"}}
 {{"in":"file","do":"import unwrapped","file":"{file}"}}"#
             ),

@@ -38,7 +38,7 @@ fn stroke(document: &Document, points: &[Vec2], magnetism: f32) -> Vec<Vec2> {
     strokes[0].samples().iter().map(|sample| sample.at).collect()
 }
 
-fn dragged(
+fn drag_tool(
     document: &Document,
     kind: AssistantKind,
     from: Vec2,
@@ -107,23 +107,24 @@ fn a_dot_is_a_dot_and_an_ellipse_is_gone_round() {
 fn assistants_are_laid_moved_and_taken_away_each_in_one_step() {
     let none = empty();
     let laid =
-        dragged(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(90.0, 60.0), false).unwrap();
+        drag_tool(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(90.0, 60.0), false).unwrap();
     assert_eq!(laid.assistants[0].points, [vec2(20.0, 20.0), vec2(90.0, 60.0)]);
     let moved =
-        dragged(&laid, AssistantKind::Line, vec2(92.0, 61.0), vec2(100.0, 20.0), false).unwrap();
+        drag_tool(&laid, AssistantKind::Line, vec2(92.0, 61.0), vec2(100.0, 20.0), false).unwrap();
     assert_eq!(moved.assistants[0].points, [vec2(20.0, 20.0), vec2(100.0, 20.0)]);
     let gone =
-        dragged(&moved, AssistantKind::Line, vec2(21.0, 20.0), vec2(21.0, 20.0), true).unwrap();
+        drag_tool(&moved, AssistantKind::Line, vec2(21.0, 20.0), vec2(21.0, 20.0), true).unwrap();
     assert!(gone.assistants.is_empty());
     assert!(
-        dragged(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(21.0, 20.0), false).is_none(),
+        drag_tool(&none, AssistantKind::Line, vec2(20.0, 20.0), vec2(21.0, 20.0), false).is_none(),
         "a click"
     );
     let point =
-        dragged(&none, AssistantKind::OnePoint, vec2(20.0, 20.0), vec2(21.0, 20.0), false).unwrap();
+        drag_tool(&none, AssistantKind::OnePoint, vec2(20.0, 20.0), vec2(21.0, 20.0), false)
+            .unwrap();
     assert_eq!(point.assistants[0].points.len(), 1);
     for (kind, _) in AssistantKind::ALL {
-        let laid = dragged(&none, kind, vec2(20.0, 20.0), vec2(90.0, 60.0), false).unwrap();
+        let laid = drag_tool(&none, kind, vec2(20.0, 20.0), vec2(90.0, 60.0), false).unwrap();
         assert!(laid.assistants[0].fits().is_ok() && laid.fits(None).is_ok(), "{kind:?}");
     }
 }

@@ -15,7 +15,7 @@ fn context<'a>(
     ToolContext { layer, ..ToolContext::new(document, tools) }
 }
 
-fn drawn(
+fn draw(
     context: &ToolContext,
     purpose: StrokePurpose,
     points: &[Vec2],
@@ -56,12 +56,12 @@ const LINE: [Vec2; 6] = [
 fn the_first_stroke_makes_a_layer_to_hold_it() {
     let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush::default());
     let tools = ToolSettings::with_brush(brush);
-    let (document, select) = drawn(&context(&empty, None, &tools), StrokePurpose::Paint, &LINE);
+    let (document, select) = draw(&context(&empty, None, &tools), StrokePurpose::Paint, &LINE);
     assert_eq!(document.layers.len(), 1);
     assert_eq!(select, Some(document.layers[0].id));
     let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
     assert_eq!(list.params().strokes[0].samples().len(), LINE.len());
-    let (again, _) = drawn(&context(&document, select, &tools), StrokePurpose::Paint, &LINE);
+    let (again, _) = draw(&context(&document, select, &tools), StrokePurpose::Paint, &LINE);
     assert_eq!(again.layers.len(), 1, "the next one goes to the same layer");
 }
 
@@ -70,7 +70,7 @@ fn pixels_painted_step_by_step_are_those_painted_at_once() {
     let (document, brush) = (paint_layer(), Brush { size: 30.0, ..Brush::default() });
     let tools = ToolSettings::with_brush(brush.clone());
     let id = Some(document.layers[0].id);
-    let (steps, _) = drawn(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
+    let (steps, _) = draw(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
     let stroke = Stroke::new(brush, Operator::None, Color::BLACK, LINE.map(Sample::at).to_vec());
     let scene = document.scene();
     for at in TileAt::covering(scene.size.rect()) {
@@ -86,15 +86,15 @@ fn erasing_takes_out_what_painting_put_in_and_locked_alpha_keeps_the_shape() {
     let tools = ToolSettings::with_brush(brush);
     let document = paint_layer();
     let id = Some(document.layers[0].id);
-    let (painted, _) = drawn(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
+    let (painted, _) = draw(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
     assert_eq!(tiles(&painted).pixel(60, 52), [0, 0, 0, 255]);
-    let (erased, _) = drawn(&context(&painted, id, &tools), StrokePurpose::Erase, &LINE);
+    let (erased, _) = draw(&context(&painted, id, &tools), StrokePurpose::Erase, &LINE);
     assert_eq!(tiles(&erased).pixel(60, 52), [0; 4]);
     let locked =
         painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
     let wide = Brush { size: 90.0, ..tools.brush.clone() };
     let white = ToolSettings { color: Color::WHITE, ..ToolSettings::with_brush(wide) };
-    let (atop, _) = drawn(&context(&locked, id, &white), StrokePurpose::Paint, &LINE);
+    let (atop, _) = draw(&context(&locked, id, &white), StrokePurpose::Paint, &LINE);
     assert_eq!((tiles(&atop).pixel(60, 52), tiles(&atop).pixel(60, 90)), ([255; 4], [0; 4]));
 }
 
@@ -116,12 +116,12 @@ fn the_eraser_with_ctrl_takes_whole_strokes_from_a_stroke_layer() {
     let (empty, brush) =
         (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
     let tools = ToolSettings::with_brush(brush);
-    let (one, id) = drawn(
+    let (one, id) = draw(
         &context(&empty, None, &tools),
         StrokePurpose::Paint,
         &[vec2(10.0, 20.0), vec2(90.0, 20.0)],
     );
-    let (two, _) = drawn(
+    let (two, _) = draw(
         &context(&one, id, &tools),
         StrokePurpose::Paint,
         &[vec2(10.0, 90.0), vec2(90.0, 90.0)],
@@ -144,12 +144,12 @@ fn the_eraser_lays_a_stroke_that_takes_paint_away_where_there_are_strokes() {
     let (empty, brush) =
         (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
     let tools = ToolSettings::with_brush(brush);
-    let (one, id) = drawn(
+    let (one, id) = draw(
         &context(&empty, None, &tools),
         StrokePurpose::Paint,
         &[vec2(10.0, 20.0), vec2(90.0, 20.0)],
     );
-    let (cut, _) = drawn(
+    let (cut, _) = draw(
         &context(&one, id, &tools),
         StrokePurpose::Erase,
         &[vec2(50.0, 5.0), vec2(50.0, 60.0)],
@@ -179,14 +179,14 @@ fn mirror_images_are_strokes_of_their_own() {
     tools.symmetry.kind = Symmetry::Vertical;
     let mirrored = context(&empty, None, &tools);
     let (document, _) =
-        drawn(&mirrored, StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
+        draw(&mirrored, StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
     let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
     let ends: Vec<Vec2> =
         list.params().strokes.iter().map(|stroke| stroke.samples()[1].at).collect();
     assert_eq!(ends, [vec2(60.0, 90.0), vec2(140.0, 90.0)]);
     let on_paint = ToolContext { document: &paint_layer(), layer: None, ..mirrored };
     let id = on_paint.document.layers[0].id;
-    let (painted, _) = drawn(
+    let (painted, _) = draw(
         &ToolContext { layer: Some(id), ..on_paint },
         StrokePurpose::Paint,
         &[vec2(20.0, 40.0)],
@@ -200,7 +200,7 @@ fn a_calmed_line_is_finished_when_the_pen_lifts() {
     let brush =
         Brush { size: 8.0, stabilizer: Stabilizer::String { length_px: 40.0 }, ..Brush::default() };
     let tools = ToolSettings::with_brush(brush);
-    let (document, _) = drawn(
+    let (document, _) = draw(
         &context(&empty, None, &tools),
         StrokePurpose::Paint,
         &[vec2(20.0, 40.0), vec2(120.0, 40.0)],
@@ -216,10 +216,10 @@ fn an_erasing_brush_takes_nothing_from_paint_whose_alpha_is_locked() {
     let tools = ToolSettings::with_brush(brush);
     let document = paint_layer();
     let id = Some(document.layers[0].id);
-    let (painted, _) = drawn(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
+    let (painted, _) = draw(&context(&document, id, &tools), StrokePurpose::Paint, &LINE);
     let locked =
         painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
-    let (erased, _) = drawn(&context(&locked, id, &tools), StrokePurpose::Erase, &LINE);
+    let (erased, _) = draw(&context(&locked, id, &tools), StrokePurpose::Erase, &LINE);
     assert_eq!(tiles(&erased).pixel(60, 52), [0, 0, 0, 255]);
 }
 

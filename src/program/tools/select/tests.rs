@@ -21,7 +21,7 @@ fn bands() -> Document {
 }
 
 /// Drags a tool; returns the resulting document and settings.
-fn dragged_with(
+fn drag_with(
     kind: ToolKind,
     document: &Document,
     select: SelectSettings,
@@ -40,16 +40,16 @@ fn dragged_with(
     }
 }
 
-fn drawn(
+fn draw(
     kind: ToolKind,
     document: &Document,
     keys: ModifierKeys,
     points: &[Vec2],
 ) -> Option<Document> {
-    dragged_with(kind, document, SelectSettings::default(), keys, points).0
+    drag_with(kind, document, SelectSettings::default(), keys, points).0
 }
 
-fn covered(document: &Document) -> Rect {
+fn covered_rect(document: &Document) -> Rect {
     document.active_coverage().map_or(Rect::EMPTY, CoverageGrid::covered_rect)
 }
 const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false };
@@ -57,12 +57,12 @@ const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false 
 #[test]
 fn a_rectangle_is_dragged_along_whole_pixels_and_keys_say_how_it_meets_the_last() {
     let points = [vec2(20.3, 30.4), vec2(50.0, 40.0), vec2(80.6, 90.2)];
-    let one = drawn(ToolKind::SelectRectangle, &Document::empty(SIZE), NONE, &points).unwrap();
-    assert_eq!(covered(&one), Rect::new(20, 30, 81, 90));
+    let one = draw(ToolKind::SelectRectangle, &Document::empty(SIZE), NONE, &points).unwrap();
+    assert_eq!(covered_rect(&one), Rect::new(20, 30, 81, 90));
     let next = [vec2(60.0, 10.0), vec2(120.0, 60.0)];
     let with = |shift, alt| {
         let found =
-            drawn(ToolKind::SelectRectangle, &one, ModifierKeys { shift, alt, ctrl: false }, &next)
+            draw(ToolKind::SelectRectangle, &one, ModifierKeys { shift, alt, ctrl: false }, &next)
                 .unwrap();
         let grid = found.active_coverage().unwrap().clone();
         [(30, 70), (70, 40), (100, 20)].map(|(x, y)| grid.at(x, y) == 255)
@@ -76,22 +76,26 @@ fn a_rectangle_is_dragged_along_whole_pixels_and_keys_say_how_it_meets_the_last(
 #[test]
 fn a_drag_within_the_selection_moves_it_and_a_click_beside_it_lets_go() {
     let one =
-        drawn(ToolKind::SelectRectangle, &bands(), NONE, &[vec2(20.0, 30.0), vec2(80.0, 90.0)])
+        draw(ToolKind::SelectRectangle, &bands(), NONE, &[vec2(20.0, 30.0), vec2(80.0, 90.0)])
             .unwrap();
-    let moved = drawn(ToolKind::SelectRectangle, &one, NONE, &[vec2(50.0, 50.0), vec2(75.4, 39.6)])
-        .unwrap();
-    assert_eq!(covered(&moved), Rect::new(45, 20, 105, 80));
+    let moved =
+        draw(ToolKind::SelectRectangle, &one, NONE, &[vec2(50.0, 50.0), vec2(75.4, 39.6)]).unwrap();
+    assert_eq!(covered_rect(&moved), Rect::new(45, 20, 105, 80));
     let all = bands().with_selection(Some(Selection::new(CoverageGrid::full(SIZE.rect()))));
     let drag = [vec2(50.0, 50.0), vec2(75.0, 90.0)];
-    let anew = drawn(ToolKind::SelectRectangle, &all, NONE, &drag).unwrap();
-    assert_eq!(covered(&anew), Rect::new(50, 50, 75, 90), "in all of the canvas it begins anew");
+    let anew = draw(ToolKind::SelectRectangle, &all, NONE, &drag).unwrap();
+    assert_eq!(
+        covered_rect(&anew),
+        Rect::new(50, 50, 75, 90),
+        "in all of the canvas it begins anew"
+    );
     let click = [vec2(150.0, 100.0), vec2(151.0, 100.0)];
     assert!(
-        drawn(ToolKind::SelectRectangle, &one, NONE, &click).unwrap().active_coverage().is_none()
+        draw(ToolKind::SelectRectangle, &one, NONE, &click).unwrap().active_coverage().is_none()
     );
     let shift = ModifierKeys { shift: true, ..NONE };
     assert!(
-        drawn(ToolKind::SelectRectangle, &one, shift, &click).is_none(),
+        draw(ToolKind::SelectRectangle, &one, shift, &click).is_none(),
         "adding nothing is no step"
     );
 }
@@ -99,8 +103,8 @@ fn a_drag_within_the_selection_moves_it_and_a_click_beside_it_lets_go() {
 #[test]
 fn a_lasso_drawn_freely_closes_when_the_pen_lifts() {
     let points = [vec2(20.0, 20.0), vec2(120.0, 20.0), vec2(120.0, 100.0), vec2(20.0, 100.0)];
-    let found = drawn(ToolKind::Lasso, &Document::empty(SIZE), NONE, &points).unwrap();
-    assert_eq!(covered(&found), Rect::new(20, 20, 120, 100));
+    let found = draw(ToolKind::Lasso, &Document::empty(SIZE), NONE, &points).unwrap();
+    assert_eq!(covered_rect(&found), Rect::new(20, 20, 120, 100));
 }
 
 #[test]
@@ -119,7 +123,7 @@ fn a_lasso_of_clicks_goes_on_until_its_first_corner_is_clicked() {
     else {
         panic!("it is closed")
     };
-    assert_eq!(covered(&found), Rect::new(20, 20, 120, 100));
+    assert_eq!(covered_rect(&found), Rect::new(20, 20, 120, 100));
     assert!(
         select_closed_lasso(&document, &tools.lasso[..2], &SelectSettings::default()).is_none()
     );
@@ -129,23 +133,23 @@ fn a_lasso_of_clicks_goes_on_until_its_first_corner_is_clicked() {
 fn the_wand_selects_what_is_like_a_pixel_and_a_drag_changes_how_like() {
     let document = bands();
     let at = vec2(45.0, 60.0);
-    let found = drawn(ToolKind::Wand, &document, NONE, &[at]).unwrap();
+    let found = draw(ToolKind::Wand, &document, NONE, &[at]).unwrap();
     assert_eq!(
-        covered(&found),
+        covered_rect(&found),
         Rect::new(20, 0, 80, 130),
         "a tolerance of 25 bytes takes one more on each side"
     );
     // 50 of 500 points: a tenth more.
     let (wider, settings) =
-        dragged_with(ToolKind::Wand, &document, SelectSettings::default(), NONE, &[at, at + 50.0]);
-    assert_eq!(covered(&wider.unwrap()), Rect::new(0, 0, 100, 130));
+        drag_with(ToolKind::Wand, &document, SelectSettings::default(), NONE, &[at, at + 50.0]);
+    assert_eq!(covered_rect(&wider.unwrap()), Rect::new(0, 0, 100, 130));
     assert!((settings.wand.tolerance - 0.2).abs() < 1e-6, "it stays for the next one");
     let everywhere = SelectSettings { joined: false, ..SelectSettings::default() };
     let striped =
-        drawn(ToolKind::SelectRectangle, &document, NONE, &[vec2(0.0, 0.0), vec2(9.0, 9.0)])
+        draw(ToolKind::SelectRectangle, &document, NONE, &[vec2(0.0, 0.0), vec2(9.0, 9.0)])
             .unwrap();
-    let (all, _) = dragged_with(ToolKind::Wand, &striped, everywhere, NONE, &[at]);
-    assert_eq!(covered(&all.unwrap()), Rect::new(20, 0, 80, 130));
+    let (all, _) = drag_with(ToolKind::Wand, &striped, everywhere, NONE, &[at]);
+    assert_eq!(covered_rect(&all.unwrap()), Rect::new(20, 0, 80, 130));
 }
 
 #[test]
@@ -157,13 +161,13 @@ fn the_surface_wand_keeps_what_it_was_told_and_says_why_it_cannot() {
         Document { surface: Some(Arc::new(Surface::new(maps).unwrap())), ..Document::empty(SIZE) };
     let points = [vec2(30.5, 40.5), vec2(55.5, 40.5)];
     let (found, settings) =
-        dragged_with(ToolKind::SurfaceWand, &roof, SelectSettings::default(), NONE, &points);
+        drag_with(ToolKind::SurfaceWand, &roof, SelectSettings::default(), NONE, &points);
     let found = found.unwrap();
-    assert_eq!(covered(&found), Rect::new(0, 0, 100, 130));
+    assert_eq!(covered_rect(&found), Rect::new(0, 0, 100, 130));
     let told = found.active_selection.as_ref().unwrap().made.unwrap();
     assert_eq!((told.at, told.tolerance), (points[0], 24.0));
     assert_eq!(settings.region.tolerance, 24.0);
-    let added = dragged_with(
+    let added = drag_with(
         ToolKind::SurfaceWand,
         &found,
         settings,
@@ -172,7 +176,7 @@ fn the_surface_wand_keeps_what_it_was_told_and_says_why_it_cannot() {
     );
     let added = added.0.unwrap();
     assert!(added.active_selection.as_ref().unwrap().made.is_none(), "two regions are no region");
-    assert_eq!(covered(&added), SIZE.rect());
+    assert_eq!(covered_rect(&added), SIZE.rect());
     let (empty, tools) = (Document::empty(SIZE), ToolSettings::default());
     let said =
         press(ToolKind::SurfaceWand, &ToolContext::new(&empty, &tools), PenSample::at(points[0])).1;

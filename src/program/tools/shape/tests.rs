@@ -28,7 +28,7 @@ fn pen(x: f32, y: f32, keys: ModifierKeys) -> PenSample {
 }
 
 /// A drag with a tool and a selected part; the outcomes of press and release.
-fn dragged(
+fn drag(
     document: &Document,
     tool: ToolKind,
     part: &str,
@@ -45,7 +45,7 @@ fn dragged(
     (first, last)
 }
 
-fn committed(outcome: Option<Outcome>) -> (String, Document) {
+fn commit(outcome: Option<Outcome>) -> (String, Document) {
     match outcome {
         Some(Outcome::Commit { label, document, .. }) => (label, document),
         _ => panic!("nothing was kept"),
@@ -57,9 +57,9 @@ const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false 
 fn the_part_under_the_pen_is_selected_and_moved_by_whole_pixels_with_its_surface() {
     let document = scene();
     let (first, last) =
-        dragged(&document, ToolKind::Shape, "square", &[(330.0, 300.0), (340.4, 310.6)], NONE);
+        drag(&document, ToolKind::Shape, "square", &[(330.0, 300.0), (340.4, 310.6)], NONE);
     assert!(matches!(first, Outcome::Choose(DocumentChoice::Part(id)) if id == "ball"));
-    let (label, moved) = committed(last);
+    let (label, moved) = commit(last);
     assert_eq!(
         (label.as_str(), moved.parts.part("ball").unwrap().matrix.translation),
         ("Move part", vec2(10.0, 11.0))
@@ -79,7 +79,7 @@ fn handles_puff_tilt_scale_and_turn_the_selected_part() {
     assert_eq!(gizmo.handle_at(gizmo.middle()), Some(PartHandle::Puff));
     let drag = |from: Vec2, by: Vec2| {
         let way = [(from.x, from.y), (from.x + by.x, from.y + by.y)];
-        let (label, next) = committed(dragged(&document, ToolKind::Shape, "square", &way, NONE).1);
+        let (label, next) = commit(drag(&document, ToolKind::Shape, "square", &way, NONE).1);
         (label, Part::clone(next.parts.part("square").unwrap()))
     };
     let (label, part) = drag(gizmo.middle(), vec2(0.0, -100.0));
@@ -117,8 +117,8 @@ fn handles_puff_tilt_scale_and_turn_the_selected_part() {
 fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_taken() {
     let document = scene();
     let way = [(100.0, 160.0), (105.0, 160.0), (150.0, 160.0), (200.0, 160.0)];
-    let (_, last) = dragged(&document, ToolKind::Touch, "square", &way, NONE);
-    let (label, touched) = committed(last);
+    let (_, last) = drag(&document, ToolKind::Touch, "square", &way, NONE);
+    let (label, touched) = commit(last);
     let all = touch::touches(&touched);
     assert_eq!((label.as_str(), all.len()), ("Touch", 3), "one that is too near is left out");
     let (x, y) = (150, 160);
@@ -129,15 +129,15 @@ fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_tak
         "{got}"
     );
     let (_, last) =
-        dragged(&touched, ToolKind::Touch, "square", &[(150.0, 160.0), (150.0, 200.0)], NONE);
-    let (label, moved) = committed(last);
+        drag(&touched, ToolKind::Touch, "square", &[(150.0, 160.0), (150.0, 200.0)], NONE);
+    let (label, moved) = commit(last);
     assert_eq!((label.as_str(), touch::touches(&moved)[1].at), ("Move touch", vec2(150.0, 200.0)));
     let alt = ModifierKeys { alt: true, ..NONE };
-    let (first, _) = dragged(&touched, ToolKind::Touch, "square", &[(200.0, 160.0)], alt);
-    assert_eq!(touch::touches(&committed(Some(first)).1).len(), 2);
-    let (first, _) = dragged(&document, ToolKind::Touch, "square", &[(330.0, 300.0)], alt);
+    let (first, _) = drag(&touched, ToolKind::Touch, "square", &[(200.0, 160.0)], alt);
+    assert_eq!(touch::touches(&commit(Some(first)).1).len(), 2);
+    let (first, _) = drag(&document, ToolKind::Touch, "square", &[(330.0, 300.0)], alt);
     assert!(first.settings().shape.normal.x > 0.3);
-    let (first, _) = dragged(&document, ToolKind::Touch, "square", &[(10.0, 10.0)], NONE);
+    let (first, _) = drag(&document, ToolKind::Touch, "square", &[(10.0, 10.0)], NONE);
     assert!(matches!(first, Outcome::Refused(why) if why.contains("no part under the pen")));
 }
 
@@ -145,7 +145,7 @@ fn touches_are_put_down_along_a_drag_moved_and_taken_away_and_directions_are_tak
 fn sculpting_raises_with_ctrl_lowers_with_shift_smooths_and_strokes_share_a_part() {
     let document = scene();
     let way = [(120.0, 160.0), (160.0, 160.0), (200.0, 160.0)];
-    let (label, raised) = committed(dragged(&document, ToolKind::Sculpt, "square", &way, NONE).1);
+    let (label, raised) = commit(drag(&document, ToolKind::Sculpt, "square", &way, NONE).1);
     assert_eq!(label, "Sculpt");
     let rise = |document: &Document| {
         let form = document.form_of(&document.part_areas()[0].0.id).unwrap();
@@ -153,10 +153,10 @@ fn sculpting_raises_with_ctrl_lowers_with_shift_smooths_and_strokes_share_a_part
     };
     assert!(rise(&raised) > rise(&document) + 2.0, "{} from {}", rise(&raised), rise(&document));
     let ctrl = ModifierKeys { ctrl: true, ..NONE };
-    let (_, lowered) = committed(dragged(&raised, ToolKind::Sculpt, "square", &way, ctrl).1);
+    let (_, lowered) = commit(drag(&raised, ToolKind::Sculpt, "square", &way, ctrl).1);
     assert!((rise(&lowered) - rise(&document)).abs() < 0.5);
     let shift = ModifierKeys { shift: true, ..NONE };
-    let (_, smoothed) = committed(dragged(&lowered, ToolKind::Sculpt, "square", &way, shift).1);
+    let (_, smoothed) = commit(drag(&lowered, ToolKind::Sculpt, "square", &way, shift).1);
     assert_eq!(smoothed.parts.list.len(), 3);
     let PartKind::Sculpt { strokes, .. } = &smoothed.parts.list[1].kind else {
         panic!("beside its part")
@@ -174,8 +174,8 @@ fn what_is_put_on_a_moved_and_turned_part_lies_under_the_pen() {
         Mat2::from_angle(0.6) * Mat2::from_diagonal(Vec2::splat(0.8)),
     );
     document = document.with_part(part);
-    let (_, last) = dragged(&document, ToolKind::Touch, "square", &[(170.0, 180.0)], NONE);
-    let touch = touch::touches(&committed(last).1).remove(0);
+    let (_, last) = drag(&document, ToolKind::Touch, "square", &[(170.0, 180.0)], NONE);
+    let touch = touch::touches(&commit(last).1).remove(0);
     assert!(touch.at.distance(vec2(170.0, 180.0)) < 0.01);
     assert!(touch.normal.distance(ShapeSettings::default().normal) < 1e-5);
 }

@@ -20,7 +20,7 @@ fn pen(at: Vec2, keys: ModifierKeys) -> PenSample {
     PenSample { keys, ..PenSample::at(at) }
 }
 
-fn dragged(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
+fn drag(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
     let (tools, layer) = (ToolSettings::default(), Some(document.layers[0].id));
     // Zoomed in, so that the handles of the small square lie apart.
     let context = ToolContext { layer, px_per_pt: 0.3, ..ToolContext::new(document, &tools) };
@@ -50,41 +50,41 @@ fn the_frame_is_the_box_around_the_paint() {
 
 #[test]
 fn the_inside_moves_by_whole_pixels_and_back_leaves_no_transform() {
-    let moved = dragged(&document(), vec2(50.0, 40.0), vec2(57.4, 37.1), NONE).unwrap();
+    let moved = drag(&document(), vec2(50.0, 40.0), vec2(57.4, 37.1), NONE).unwrap();
     close(corners(&moved), [(47.0, 27.0), (87.0, 27.0), (87.0, 47.0), (47.0, 47.0)]);
-    let back = dragged(&moved, vec2(60.0, 40.0), vec2(53.0, 43.0), NONE).unwrap();
+    let back = drag(&moved, vec2(60.0, 40.0), vec2(53.0, 43.0), NONE).unwrap();
     assert_eq!(back.layers[0].transform, None);
     assert!(
-        dragged(&document(), vec2(50.0, 40.0), vec2(50.2, 40.0), NONE).is_none(),
+        drag(&document(), vec2(50.0, 40.0), vec2(50.2, 40.0), NONE).is_none(),
         "nothing was moved"
     );
 }
 
 #[test]
 fn a_corner_goes_where_the_pen_goes_and_the_opposite_one_stays() {
-    let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(100.0, 70.0), NONE).unwrap();
+    let scaled = drag(&document(), vec2(80.0, 50.0), vec2(100.0, 70.0), NONE).unwrap();
     close(corners(&scaled), [(40.0, 30.0), (100.0, 30.0), (100.0, 70.0), (40.0, 70.0)]);
     let about_middle = ModifierKeys { alt: true, ..NONE };
-    let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(90.0, 60.0), about_middle).unwrap();
+    let scaled = drag(&document(), vec2(80.0, 50.0), vec2(90.0, 60.0), about_middle).unwrap();
     close(corners(&scaled), [(30.0, 20.0), (90.0, 20.0), (90.0, 60.0), (30.0, 60.0)]);
     let kept_aspect = ModifierKeys { shift: true, ..NONE };
-    let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(120.0, 52.0), kept_aspect).unwrap();
+    let scaled = drag(&document(), vec2(80.0, 50.0), vec2(120.0, 52.0), kept_aspect).unwrap();
     close(corners(&scaled), [(40.0, 30.0), (120.0, 30.0), (120.0, 70.0), (40.0, 70.0)]);
 }
 
 #[test]
 fn an_edge_stretches_one_side_and_with_ctrl_it_skews() {
-    let wider = dragged(&document(), vec2(80.0, 40.0), vec2(120.0, 90.0), NONE).unwrap();
+    let wider = drag(&document(), vec2(80.0, 40.0), vec2(120.0, 90.0), NONE).unwrap();
     close(corners(&wider), [(40.0, 30.0), (120.0, 30.0), (120.0, 50.0), (40.0, 50.0)]);
     let skew = ModifierKeys { ctrl: true, ..NONE };
-    let skewed = dragged(&document(), vec2(60.0, 30.0), vec2(70.0, 30.0), skew).unwrap();
+    let skewed = drag(&document(), vec2(60.0, 30.0), vec2(70.0, 30.0), skew).unwrap();
     close(corners(&skewed), [(50.0, 30.0), (90.0, 30.0), (80.0, 50.0), (40.0, 50.0)]);
 }
 
 #[test]
 fn outside_turns_about_the_middle_in_steps_with_shift() {
     // From the right to above: a quarter turn counter-clockwise as seen.
-    let turned = dragged(
+    let turned = drag(
         &document(),
         vec2(160.0, 40.0),
         vec2(62.0, -40.0),
@@ -96,7 +96,7 @@ fn outside_turns_about_the_middle_in_steps_with_shift() {
 #[test]
 fn a_corner_with_ctrl_gives_a_perspective_and_no_crossed_one() {
     let distort = ModifierKeys { ctrl: true, ..NONE };
-    let distorted = dragged(&document(), vec2(80.0, 50.0), vec2(82.0, 51.0), distort).unwrap();
+    let distorted = drag(&document(), vec2(80.0, 50.0), vec2(82.0, 51.0), distort).unwrap();
     close(corners(&distorted), [(40.0, 30.0), (80.0, 30.0), (82.0, 51.0), (40.0, 50.0)]);
     assert!(matches!(
         distorted.layers[0].transform.clone().unwrap().shape,
@@ -108,7 +108,7 @@ fn a_corner_with_ctrl_gives_a_perspective_and_no_crossed_one() {
 fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
     let distort = ModifierKeys { ctrl: true, ..NONE };
     let corner =
-        |to| corners(&dragged(&document(), vec2(80.0, 50.0), to, distort).expect("it goes on"))[2];
+        |to| corners(&drag(&document(), vec2(80.0, 50.0), to, distort).expect("it goes on"))[2];
     let folded = corner(vec2(41.0, 31.0));
     assert!(
         folded.distance(vec2(80.0, 50.0)) > 5.0 && folded.y + 0.5 * folded.x > 70.0,
@@ -228,7 +228,7 @@ fn two() -> Document {
     Document { layers: vec![square("left", 20), square("right", 120)], ..document() }
 }
 
-fn dragged_both(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
+fn drag_both(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
     let ids: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
     let tools = ToolSettings::default();
     let context =
@@ -252,13 +252,13 @@ fn several_layers_have_one_frame_and_each_goes_along_in_its_own() {
     let gizmo = TransformGizmo::around(&both, &ids).unwrap();
     close(gizmo.corners, [(20.0, 40.0), (140.0, 40.0), (140.0, 60.0), (20.0, 60.0)]);
     // The lower right corner: half as wide, twice as high.
-    let scaled = dragged_both(&both, vec2(140.0, 60.0), vec2(80.0, 80.0), NONE).unwrap();
+    let scaled = drag_both(&both, vec2(140.0, 60.0), vec2(80.0, 80.0), NONE).unwrap();
     close(corners_of(&scaled, 0), [(20.0, 40.0), (30.0, 40.0), (30.0, 80.0), (20.0, 80.0)]);
     close(corners_of(&scaled, 1), [(70.0, 40.0), (80.0, 40.0), (80.0, 80.0), (70.0, 80.0)]);
-    let moved = dragged_both(&scaled, vec2(50.0, 60.0), vec2(55.0, 50.0), NONE).unwrap();
+    let moved = drag_both(&scaled, vec2(50.0, 60.0), vec2(55.0, 50.0), NONE).unwrap();
     close(corners_of(&moved, 1), [(75.0, 30.0), (85.0, 30.0), (85.0, 70.0), (75.0, 70.0)]);
     let distort = ModifierKeys { ctrl: true, ..NONE };
-    let distorted = dragged_both(&both, vec2(140.0, 60.0), vec2(150.0, 70.0), distort).unwrap();
+    let distorted = drag_both(&both, vec2(140.0, 60.0), vec2(150.0, 70.0), distort).unwrap();
     assert!(corners_of(&distorted, 1)[2].distance(vec2(150.0, 70.0)) < 1e-2);
     assert!(corners_of(&distorted, 0)[0].distance(vec2(20.0, 40.0)) < 1e-2);
     let about = transform_about_middle(&both, &ids, mirror(false)).unwrap();
@@ -300,7 +300,7 @@ fn a_locked_layer_among_several_keeps_all_of_them() {
     let both = two();
     let id = both.layers[1].id;
     let locked = both.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
-    assert!(dragged_both(&locked, vec2(50.0, 50.0), vec2(60.0, 50.0), NONE).is_none());
+    assert!(drag_both(&locked, vec2(50.0, 50.0), vec2(60.0, 50.0), NONE).is_none());
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub fn layout_of(document: &Document) -> Arc<PlaneLayout> {
 const BRUSH: StrokeStart = |context, pen| crate::tools::press(ToolKind::Brush, context, pen);
 
 /// The strokes that result when the pen goes along these points of the sheet.
-fn drawn(document: &Document, brush: &Brush, points: &[Vec2]) -> Vec<Arc<Stroke>> {
+fn draw(document: &Document, brush: &Brush, points: &[Vec2]) -> Vec<Arc<Stroke>> {
     let tools = ToolSettings::with_brush(brush.clone());
     let context = ToolContext::new(document, &tools);
     let (gesture, _) = paint(&context, PenSample::at(points[0]), layout_of(document), BRUSH);
@@ -59,7 +59,7 @@ fn on_sheet(document: &Document, x: f32, y: f32) -> Vec2 {
 fn a_line_drawn_evenly_on_the_sheet_goes_evenly_along_the_surface() {
     let document = document();
     let (from, to) = (on_sheet(&document, 40.0, 60.0), on_sheet(&document, 160.0, 60.0));
-    let strokes = drawn(&document, &Brush::default(), &[from, to]);
+    let strokes = draw(&document, &Brush::default(), &[from, to]);
     assert_eq!(strokes.len(), 1);
     assert!(strokes[0].operator().unwrapping().is_some(), "painted as a print");
     let arc = |x: f32| RADIUS * ((x - 100.0) / RADIUS).asin();
@@ -77,7 +77,7 @@ fn a_line_drawn_evenly_on_the_sheet_goes_evenly_along_the_surface() {
 fn a_line_over_the_gap_between_two_pieces_is_cut_there_and_one_step() {
     let document = document();
     let (from, to) = (on_sheet(&document, 100.0, 60.0), on_sheet(&document, 260.0, 60.0));
-    let strokes = drawn(&document, &Brush::default(), &[from, to]);
+    let strokes = draw(&document, &Brush::default(), &[from, to]);
     assert_eq!(strokes.len(), 2, "one on each piece");
     let objects = document.surface.as_ref().unwrap().objects();
     let labels = objects.labels();
@@ -98,8 +98,8 @@ fn the_hand_is_calmed_on_the_sheet() {
     let brush = Brush { stabilizer: Stabilizer::String { length_px: 30.0 }, ..Brush::default() };
     let (from, to) = (on_sheet(&document, 60.0, 60.0), on_sheet(&document, 150.0, 60.0));
     let middle = from.lerp(to, 0.5) + vec2(0.0, 20.0);
-    let calm = drawn(&document, &brush, &[from, middle, to]);
-    let plain = drawn(&document, &Brush::default(), &[from, middle, to]);
+    let calm = draw(&document, &brush, &[from, middle, to]);
+    let plain = draw(&document, &Brush::default(), &[from, middle, to]);
     let lowest =
         |strokes: &[Arc<Stroke>]| strokes[0].samples().iter().map(|s| s.at.y).fold(0.0, f32::max);
     assert!(lowest(&calm) < lowest(&plain) - 8.0, "{} and {}", lowest(&calm), lowest(&plain));

@@ -27,7 +27,7 @@ fn on_soft(layers: Vec<Layer>) -> TileGrid {
         .unwrap()
 }
 
-fn unclipped(text: &str) -> Layer {
+fn unclipped_layer(text: &str) -> Layer {
     with(fill(text), |l| l.clip_to_surface = false)
 }
 
@@ -79,7 +79,7 @@ fn no_outline_shows_whatever_meets_on_the_rim() {
     ];
     for (name, stack) in stacks {
         assert_shared(&on_soft(stack.clone()), [255; 4], [0; 4], name);
-        let on_white = std::iter::once(unclipped("#ffffff")).chain(stack).collect();
+        let on_white = std::iter::once(unclipped_layer("#ffffff")).chain(stack).collect();
         assert_shared(&on_soft(on_white), [255; 4], [255; 4], &format!("{name} on white"));
     }
 }
@@ -87,13 +87,13 @@ fn no_outline_shows_whatever_meets_on_the_rim() {
 #[test]
 fn what_is_not_clipped_to_the_surface_stands_in_both() {
     let stack = vec![
-        unclipped("#204060"),
+        unclipped_layer("#204060"),
         fill("#ff8000"),
-        with(unclipped("#ffffff"), |l| l.opacity = 0.5),
+        with(unclipped_layer("#ffffff"), |l| l.opacity = 0.5),
     ];
     let p = on_soft(stack);
     assert_shared(&p, [255, 191, 127, 255], [143, 159, 175, 255], "over and under");
-    let paint = with(left_of(50, "#00ff00"), |l| l.clip_to_surface = false);
+    let paint = with(layer_left_of(50, "#00ff00"), |l| l.clip_to_surface = false);
     assert_shared(
         &on_soft(vec![fill("#ff0000"), paint]),
         [0, 255, 0, 255],
@@ -265,7 +265,7 @@ fn rim(surface: &Arc<Surface>, pixels: impl Fn(i32, i32) -> [f32; 4]) -> Vec<(f3
 #[test]
 fn a_rim_shows_its_coverage_as_an_opacity_wherever_the_pixels_centers_lie() {
     let on_ground =
-        |layers: Vec<Layer>| std::iter::once(unclipped("#203038")).chain(layers).collect();
+        |layers: Vec<Layer>| std::iter::once(unclipped_layer("#203038")).chain(layers).collect();
     let white = || fill("#e0d0c0");
     let clipped = |l: Layer| with(l, |l| l.clip_below = true);
     let half = |l: Layer| with(l, |l| l.opacity = 0.5);

@@ -15,7 +15,7 @@ fn every_layer_is_drawn_alone_as_it_is_of_the_whole_document() {
             fill("#204060"),
             cloth(vec3(0.3, 0.1, 1.0)),
             clipped(clay()),
-            left_of(30, "#ff8000"),
+            layer_left_of(30, "#ff8000"),
             clipped(cloth(vec3(0.0, 0.4, 1.0))),
             clipped(fill("#00ff0080")),
             clay(),

@@ -1,6 +1,6 @@
 //! A group. Whoever walks the stack does to the layers in it what is done to the group. Floor 4.
 
-use super::{CanvasScale, Changed, Content, LayerKind, Role, Touched};
+use super::{CanvasScale, Changed, Content, LayerKind, Role, VisibleArea};
 use crate::document::Layer;
 use crate::math::Vec2;
 use crate::paint::Scene;
@@ -40,8 +40,8 @@ impl LayerKind for Group {
     }
 
     /// Each of its layers says this itself.
-    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
-        Touched::Nowhere
+    fn visible_area(&self, _scene: Option<&Scene>) -> VisibleArea {
+        VisibleArea::Nowhere
     }
 
     fn difference_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {

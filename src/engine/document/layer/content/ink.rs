@@ -2,7 +2,7 @@
 //! the rest of the drawing. Floor 4. Not here: lifting the ink (`shape::flats`), when that is
 //! done (`ink_layers`).
 
-use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent, Touched};
+use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent, VisibleArea};
 use crate::document::layer::map::LayerMap;
 use crate::document::layer::transform::LayerTransform;
 use crate::document::memory_use::MemoryCount;
@@ -104,8 +104,8 @@ impl LayerKind for InkLayer {
         false
     }
 
-    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
-        Touched::Tiles(
+    fn visible_area(&self, _scene: Option<&Scene>) -> VisibleArea {
+        VisibleArea::Tiles(
             self.tiles().into_iter().flat_map(|tiles| tiles.iter()).map(|(at, _)| at).collect(),
         )
     }

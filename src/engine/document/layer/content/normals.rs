@@ -1,7 +1,7 @@
 //! Detail added to the surface for the layers above. Floor 4. Not here: adding it
 //! (`document::normals`).
 
-use super::{CanvasScale, Changed, Content, LayerKind, NameFile, Role, Touched};
+use super::{CanvasScale, Changed, Content, LayerKind, NameFile, Role, VisibleArea};
 use crate::Result;
 use crate::document::{DetailSource, LayerMap, MemoryCount, NormalLayer};
 use crate::paint::Scene;
@@ -60,8 +60,8 @@ impl LayerKind for NormalLayer {
     }
 
     /// Layers that see it see another scene.
-    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
-        Touched::Nowhere
+    fn visible_area(&self, _scene: Option<&Scene>) -> VisibleArea {
+        VisibleArea::Nowhere
     }
 
     fn difference_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {

@@ -1,7 +1,7 @@
 //! A paint layer: pixels, and where they came from.
 //! Floor 4.
 
-use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent, Touched};
+use super::{CanvasScale, Changed, Content, FarScene, LayerKind, TileContent, VisibleArea};
 use crate::document::{LayerMap, MemoryCount};
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::Scene;
@@ -120,8 +120,8 @@ impl LayerKind for PixelLayer {
         vec![&self.file]
     }
 
-    fn painted_tiles(&self, _scene: Option<&Scene>) -> Touched {
-        Touched::Tiles(self.tiles.iter().map(|(at, _)| at).collect())
+    fn visible_area(&self, _scene: Option<&Scene>) -> VisibleArea {
+        VisibleArea::Tiles(self.tiles.iter().map(|(at, _)| at).collect())
     }
 
     fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {

@@ -2,7 +2,7 @@
 //! strokes (`document::strokes`).
 
 use super::{
-    CanvasScale, Changed, Content, FarScene, FarTile, LayerKind, NameFile, TileContent, Touched,
+    CanvasScale, Changed, Content, FarScene, FarTile, LayerKind, NameFile, TileContent, VisibleArea,
 };
 use crate::Result;
 use crate::document::layer::marks::{Done, Marks};
@@ -145,15 +145,15 @@ impl LayerKind for Live<StrokeList> {
         Ok(Some(Content::Strokes(Live::new(StrokeList { strokes }))))
     }
 
-    fn painted_tiles(&self, scene: Option<&Scene>) -> Touched {
+    fn visible_area(&self, scene: Option<&Scene>) -> VisibleArea {
         let strokes = &self.params().strokes;
         match scene {
             Some(scene) => {
-                Touched::Rects(strokes.iter().map(|stroke| stroke.bounds(scene)).collect())
+                VisibleArea::Rects(strokes.iter().map(|stroke| stroke.bounds(scene)).collect())
             }
-            None if strokes.is_empty() => Touched::Nowhere,
+            None if strokes.is_empty() => VisibleArea::Nowhere,
             // Bounds hold for one surface.
-            None => Touched::Canvas,
+            None => VisibleArea::Canvas,
         }
     }
 

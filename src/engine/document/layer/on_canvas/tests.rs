@@ -53,7 +53,7 @@ fn image(bend: Bend) -> Layer {
     )
 }
 
-fn turned(degrees: f64) -> TransformShape {
+fn rotation(degrees: f64) -> TransformShape {
     TransformShape::Matrix(PlaneMap::rotation(degrees, SIZE.center()).coefficients().unwrap())
 }
 
@@ -65,7 +65,7 @@ fn farthest(a: &[u8], b: &[u8]) -> u8 {
 fn turns_that_add_up_to_none_give_the_untouched_picture() {
     let group = |layer: Layer, degrees| {
         let group = Group { layers: vec![Arc::new(layer)], pass_through: false };
-        with(Layer::new("g", Content::Group(group)), turned(degrees))
+        with(Layer::new("g", Content::Group(group)), rotation(degrees))
     };
     let ten = (0..10).fold(paint(), |layer, _| group(layer, 36.0));
     assert!(picture(&document(vec![ten])) == picture(&document(vec![paint()])));
@@ -156,7 +156,7 @@ fn a_gradient_and_a_bent_image_follow_their_frame() {
         };
         Layer::new("ramp", Content::Gradient(Live::new(gradient)))
     };
-    let turned = with(ramp(vec2(46.0, 64.0), vec2(146.0, 64.0)), turned(90.0));
+    let turned = with(ramp(vec2(46.0, 64.0), vec2(146.0, 64.0)), rotation(90.0));
     let upright = ramp(vec2(96.0, 114.0), vec2(96.0, 14.0));
     assert!(farthest(&picture(&document(vec![turned])), &picture(&document(vec![upright]))) <= 1);
 }
@@ -194,7 +194,7 @@ fn masks_go_along_and_what_an_edit_changes_is_reported() {
         old.with_layer(id, |layer| layer.transform.as_mut().unwrap().shape = shift(60.0)).unwrap(),
         old.with_layer(id, |layer| layer.transform = None).unwrap(),
         old.with_layer(old.layers[1].id, |layer| {
-            layer.transform = with(layer.clone(), turned(20.0)).transform
+            layer.transform = with(layer.clone(), rotation(20.0)).transform
         })
         .unwrap(),
     ];

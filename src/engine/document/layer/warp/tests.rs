@@ -54,14 +54,14 @@ fn pixel(of: &[[u8; 4]], x: usize, y: usize) -> [u8; 4] {
     of[y * SIZE.width as usize + x]
 }
 
-fn meshed(layer: Layer, change: impl Fn(usize, Vec2) -> Vec2) -> Layer {
+fn with_mesh(layer: Layer, change: impl Fn(usize, Vec2) -> Vec2) -> Layer {
     let even = Mesh::even(4, 4, MeshFrame::of(SIZE)).unwrap();
     let points = even.points().iter().enumerate().map(|(k, p)| change(k, *p)).collect();
     let shape = TransformShape::Mesh(Arc::new(even.with_points(points).unwrap()));
     Layer { transform: Some(LayerTransform { shape, filter: Resampling::Smooth }), ..layer }
 }
 
-fn liquified(layer: Layer, by: impl Fn(Vec2) -> Vec2) -> Layer {
+fn with_liquify(layer: Layer, by: impl Fn(Vec2) -> Vec2) -> Layer {
     let mut lattice = Lattice::default();
     lattice.change(Rect::new(60, 40, 190, 150), |_, q, _| by(q));
     Layer { liquify: Some(Arc::new(lattice)), ..layer }
@@ -76,8 +76,8 @@ fn bump(q: Vec2) -> Vec2 {
 fn an_even_mesh_changes_no_byte_and_a_moved_one_is_the_matrix() {
     for layer in [paint, ramp] {
         let plain = document(layer());
-        assert!(bytes(&document(meshed(layer(), |_, p| p))) == bytes(&plain));
-        let moved = meshed(layer(), |_, p| p + vec2(12.0, -5.0));
+        assert!(bytes(&document(with_mesh(layer(), |_, p| p))) == bytes(&plain));
+        let moved = with_mesh(layer(), |_, p| p + vec2(12.0, -5.0));
         let shape = TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 12.0, -5.0]);
         let matrix = Layer {
             transform: Some(LayerTransform { shape, filter: Resampling::Smooth }),
@@ -91,7 +91,7 @@ fn an_even_mesh_changes_no_byte_and_a_moved_one_is_the_matrix() {
 fn where_nothing_is_displaced_no_byte_changes() {
     for layer in [paint, ramp] {
         let plain = bytes(&document(layer()));
-        let found = bytes(&document(liquified(layer(), bump)));
+        let found = bytes(&document(with_liquify(layer(), bump)));
         assert!(plain != found);
         for (x, y) in [(5, 5), (70, 96), (200, 100), (128, 30), (250, 180)] {
             assert_eq!(pixel(&plain, x, y), pixel(&found, x, y), "{x} {y}");
@@ -103,7 +103,7 @@ fn where_nothing_is_displaced_no_byte_changes() {
 fn a_layer_shows_at_q_what_it_showed_at_q_and_u() {
     // Moved by whole pixels over a wide middle: there each byte equals that of another pixel.
     let plain = bytes(&document(paint()));
-    let found = bytes(&document(liquified(paint(), |_| vec2(9.0, -4.0))));
+    let found = bytes(&document(with_liquify(paint(), |_| vec2(9.0, -4.0))));
     for (x, y) in [(100, 90), (128, 96), (150, 110)] {
         assert_eq!(pixel(&found, x, y), pixel(&plain, x + 9, y - 4), "{x} {y}");
     }
@@ -112,13 +112,13 @@ fn a_layer_shows_at_q_what_it_showed_at_q_and_u() {
         "g",
         Content::Group(Group { layers: vec![Arc::new(paint())], pass_through: false }),
     );
-    assert!(bytes(&document(liquified(group, |_| vec2(9.0, -4.0)))) == found);
+    assert!(bytes(&document(with_liquify(group, |_| vec2(9.0, -4.0)))) == found);
 }
 
 #[test]
 fn mesh_and_liquify_are_one_resampling() {
     // One mesh undoes what the liquify does in the middle; sampled twice, the rings would be soft.
-    let moved = liquified(meshed(paint(), |_, p| p + vec2(9.0, -4.0)), |_| vec2(9.0, -4.0));
+    let moved = with_liquify(with_mesh(paint(), |_, p| p + vec2(9.0, -4.0)), |_| vec2(9.0, -4.0));
     let (plain, found) = (bytes(&document(paint())), bytes(&document(moved)));
     for (x, y) in [(100, 90), (128, 96), (150, 110)] {
         let (a, b) = (pixel(&plain, x, y), pixel(&found, x, y));
@@ -132,7 +132,7 @@ fn a_zone_plate_reduced_by_a_mesh_is_its_mean_and_no_moire() {
     let bend = |k: usize, p: Vec2| {
         vec2(128.0, 96.0) + (p - vec2(128.0, 96.0)) / if k == 5 { 7.9 } else { 8.0 }
     };
-    let found = bytes(&document(meshed(paint(), bend)));
+    let found = bytes(&document(with_mesh(paint(), bend)));
     for (x, y) in [(116, 88), (140, 88), (116, 104), (140, 104)] {
         let [r, _, _, a] = pixel(&found, x, y);
         assert!(a == 255 && r.abs_diff(127) < 40, "{x} {y}: {r}");
@@ -142,10 +142,10 @@ fn a_zone_plate_reduced_by_a_mesh_is_its_mean_and_no_moire() {
 #[test]
 fn only_what_may_look_different_is_redrawn() {
     for layer in [paint, ramp] {
-        let before = document(liquified(layer(), bump));
+        let before = document(with_liquify(layer(), bump));
         let grown = |q: Vec2| if q.x > 150.0 && q.y > 120.0 { vec2(3.0, 2.0) } else { bump(q) };
         let id = before.layers[0].id;
-        let next = liquified(layer(), grown).liquify;
+        let next = with_liquify(layer(), grown).liquify;
         let after = before.with_layer(id, |layer| layer.liquify = next).unwrap();
         let (old, new, tiles) = (bytes(&before), bytes(&after), diff(&before, &after));
         assert!(!tiles.is_empty() && !tiles.contains(&TileAt::new(0, 0)), "{tiles:?}");
@@ -166,7 +166,7 @@ fn only_what_may_look_different_is_redrawn() {
 fn paint_in_a_displaced_group_is_redrawn_where_it_shows() {
     let group =
         |child: Layer| Content::Group(Group { layers: vec![Arc::new(child)], pass_through: true });
-    let before = document(liquified(Layer::new("g", group(paint())), |_| vec2(40.0, 0.0)));
+    let before = document(with_liquify(Layer::new("g", group(paint())), |_| vec2(40.0, 0.0)));
     let mut child = Layer::clone(&before.layers[0].content.group().unwrap().layers[0]);
     let Content::Pixels(pixels) = &mut child.content else { unreachable!() };
     pixels.tiles.set(TileAt::new(2, 1), None);
@@ -190,17 +190,17 @@ fn hostile_meshes_show_something_or_nothing_and_never_end_the_program() {
     let far = |k: usize, p: Vec2| if k == 5 { vec2(9e5, -9e5) } else { p };
     for change in [&folded as &dyn Fn(usize, Vec2) -> Vec2, &together, &far] {
         for layer in [paint, ramp] {
-            assert_eq!(bytes(&document(meshed(layer(), change))).len(), SIZE.area());
+            assert_eq!(bytes(&document(with_mesh(layer(), change))).len(), SIZE.area());
         }
     }
-    let nothing = bytes(&document(meshed(paint(), together)));
+    let nothing = bytes(&document(with_mesh(paint(), together)));
     assert_eq!(pixel(&nothing, 20, 20), [0; 4], "all points on one: nothing is left");
 }
 
 #[test]
 fn what_is_applied_looks_as_it_did_and_goes_along_with_the_canvas() {
-    let before = document(liquified(
-        meshed(paint(), |k, p| if k == 5 { p + vec2(9.0, 4.0) } else { p }),
+    let before = document(with_liquify(
+        with_mesh(paint(), |k, p| if k == 5 { p + vec2(9.0, 4.0) } else { p }),
         bump,
     ));
     let applied = before.with_transform_applied(before.layers[0].id).unwrap();
@@ -246,7 +246,7 @@ fn a_rim_under_a_displacement_of_nearly_nothing_looks_as_without() {
     let on_ball = |layer: Layer| Document { surface: surface.clone(), ..document(layer) };
     for layer in [paint, ramp] {
         let plain = bytes(&on_ball(layer()));
-        let found = bytes(&on_ball(liquified(layer(), |_| vec2(1.0 / 64.0, 0.0))));
+        let found = bytes(&on_ball(with_liquify(layer(), |_| vec2(1.0 / 64.0, 0.0))));
         let off = plain
             .iter()
             .zip(&found)

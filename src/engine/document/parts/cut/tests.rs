@@ -1,7 +1,7 @@
 //! Pieces make the same picture, and go with their parts.
 
 use super::super::from_flats::tests as drawings;
-use super::super::from_flats::tests::shares::{EYE, PUPIL, SIZE, at, color, drawn};
+use super::super::from_flats::tests::shares::{EYE, PUPIL, SIZE, at, color, draw};
 use super::super::from_flats::{PartFor, parts_of_flats};
 use crate::document::{
     Content, DerivedMask, Document, Group, Inflation, Layer, LayerId, LayerMask, OutlineSource,
@@ -13,11 +13,11 @@ use crate::raster::{BlendMode, TileGrid};
 use crate::shape::flats::color_distance::NEAR;
 use std::sync::Arc;
 
-fn shaped(tiles: &TileGrid) -> Document {
-    shaped_on(SIZE, tiles)
+fn shape_drawing(tiles: &TileGrid) -> Document {
+    shape_drawing_on(SIZE, tiles)
 }
 
-fn shaped_on(size: Size, tiles: &TileGrid) -> Document {
+fn shape_drawing_on(size: Size, tiles: &TileGrid) -> Document {
     let parts = parts_of_flats(tiles, "Drawing", Inflation::default(), PartFor::Color).parts;
     let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
     let drawing =
@@ -32,7 +32,7 @@ fn cut(document: &Document) -> Document {
     next
 }
 
-fn seen(document: &Document) -> TileGrid {
+fn render(document: &Document) -> TileGrid {
     flatten(document, &Progress::default()).unwrap()
 }
 
@@ -64,19 +64,19 @@ fn most_off(size: Size, a: &TileGrid, b: &TileGrid) -> i32 {
 #[test]
 fn the_pieces_make_the_same_picture() {
     for side in [1.0, 2.2] {
-        let document = shaped(&drawn(side, at));
+        let document = shape_drawing(&draw(side, at));
         let next = cut(&document);
         assert!(!next.layers[0].visible && next.parts.list == document.parts.list);
-        let worst = most_off(SIZE, &seen(&document), &seen(&next));
+        let worst = most_off(SIZE, &render(&document), &render(&next));
         assert!(worst <= 1, "{worst}, edges of {side} px");
     }
 }
 
 #[test]
 fn an_eye_that_is_moved_takes_its_paint_along_and_leaves_a_whole_face() {
-    let next = cut(&shaped(&drawn(1.0, at)));
+    let next = cut(&shape_drawing(&draw(1.0, at)));
     let after = moved(&next, vec2(-50.0, 20.0), is_eye);
-    let (before, after) = (seen(&next), seen(&after));
+    let (before, after) = (render(&next), render(&after));
     for (x, y) in (50..72).flat_map(|y| (110..131).map(move |x| (x, y))) {
         let is_inside = (vec2(x as f32 + 0.5, y as f32 + 0.5) - vec2(120.0, 60.0)).length() < 11.0;
         assert!(
@@ -96,9 +96,9 @@ fn an_eye_that_is_moved_takes_its_paint_along_and_leaves_a_whole_face() {
 
 #[test]
 fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
-    use drawings::{BELLY, HEAD, INK, SIZE, drawn};
+    use drawings::{BELLY, HEAD, INK, SIZE, draw};
     let (face, eye) = (vec2(300.0, 200.0), vec2(330.0, 180.0));
-    let tiles = drawn(|p| {
+    let tiles = draw(|p| {
         let is_brow = (p - vec2(330.0, 138.0)).abs().cmple(vec2(20.0, 2.0)).all();
         match (p.distance(eye), p.distance(face)) {
             (of_eye, _) if of_eye < 28.0 => Some(BELLY),
@@ -108,12 +108,12 @@ fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
             (_, of_face) => (of_face < 122.0).then_some(HEAD),
         }
     });
-    let document = shaped_on(SIZE, &tiles);
+    let document = shape_drawing_on(SIZE, &tiles);
     assert_eq!(document.parts.list.len(), 2);
     let next = cut(&document);
-    assert!(most_off(SIZE, &seen(&document), &seen(&next)) <= 1);
+    assert!(most_off(SIZE, &render(&document), &render(&next)) <= 1);
     let is_eye = |part: &Part| part.id == next.parts.list[1].id;
-    let after = seen(&moved(&next, vec2(-60.0, 50.0), is_eye));
+    let after = render(&moved(&next, vec2(-60.0, 50.0), is_eye));
     let [r, g, b] = HEAD.map(|v| v as u8);
     for (x, y) in (140..220).flat_map(|y| (290..370).map(move |x| (x, y))) {
         let away = (vec2(x as f32, y as f32) + 0.5).distance(eye);
@@ -133,27 +133,27 @@ fn an_inked_eye_takes_its_ring_along_and_leaves_a_face_without_ink() {
 
 #[test]
 fn three_colors_that_meet_in_a_pixel_lose_nothing() {
-    let tiles = drawings::drawn(|p| {
+    let tiles = drawings::draw(|p| {
         let turn = (p - vec2(300.3, 200.6)).to_angle().to_degrees().rem_euclid(360.0);
         let colors = [[220.0, 60.0, 60.0], [60.0, 180.0, 60.0], [60.0, 80.0, 200.0]];
         (p.distance(vec2(300.0, 200.0)) < 120.0).then(|| colors[(turn / 120.0) as usize % 3])
     });
-    let document = shaped_on(drawings::SIZE, &tiles);
+    let document = shape_drawing_on(drawings::SIZE, &tiles);
     assert_eq!(document.parts.list.len(), 3);
-    assert!(most_off(drawings::SIZE, &seen(&document), &seen(&cut(&document))) <= 1);
+    assert!(most_off(drawings::SIZE, &render(&document), &render(&cut(&document))) <= 1);
 }
 
 #[test]
 fn a_part_that_was_moved_before_takes_its_paint_to_where_it_is() {
-    let document = shaped(&drawn(1.0, at));
+    let document = shape_drawing(&draw(1.0, at));
     let (first, then) = (cut(&document), vec2(-50.0, 20.0));
     let after = cut(&moved(&document, then, is_eye));
-    assert_eq!(most_off(SIZE, &seen(&moved(&first, then, is_eye)), &seen(&after)), 0);
+    assert_eq!(most_off(SIZE, &render(&moved(&first, then, is_eye)), &render(&after)), 0);
 }
 
 #[test]
 fn the_pieces_look_as_the_drawing_did() {
-    let document = shaped(&drawn(1.0, at));
+    let document = shape_drawing(&draw(1.0, at));
     let looks: [fn(&mut Layer); 4] = [
         |layer| layer.opacity = 0.5,
         |layer| layer.blend = BlendMode::Multiply,
@@ -162,14 +162,14 @@ fn the_pieces_look_as_the_drawing_did() {
     ];
     for (i, look) in looks.into_iter().enumerate() {
         let document = document.with_layer(document.layers[0].id, look).unwrap();
-        let off = most_off(SIZE, &seen(&document), &seen(&cut(&document)));
+        let off = most_off(SIZE, &render(&document), &render(&cut(&document)));
         assert!(off <= 1, "look {i}: {off}");
     }
 }
 
 #[test]
 fn what_cannot_be_cut_is_told() {
-    let document = shaped(&drawn(1.0, at));
+    let document = shape_drawing(&draw(1.0, at));
     let part = &document.parts.list[0];
     assert_eq!(document.drawing_to_cut(part), Some(document.layers[0].id));
     assert_eq!(cut(&document).drawing_to_cut(part), None, "it is cut already");

@@ -72,7 +72,7 @@ fn drawing() -> Document {
 }
 
 /// The same as a file would be read: nothing is known of what was made before.
-fn made_anew(document: &Document) -> Document {
+fn without_caches(document: &Document) -> Document {
     let (surface, list) = (document.maps_surface().cloned(), document.parts.list.clone());
     let layers = document.layers.iter().map(without_cache).collect();
     Document { surface, parts: Arc::default(), layers, ..document.clone() }.with_parts(list)
@@ -152,7 +152,7 @@ fn whatever_changes_what_a_layer_shows_the_surface_is_that_of_the_file() {
             let before = shaped.surface.clone().unwrap();
             shaped = edited.reshaped();
             let (now, file) =
-                (shaped.surface.clone().unwrap(), made_anew(&edited).surface.unwrap());
+                (shaped.surface.clone().unwrap(), without_caches(&edited).surface.unwrap());
             assert!(is_equal(&now, &file), "“{name}” with {what}");
             // Not shaped means that the surface may be another; it is never another without being
             // told.
@@ -225,7 +225,7 @@ fn a_history_holds_shapes_and_not_what_is_to_become_one() {
     let bent =
         history.present().with_layer(id, |layer| layer.liquify = lattice(vec2(7.0, -4.0))).unwrap();
     history.commit("Liquify", bent.clone(), ());
-    let anew = |document: &Document| made_anew(document).surface.unwrap();
+    let anew = |document: &Document| without_caches(document).surface.unwrap();
     assert!(is_equal(history.present().surface.as_ref().unwrap(), &anew(&bent)));
     history.undo();
     assert!(is_equal(history.present().surface.as_ref().unwrap(), &anew(&document)));
@@ -236,7 +236,7 @@ fn a_shape_that_its_parts_do_not_make_is_a_difference() {
     let document = drawing();
     let id = document.layer_named("Flats").unwrap().id;
     let bent = document.with_layer(id, |layer| layer.liquify = lattice(vec2(7.0, -4.0))).unwrap();
-    let file = made_anew(&bent);
+    let file = without_caches(&bent);
     assert_eq!(bent.difference(&file).as_deref(), Some("the shape that its parts make"));
     assert_eq!(bent.reshaped().difference(&file), None);
 }

@@ -18,7 +18,7 @@ pub const HEAD: [f32; 3] = [220.0, 140.0, 60.0];
 pub const BELLY: [f32; 3] = [240.0, 230.0, 210.0];
 
 /// What is seen at a point, anti-aliased by counting.
-pub fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
+pub fn draw(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
     let mut rgba = vec![0u8; SIZE.area() * 4];
     for (i, pixel) in rgba.as_chunks_mut::<4>().0.iter_mut().enumerate() {
         let corner = vec2((i % SIZE.width as usize) as f32, (i / SIZE.width as usize) as f32);
@@ -39,8 +39,8 @@ pub fn drawn(at: impl Fn(Vec2) -> Option<[f32; 3]>) -> TileGrid {
 }
 
 /// Discs (middle, radius, color), the last in front, each with a line of 4 px around it.
-pub fn inked(discs: &'static [([f32; 2], f32, [f32; 3])]) -> TileGrid {
-    drawn(|p| {
+pub fn draw_inked(discs: &'static [([f32; 2], f32, [f32; 3])]) -> TileGrid {
+    draw(|p| {
         let front = discs
             .iter()
             .rev()
@@ -85,7 +85,7 @@ fn open(tiles: &TileGrid, surface: &Surface) -> usize {
 
 #[test]
 fn ink_belongs_to_what_it_runs_along() {
-    let tiles = inked(&[([230.0, 220.0], 120.0, HEAD), ([360.0, 200.0], 90.0, BELLY)]);
+    let tiles = draw_inked(&[([230.0, 220.0], 120.0, HEAD), ([360.0, 200.0], 90.0, BELLY)]);
     let made = parts(&tiles, PartFor::Color);
     assert_eq!((colors(&made), made.note()), (vec![color(HEAD), color(BELLY)], None));
     let surface = surface(&tiles, made);
@@ -98,7 +98,7 @@ fn ink_belongs_to_what_it_runs_along() {
 
 #[test]
 fn a_line_keeps_two_places_of_one_color_apart() {
-    let tiles = inked(&[([230.0, 220.0], 120.0, HEAD), ([360.0, 200.0], 90.0, HEAD)]);
+    let tiles = draw_inked(&[([230.0, 220.0], 120.0, HEAD), ([360.0, 200.0], 90.0, HEAD)]);
     assert_eq!(parts(&tiles, PartFor::Color).parts.len(), 1);
     let made = parts(&tiles, PartFor::Place);
     assert_eq!(made.parts.len(), 2);
@@ -109,12 +109,12 @@ fn a_line_keeps_two_places_of_one_color_apart() {
 
 #[test]
 fn a_color_that_is_shaded_is_one_part_and_two_tones_with_an_edge_are_two() {
-    let shaded = drawn(|p| {
+    let shaded = draw(|p| {
         let (away, light) = (p.distance(vec2(300.0, 200.0)), 1.1 - p.x / 1200.0);
         (away < 150.0).then(|| HEAD.map(|v| v * light))
     });
     assert_eq!(parts(&shaded, PartFor::Color).parts.len(), 1);
-    let two_tones = drawn(|p| {
+    let two_tones = draw(|p| {
         let light = if p.x < 300.0 { 1.0 } else { 0.9 };
         (p.distance(vec2(300.0, 200.0)) < 150.0).then(|| HEAD.map(|v| v * light))
     });
@@ -123,14 +123,14 @@ fn a_color_that_is_shaded_is_one_part_and_two_tones_with_an_edge_are_two() {
 
 #[test]
 fn what_is_too_small_for_a_part_is_no_hole() {
-    let door = drawn(|p| match p.distance(vec2(320.0, 210.0)) {
+    let door = draw(|p| match p.distance(vec2(320.0, 210.0)) {
         away if away < 3.0 => Some([250.0, 240.0, 40.0]),
         _ => (p.distance(vec2(300.0, 200.0)) < 150.0).then_some(HEAD),
     });
     let made = parts(&door, PartFor::Color);
     assert!(made.note().unwrap().starts_with("One area is left without a part"));
     let with = surface(&door, made);
-    let plain = drawn(|p| (p.distance(vec2(300.0, 200.0)) < 150.0).then_some(HEAD));
+    let plain = draw(|p| (p.distance(vec2(300.0, 200.0)) < 150.0).then_some(HEAD));
     let without = surface(&plain, parts(&plain, PartFor::Color));
     let off = |x: usize, y: usize| with.normal(x, y).distance(without.normal(x, y));
     assert!((310..330).all(|x| (200..220).all(|y| off(x, y) < 1e-3)));
@@ -138,7 +138,7 @@ fn what_is_too_small_for_a_part_is_no_hole() {
 
 #[test]
 fn specks_of_compression_change_no_part() {
-    let clean = drawn(|p| match p.distance(vec2(340.0, 220.0)) {
+    let clean = draw(|p| match p.distance(vec2(340.0, 220.0)) {
         away if away < 60.0 => Some(BELLY),
         _ => (p.distance(vec2(300.0, 200.0)) < 150.0).then_some(HEAD),
     });
@@ -166,7 +166,7 @@ fn specks_of_compression_change_no_part() {
 
 #[test]
 fn a_line_that_is_asked_for_is_a_part() {
-    let tiles = inked(&[([230.0, 220.0], 120.0, HEAD)]);
+    let tiles = draw_inked(&[([230.0, 220.0], 120.0, HEAD)]);
     let outline = OutlineSource::Layer { layer: "Flats".into(), color: Some(color(INK).into()) };
     let part = Part::new("line", PartKind::Inflate { outline, inflation: Inflation::default() });
     let surface = surface(&tiles, FlatParts::of_one(part));
@@ -175,7 +175,7 @@ fn a_line_that_is_asked_for_is_a_part() {
 
 #[test]
 fn paint_that_is_not_flat_is_told() {
-    let cloudy = drawn(|p| {
+    let cloudy = draw(|p| {
         let grain = |c: u32| {
             120.0 + 100.0 * crate::math::hash::unit(3, (p.x as u32) + 999 * (p.y as u32), c)
         };
@@ -187,7 +187,7 @@ fn paint_that_is_not_flat_is_told() {
 
 #[test]
 fn ink_around_an_eye_is_no_part() {
-    let tiles = inked(&[([300.0, 200.0], 120.0, HEAD), ([330.0, 180.0], 30.0, BELLY)]);
+    let tiles = draw_inked(&[([300.0, 200.0], 120.0, HEAD), ([330.0, 180.0], 30.0, BELLY)]);
     let made = parts(&tiles, PartFor::Color);
     assert_eq!((colors(&made), made.note()), (vec![color(HEAD), color(BELLY)], None));
 }

@@ -50,7 +50,7 @@ fn dab(seed: u32) -> Dab {
 ///
 /// * `by_d`: from D at every pixel, also where the unwrapped plane itself would do.
 fn row_by_row(placed: &PlacedDab, at: TileAt, [coverage, reach]: &mut [Vec<f32>; 2], by_d: bool) {
-    let part = placed.touched_blocks(at);
+    let part = placed.reached_blocks(at);
     if part.area.is_empty() {
         return;
     }
@@ -135,7 +135,7 @@ fn the_unwrapped_plane_itself_gives_the_coverage_that_d_gives() {
         let placed = PlacedDab::new(dab, &scene, round_extent(&dab));
         for at in TileAt::covering(SIZE.rect()) {
             by_plane +=
-                usize::from(placed.deformation.own_plane(placed.touched_blocks(at).area).is_some());
+                usize::from(placed.deformation.own_plane(placed.reached_blocks(at).area).is_some());
             let [found, expected] = [false, true].map(|by_d| {
                 let mut planes = [vec![0.0f32; TILE_AREA], vec![0.0f32; TILE_AREA]];
                 row_by_row(&placed, at, &mut planes, by_d);

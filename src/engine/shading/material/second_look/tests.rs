@@ -24,18 +24,18 @@ fn cast(balls: &[(Vec3, f32)], from: Vec3, toward: Vec3) -> Option<(Vec3, Vec3)>
     meets.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place, normal)| (place, normal))
 }
 
-fn shown(balls: &[(Vec3, f32)], x: usize, y: usize) -> Option<(Vec3, Vec3)> {
+fn hit_at(balls: &[(Vec3, f32)], x: usize, y: usize) -> Option<(Vec3, Vec3)> {
     let at = vec2(x as f32 + 0.5, y as f32 + 0.5) - SIZE.center();
     cast(balls, vec3(at.x, -at.y, 400.0), Vec3::NEG_Z)
 }
 
 pub(in crate::shading::material) fn scene(balls: &[(Vec3, f32)]) -> Scene {
     let maps = Maps {
-        normals: Plane::from_fn(SIZE, |x, y| shown(balls, x, y).map_or(Vec3::ZERO, |s| s.1)),
+        normals: Plane::from_fn(SIZE, |x, y| hit_at(balls, x, y).map_or(Vec3::ZERO, |s| s.1)),
         depth: Plane::from_fn(SIZE, |x, y| {
-            shown(balls, x, y).map_or(f32::NAN, |s| (40.0 - s.0.z) / 80.0)
+            hit_at(balls, x, y).map_or(f32::NAN, |s| (40.0 - s.0.z) / 80.0)
         }),
-        coverage: Plane::from_fn(SIZE, |x, y| if shown(balls, x, y).is_some() { 255 } else { 0 }),
+        coverage: Plane::from_fn(SIZE, |x, y| if hit_at(balls, x, y).is_some() { 255 } else { 0 }),
     };
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
@@ -53,7 +53,7 @@ fn sky(light: impl Fn(Vec3) -> [f32; 3]) -> Option<Environment> {
     Some(Environment::new("sky.hdr".into(), picture))
 }
 
-fn slanted(e: Vec3) -> [f32; 3] {
+fn slanted_light(e: Vec3) -> [f32; 3] {
     [0.5 + 0.45 * e.x, 0.5 + 0.45 * e.y, 0.5 + 0.45 * e.z]
 }
 
@@ -71,7 +71,7 @@ fn pixel(tiles: &[Option<Tile>], x: usize, y: usize) -> [u8; 4] {
 }
 
 fn bouncing(model: Model, bounces: u32) -> Shading {
-    let mut shading = Shading { bounces, environment: sky(slanted), ..Shading::new(model) };
+    let mut shading = Shading { bounces, environment: sky(slanted_light), ..Shading::new(model) };
     if model == Model::Ashikhmin {
         (shading.lights, shading.nu, shading.nv) = (Vec::new(), 200.0, 200.0);
     }
@@ -90,13 +90,13 @@ fn a_ball_is_seen_in_the_ball_beside_it() {
         (tiles(&Shading { bounces: 0, ..shading.clone() }, &scene), tiles(&shading, &scene));
     let (mut met, mut sum, mut before) = (0.0, 0.0, 0.0);
     for (x, y) in (0..SIZE.area()).map(|i| (i % 128, i / 128)) {
-        let Some((place, n)) = shown(&PAIR, x, y) else { continue };
+        let Some((place, n)) = hit_at(&PAIR, x, y) else { continue };
         let r = 2.0 * n.z * n - Vec3::Z;
         let expected = match cast(&PAIR, place + n * 0.05, r) {
             None => continue,
             // The picture shows only what faces the eye; along rims pixels are too coarse.
             Some((_, m)) if m.z < 0.3 || m.dot(r) > -0.2 => continue,
-            Some((_, m)) => tint * tint * Vec3::from(slanted(r - 2.0 * m.dot(r) * m)),
+            Some((_, m)) => tint * tint * Vec3::from(slanted_light(r - 2.0 * m.dot(r) * m)),
         };
         let off = |tiles: &[Option<Tile>]| -> f32 {
             let found = pixel(tiles, x, y);

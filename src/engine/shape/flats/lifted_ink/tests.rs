@@ -3,7 +3,7 @@ use crate::shape::flats::color_distance::NEAR;
 
 /// A red disc with a dark ring around it and a dark line through its middle, on nothing, and a
 /// green half; all of it smooth.
-fn drawn(ink: [f32; 3]) -> TileGrid {
+fn draw(ink: [f32; 3]) -> TileGrid {
     let (red, green) = ([200.0f32, 60.0, 40.0], [60.0f32, 170.0, 90.0]);
     let pixel = |i: usize| {
         let (x, y) = ((i % 120) as f32 + 0.5, (i / 120) as f32 + 0.5);
@@ -30,7 +30,7 @@ fn together(lifted: &LiftedInk, x: i32, y: i32) -> [i32; 4] {
 #[test]
 fn lines_over_what_is_left_are_the_drawing() {
     for ink in [[30.0, 22.0, 28.0], [20.0, 40.0, 150.0]] {
-        let drawing = drawn(ink);
+        let drawing = draw(ink);
         let lifted = LiftedInk::of(&drawing);
         assert!(!lifted.is_empty());
         for (x, y) in pixels((120, 120)) {
@@ -45,7 +45,7 @@ fn lines_over_what_is_left_are_the_drawing() {
 #[test]
 fn nothing_of_the_ink_is_left_in_the_flats_and_its_borders_have_one_tone() {
     for ink in [[30.0f32, 22.0, 28.0], [20.0, 40.0, 150.0]] {
-        let lifted = LiftedInk::of(&drawn(ink));
+        let lifted = LiftedInk::of(&draw(ink));
         let (red, green) = ([200, 60, 40], [60, 170, 90]);
         let mut soft = 0;
         for (x, y) in pixels((120, 120)) {
@@ -71,7 +71,7 @@ fn nothing_of_the_ink_is_left_in_the_flats_and_its_borders_have_one_tone() {
 #[test]
 fn bright_pixels_around_an_outline_are_of_its_ink() {
     // As a sharp filter leaves them where it makes a drawing smaller.
-    let (smooth, mut rgba) = (drawn([30.0, 22.0, 28.0]), Vec::new());
+    let (smooth, mut rgba) = (draw([30.0, 22.0, 28.0]), Vec::new());
     let bright_at = |x: i32, y: i32| {
         let v = 235 + ((7 * x + 13 * y) % 20) as u8;
         [v, 255, v, 255]

@@ -20,7 +20,7 @@ const SPHERES: [(f32, f32, f32, f32); 9] = [
 ];
 
 /// Which sphere a point shows, its normal (y up) and its height.
-pub fn seen(x: f32, y: f32) -> Option<(usize, Vec3, f32)> {
+pub fn hit_at(x: f32, y: f32) -> Option<(usize, Vec3, f32)> {
     let hits = SPHERES.iter().enumerate().filter_map(|(i, &(cx, cy, z, r))| {
         let p = vec2(x - cx, y - cy) / r;
         let up = 1.0 - p.length_squared();

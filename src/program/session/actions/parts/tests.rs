@@ -32,7 +32,7 @@ fn snowman(on_white: bool) -> Document {
     of_picture("snowman.png", Picture::srgb8(size, (0..size.area()).map(texel).collect()).unwrap())
 }
 
-fn opened(document: Document) -> Session {
+fn open(document: Document) -> Session {
     let mut session = Session::default();
     session.add_document(OpenDocument::new("snowman.png", document, None));
     session
@@ -42,16 +42,16 @@ fn tell(session: &mut Session, line: &str) {
     session.replay(Path::new("story"), line).unwrap_or_else(|error| panic!("{line}: {error}"));
 }
 
-fn shown(session: &Session) -> &Document {
+fn shown_document(session: &Session) -> &Document {
     session.active().unwrap().shown_document()
 }
 
 fn ids(session: &Session) -> Vec<&str> {
-    shown(session).parts.list.iter().map(|part| part.id.as_str()).collect()
+    shown_document(session).parts.list.iter().map(|part| part.id.as_str()).collect()
 }
 
 fn puff(session: &Session, id: &str) -> f32 {
-    match &shown(session).parts.part(id).unwrap().kind {
+    match &shown_document(session).parts.part(id).unwrap().kind {
         PartKind::Inflate { inflation, .. } => inflation.puff,
         other => panic!("{}", other.name()),
     }
@@ -59,10 +59,10 @@ fn puff(session: &Session, id: &str) -> f32 {
 
 #[test]
 fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
     assert_eq!(session.notes, Vec::<String>::new());
-    let document = shown(&session);
+    let document = shown_document(&session);
     assert_eq!(
         document.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
         ["snowman", "Base"]
@@ -76,19 +76,21 @@ fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
     assert!(light[2] > dark[2] + 40, "lit from above left: {light:?} {dark:?}");
     assert_eq!(session.active().unwrap().part.as_deref(), Some("part-1"));
     tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
-    assert!(shown(&session).surface.is_none() && shown(&session).layers.len() == 1);
+    assert!(
+        shown_document(&session).surface.is_none() && shown_document(&session).layers.len() == 1
+    );
 }
 
 #[test]
 fn a_drawing_that_is_one_part_goes_where_the_part_goes() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
-    let before = flatten(shown(&session), &Progress::default()).unwrap();
+    let before = flatten(shown_document(&session), &Progress::default()).unwrap();
     let moved = r#"{"in":"part","do":"set","part":{"id":"part-1","name":"snowman","kind":"inflate","outline":
         {"layer":"snowman"},"matrix":[1,0,0,1,6,-4]},"done":true}"#;
     tell(&mut session, &moved.replace('\n', " "));
     assert_eq!(session.notes, Vec::<String>::new());
-    let after = flatten(shown(&session), &Progress::default()).unwrap();
+    let after = flatten(shown_document(&session), &Progress::default()).unwrap();
     for (x, y) in [(48, 36), (40, 30), (60, 90), (30, 100), (48, 84)] {
         let (a, b) = (before.pixel(x, y), after.pixel(x + 6, y - 4));
         assert!(
@@ -97,14 +99,14 @@ fn a_drawing_that_is_one_part_goes_where_the_part_goes() {
         );
     }
     assert_eq!(
-        shown(&session).layers[0].on.as_ref().map(|attachment| &*attachment.part),
+        shown_document(&session).layers[0].on.as_ref().map(|attachment| &*attachment.part),
         Some("part-1")
     );
 }
 
 #[test]
 fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
     let steps = session.active().unwrap().history.past_names().count();
     let part = |puff: f32, done: bool| {
@@ -115,10 +117,10 @@ fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
         )
         .replace('\n', " ")
     };
-    let before = shown(&session).surface.clone().unwrap();
+    let before = shown_document(&session).surface.clone().unwrap();
     tell(&mut session, &part(0.5, false));
     assert!(puff(&session, "part-1") == 0.5 && session.active().unwrap().is_previewing());
-    let drags = shown(&session);
+    let drags = shown_document(&session);
     assert!(
         drags.is_ahead()
             && !drags.is_shaped()
@@ -139,22 +141,22 @@ fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
 
 #[test]
 fn parts_are_added_ordered_copied_hidden_and_deleted_with_what_lies_on_them() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     for kind in ["sphere", "box", "touches", "sweep", "inflate"] {
         tell(&mut session, &format!(r#"{{"in":"part","do":"add","kind":"{kind}"}}"#));
     }
     assert_eq!(session.notes, Vec::<String>::new());
     assert_eq!(ids(&session), ["part-1", "part-2", "part-3", "part-4", "part-5"]);
-    assert_eq!(shown(&session).parts.part("part-3").unwrap().on(), Some("part-2"));
+    assert_eq!(shown_document(&session).parts.part("part-3").unwrap().on(), Some("part-2"));
     tell(&mut session, r#"{"in":"part","do":"order","part":"part-2","index":3}"#);
     assert_eq!(ids(&session), ["part-1", "part-4", "part-5", "part-2", "part-3"]);
     tell(&mut session, r#"{"in":"part","do":"order","part":"part-2","index":0}"#);
     assert_eq!(ids(&session), ["part-2", "part-3", "part-1", "part-4", "part-5"]);
     tell(&mut session, r#"{"in":"part","do":"duplicate","part":"part-2"}"#);
     assert_eq!(ids(&session)[..4], ["part-2", "part-3", "part-6", "part-7"]);
-    assert_eq!(shown(&session).parts.part("part-7").unwrap().on(), Some("part-6"));
+    assert_eq!(shown_document(&session).parts.part("part-7").unwrap().on(), Some("part-6"));
     tell(&mut session, r#"{"in":"part","do":"visible","part":"part-1","on":false}"#);
-    assert!(!shown(&session).parts.part("part-1").unwrap().visible);
+    assert!(!shown_document(&session).parts.part("part-1").unwrap().visible);
     tell(&mut session, r#"{"in":"part","do":"delete","part":"part-2"}"#);
     assert_eq!(ids(&session), ["part-6", "part-7", "part-1", "part-4", "part-5"]);
     tell(&mut session, r#"{"in":"part","do":"delete","part":"nobody"}"#);
@@ -181,12 +183,14 @@ fn what_has_no_outline_says_so_and_changes_nothing() {
         let said = session.notes.pop().unwrap_or_default();
         assert!(said.contains(why), "{line}: {said}");
     }
-    assert!(shown(&session).parts.is_empty() && shown(&session).surface.is_none());
+    assert!(
+        shown_document(&session).parts.is_empty() && shown_document(&session).surface.is_none()
+    );
 }
 
 #[test]
 fn a_selection_is_inflated_and_keeps_its_outline_when_it_is_let_go_of() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     let press =
         r#"{"in":"pointer","do":"press","tool":"select rectangle","pen":[20,20],"px_per_pt":1}"#;
     tell(&mut session, press);
@@ -194,13 +198,13 @@ fn a_selection_is_inflated_and_keeps_its_outline_when_it_is_let_go_of() {
     tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
     tell(&mut session, r#"{"in":"part","do":"add","kind":"inflate selection"}"#);
     tell(&mut session, r#"{"in":"selection","do":"none"}"#);
-    let at = |x: f32, y: f32| shown(&session).part_at(vec2(x, y)).is_some();
+    let at = |x: f32, y: f32| shown_document(&session).part_at(vec2(x, y)).is_some();
     assert!(at(48.0, 64.0) && !at(8.0, 64.0));
 }
 
 #[test]
 fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"add","kind":"sphere"}"#);
     tell(&mut session, r#"{"in":"part","do":"add","kind":"box"}"#);
     tell(&mut session, r#"{"in":"layer","do":"add","kind":"strokes"}"#);
@@ -210,19 +214,19 @@ fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
         tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
     }
     let picture = |session: &Session| {
-        let document = shown(session);
+        let document = shown_document(session);
         flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
     };
     let before = picture(&session);
     let attachment = |session: &Session| {
-        shown(session).layers[1].on.as_ref().map(|attachment| attachment.part.to_string())
+        shown_document(session).layers[1].on.as_ref().map(|attachment| attachment.part.to_string())
     };
     tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":"part-1"}"#);
     assert!(attachment(&session).as_deref() == Some("part-1") && picture(&session) == before);
     tell(&mut session, r#"{"in":"stroke","do":"home","layer":"1","strokes":[1],"part":"part-2"}"#);
     let attachments = |session: &Session| {
-        let layer = shown(session).layers[1].id;
-        let strokes = shown(session).strokes(layer);
+        let layer = shown_document(session).layers[1].id;
+        let strokes = shown_document(session).strokes(layer);
         strokes
             .iter()
             .map(|s| s.attachment().map(|attachment| attachment.frame.part.to_string()))
@@ -244,7 +248,7 @@ fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
 
 #[test]
 fn layers_become_lines_reliefs_and_lighting_profiles() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"add","kind":"sphere"}"#);
     tell(&mut session, r#"{"in":"layer","do":"add","kind":"paint"}"#);
     tell(
@@ -253,15 +257,15 @@ fn layers_become_lines_reliefs_and_lighting_profiles() {
     );
     tell(&mut session, r#"{"in":"pointer","do":"drag","pens":[[60,64]]}"#);
     tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
-    let ball = shown(&session).surface.clone().unwrap();
+    let ball = shown_document(&session).surface.clone().unwrap();
     tell(&mut session, r#"{"in":"part","do":"add","kind":"lines"}"#);
-    let folded = shown(&session).surface.clone().unwrap();
+    let folded = shown_document(&session).surface.clone().unwrap();
     assert!(ball.normal_planes()[1].values() != folded.normal_planes()[1].values());
     tell(&mut session, r#"{"in":"layer","do":"select","layer":"0"}"#);
     tell(&mut session, r#"{"in":"part","do":"add","kind":"relief"}"#);
     assert_eq!(session.notes, Vec::<String>::new());
     let kinds = |session: &Session| {
-        shown(session).parts.list.iter().map(|p| p.kind.name()).collect::<Vec<_>>()
+        shown_document(session).parts.list.iter().map(|p| p.kind.name()).collect::<Vec<_>>()
     };
     assert_eq!(kinds(&session), ["primitive", "lines", "relief"]);
     tell(&mut session, r#"{"in":"part","do":"add","kind":"profiles"}"#);
@@ -272,7 +276,7 @@ fn layers_become_lines_reliefs_and_lighting_profiles() {
     );
     tell(&mut session, r#"{"in":"part","do":"add","kind":"profiles"}"#);
     assert_eq!((session.notes.clone(), kinds(&session).len()), (Vec::new(), 4));
-    let names = shown(&session).parts.list.iter().flat_map(|part| {
+    let names = shown_document(&session).parts.list.iter().flat_map(|part| {
         let mut part = crate::document::parts::Part::clone(part);
         part.files_mut().iter().map(|file| file.file.clone()).collect::<Vec<_>>()
     });
@@ -285,13 +289,13 @@ fn maps_become_a_part_that_is_set_without_being_read_again() {
     let file = folder.path().join("n.png");
     let up = |x: u32| if x < 24 { [90, 128, 240, 255] } else { [128, 128, 255, 255] };
     image::RgbaImage::from_fn(48, 64, |x, _| image::Rgba(up(x))).save(&file).unwrap();
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     let line = serde_json::json!({ "in": "file", "do": "add maps", "normal": file, "depth": null });
     tell(&mut session, &line.to_string());
     assert_eq!(session.active().unwrap().part.as_deref(), Some("part-1"));
-    let part = shown(&session).parts.part("part-1").unwrap().clone();
+    let part = shown_document(&session).parts.part("part-1").unwrap().clone();
     assert!(
-        shown(&session).surface.as_ref().unwrap().normal(10, 60).x < -0.2,
+        shown_document(&session).surface.as_ref().unwrap().normal(10, 60).x < -0.2,
         "stretched to the canvas"
     );
     std::fs::remove_file(&file).unwrap();
@@ -301,5 +305,5 @@ fn maps_become_a_part_that_is_set_without_being_read_again() {
     let notes = session.notes.len();
     tell(&mut session, &line.to_string());
     assert_eq!(session.notes.len(), notes, "{:?}", session.notes);
-    assert_eq!(shown(&session).parts.part("part-1").unwrap().raise, 20.0);
+    assert_eq!(shown_document(&session).parts.part("part-1").unwrap().raise, 20.0);
 }

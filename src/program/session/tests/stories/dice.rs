@@ -105,7 +105,7 @@ impl Dice {
     }
 
     /// One by its weight; all weights 0 gives the first.
-    pub fn weighed(&mut self, weights: &[u32]) -> usize {
+    pub fn pick_by_weight(&mut self, weights: &[u32]) -> usize {
         let mut left = self.below(weights.iter().sum::<u32>() as usize) as u32;
         weights
             .iter()
@@ -139,7 +139,7 @@ impl Dice {
     pub fn variant(&mut self, words: &[&'static str], of: &'static str) -> usize {
         let weights: Vec<u32> =
             words.iter().map(|word| super::weights::weight(of, word, self)).collect();
-        self.weighed(&weights)
+        self.pick_by_weight(&weights)
     }
 
     /// The same for a choice that may be absent, or a list.
@@ -262,7 +262,7 @@ impl Roll for String {
 impl Roll for PathBuf {
     fn roll(dice: &mut Dice) -> Self {
         let chance = dice.number();
-        dice.facts.files.drawn(dice.word, dice.field, chance)
+        dice.facts.files.draw_file(dice.word, dice.field, chance)
     }
 }
 

@@ -79,7 +79,7 @@ impl StoryFiles {
     }
 
     /// A file for the field of an action.
-    pub fn drawn(&self, word: &str, field: &str, chance: u64) -> PathBuf {
+    pub fn draw_file(&self, word: &str, field: &str, chance: u64) -> PathBuf {
         let name =
             |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let found = |is_it: &dyn Fn(&str) -> bool| {

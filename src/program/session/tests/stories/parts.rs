@@ -36,7 +36,7 @@ fn numbers(kind: &PartKind) -> &'static [(&'static str, f32, f32)] {
 
 /// A part of the document in front in a new version; of a document without parts one that is not
 /// there.
-pub fn changed(dice: &mut Dice) -> Value {
+pub fn change_part(dice: &mut Dice) -> Value {
     if dice.facts.parts.is_empty() {
         return json!({ "id": "part-1", "kind": "primitive", "shape": "cone", "center": [9, 9] });
     }

@@ -64,7 +64,7 @@ pub fn story(seed: u64, folder: &StoryFolder) -> PlayedStory {
 }
 
 /// Plays these actions; the promise that they break.
-pub fn replayed(actions: &[Action], folder: &StoryFolder) -> Option<Broken> {
+pub fn replay(actions: &[Action], folder: &StoryFolder) -> Option<Broken> {
     folder.begin();
     let mut play = Play::new(folder, Asks::ALL);
     actions.iter().try_for_each(|action| play.perform(action)).and_then(|()| play.end()).err()
@@ -108,7 +108,7 @@ impl Play {
         let done = catch_unwind(AssertUnwindSafe(|| action.apply(&mut self.session)));
         self.actions.push(action.clone());
         match done {
-            Err(panic) => return Err(Broken::panicked(&*panic)),
+            Err(panic) => return Err(Broken::from_panic(&*panic)),
             Ok(Err(error)) => {
                 self.actions.pop();
                 return promises::nothing_changed(&self.session, before, &error.to_string());
@@ -129,7 +129,7 @@ impl Play {
         let whole = catch_unwind(AssertUnwindSafe(|| {
             let now = promises::fingerprints(&self.session)?;
             promises::at_end(&mut self.session, &self.seen, self.asks.formats)?;
-            promises::recovered(&mut self.session, &self.logs)?;
+            promises::recover(&mut self.session, &self.logs)?;
             if self.asks.formats {
                 same("exported between steps", &now, &again(&self.actions, export)?)?;
             }
@@ -141,7 +141,7 @@ impl Play {
             }
             Ok(())
         }));
-        whole.unwrap_or_else(|panic| Err(Broken::panicked(&*panic)))
+        whole.unwrap_or_else(|panic| Err(Broken::from_panic(&*panic)))
     }
 }
 

@@ -41,7 +41,7 @@ impl Broken {
         Self { kind: format!("{kind}: {plain}"), what }
     }
 
-    pub fn panicked(panic: &(dyn Any + Send)) -> Self {
+    pub fn from_panic(panic: &(dyn Any + Send)) -> Self {
         let text = panic.downcast_ref::<String>().cloned();
         let text = text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
         Self::from_message("panic", text.unwrap_or_else(|| "without words".into()))
@@ -67,14 +67,14 @@ impl Seen {
 
 /// What a document is: its parameters and its picture.
 fn fingerprint(document: &Document) -> Result<(String, u32), Broken> {
-    Ok((recipe::write(document).to_string(), crc32fast::hash(&rendered(document)?)))
+    Ok((recipe::write(document).to_string(), crc32fast::hash(&render(document)?)))
 }
 
 pub fn fingerprints(session: &Session) -> Result<Vec<(String, u32)>, Broken> {
     session.open_documents.iter().map(|open| fingerprint(open.document())).collect()
 }
 
-fn rendered(document: &Document) -> Result<Vec<u8>, Broken> {
+fn render(document: &Document) -> Result<Vec<u8>, Broken> {
     let tiles = flatten(document, &Progress::default());
     let tiles = tiles.ok_or_else(|| Broken::new("not rendered", String::new()))?;
     Ok(tiles.to_straight_rgba(document.size.rect()))
@@ -209,20 +209,25 @@ fn is_kept(document: &Document, all_formats: bool) -> Kept {
     if let Some(what) = document.difference(&read.document) {
         return Err(Broken::from_message("reopened, it differs in", what));
     }
-    let picture = rendered(document)?;
-    same_bytes("reopened, another picture", &picture, &rendered(&read.document)?)?;
-    same_bytes("the merged picture", &picture, &merged(file, &bytes)?)?;
+    let picture = render(document)?;
+    same_bytes("reopened, another picture", &picture, &render(&read.document)?)?;
+    same_bytes("the merged picture", &picture, &read_merged(file, &bytes)?)?;
     let again = project::write(file, &read.document, &progress)
         .map_err(|error| Broken::from_message("not saved again", error))?;
     if again.is_none_or(|again| again != bytes) {
         return Err(Broken::new("saved again, other bytes", String::new()));
     }
-    exported(document, &read.document, &picture, if all_formats { &[8, 16] } else { &[8] })?;
+    compare_exports(document, &read.document, &picture, if all_formats { &[8, 16] } else { &[8] })?;
     if all_formats { is_kept_by_photoshop(document, &picture) } else { Ok(()) }
 }
 
 /// Pictures of both are the same, and what is shown.
-fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[u8]) -> Kept {
+fn compare_exports(
+    document: &Document,
+    reopened: &Document,
+    picture: &[u8],
+    depths: &[u8],
+) -> Kept {
     let (file, progress, budget) =
         (Path::new("a.png"), Progress::default(), Budget::holding(document));
     for &bits in depths {
@@ -247,7 +252,7 @@ fn exported(document: &Document, reopened: &Document, picture: &[u8], depths: &[
             same_bytes(
                 "exported, another picture",
                 once.as_deref().unwrap_or(picture),
-                &decoded(file, &bytes[0])?,
+                &decode(file, &bytes[0])?,
             )?;
         }
     }
@@ -270,17 +275,17 @@ fn is_kept_by_photoshop(document: &Document, picture: &[u8]) -> Kept {
     if let Some(what) = document.difference(&read.document) {
         return Err(Broken::from_message("psd: reopened, it differs in", what));
     }
-    same_bytes("psd: reopened, another picture", picture, &rendered(&read.document)?)
+    same_bytes("psd: reopened, another picture", picture, &render(&read.document)?)
 }
 
 /// The picture in a project.
-fn merged(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
+fn read_merged(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
     let archive = Archive::open(file, bytes, &Budget::default());
     let merged = archive.and_then(|archive| archive.bytes("mergedimage.png", u64::MAX));
-    decoded(file, &merged.map_err(|error| Broken::from_message("no merged picture", error))?)
+    decode(file, &merged.map_err(|error| Broken::from_message("no merged picture", error))?)
 }
 
-fn decoded(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
+fn decode(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
     let picture = picture::decode(file, bytes, &Budget::default())
         .map_err(|error| Broken::from_message("not decoded", error))?;
     match picture.texels {
@@ -300,7 +305,7 @@ fn same_bytes(kind: &str, a: &[u8], b: &[u8]) -> Kept {
 }
 
 /// After a crash every document with edits that no file holds comes back as it was.
-pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
+pub fn recover(session: &mut Session, folder: &Path) -> Kept {
     session.keep();
     let Some(autosave) = session.autosave.take() else { return Ok(()) };
     autosave.wait_until_written();
@@ -324,8 +329,8 @@ pub fn recovered(session: &mut Session, folder: &Path) -> Kept {
         };
         same_bytes(
             "recovered, another picture",
-            &rendered(open.document())?,
-            &rendered(&back[index])?,
+            &render(open.document())?,
+            &render(&back[index])?,
         )?;
     }
     Ok(())

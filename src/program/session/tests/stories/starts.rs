@@ -165,12 +165,12 @@ pub fn way_in(dice: &mut Dice) -> Vec<Action> {
     const WAYS: [fn(&mut Dice) -> Vec<Action>; 8] = [
         blank,
         drawing,
-        inked,
+        start_with_ink,
         |d| drawing_with(d, "false"),
         |d| drawing_with(d, "true"),
         maps,
-        opened,
-        opened,
+        start_from_file,
+        start_from_file,
     ];
     let way = dice.one_of(&WAYS);
     way(dice)
@@ -212,7 +212,7 @@ fn drawing(dice: &mut Dice) -> Vec<Action> {
 }
 
 /// A drawing with ink, which gets a layer of its own.
-fn inked(_: &mut Dice) -> Vec<Action> {
+fn start_with_ink(_: &mut Dice) -> Vec<Action> {
     let layer = ReplayValue::read(&"0".into()).unwrap();
     let open = Action::File(FileAction::Open { file: "inked.png".into() });
     vec![open, Action::Part(PartAction::Ink { layer })]
@@ -237,6 +237,6 @@ fn maps(dice: &mut Dice) -> Vec<Action> {
 }
 
 /// A recipe, a project, a Photoshop file or a picture.
-fn opened(dice: &mut Dice) -> Vec<Action> {
+fn start_from_file(dice: &mut Dice) -> Vec<Action> {
     vec![Action::File(FileAction::Open { file: dice.value("open", "file") })]
 }

@@ -493,7 +493,7 @@ impl Roll for PastedPicture {
 impl Roll for Value {
     fn roll(dice: &mut Dice) -> Self {
         match dice.field {
-            "part" => super::parts::changed(dice),
+            "part" => super::parts::change_part(dice),
             _ => brush(dice),
         }
     }

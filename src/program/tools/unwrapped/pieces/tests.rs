@@ -12,7 +12,7 @@ use std::sync::{Arc, LazyLock};
 
 /// The cylinder and the board, with a picture on both, whose plane is turned on the cylinder by its
 /// anchors.
-fn painted() -> Document {
+fn painted_document() -> Document {
     let document = document();
     let surface = document.surface.clone().unwrap();
     let plain = layout_of(&document);
@@ -42,7 +42,7 @@ fn painted() -> Document {
 static BARE: LazyLock<Document> = LazyLock::new(document);
 
 /// The same shapes under a ramp between two points of the cylinder.
-fn ramped(from: Vec2, to: Vec2) -> Document {
+fn ramp_document(from: Vec2, to: Vec2) -> Document {
     let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)]
         .map(|(t, color)| GradientStop { t, color })
         .to_vec();
@@ -63,13 +63,13 @@ fn ramped(from: Vec2, to: Vec2) -> Document {
     }
 }
 
-fn shown_at(document: &Document, q: Vec2) -> Vec2 {
+fn image_point_at(document: &Document, q: Vec2) -> Vec2 {
     let bend = bend_on_pieces(&document.layers[0].content).unwrap();
     Deformation::new(document.surface.as_deref(), document.size, &bend).at(q.x as i32, q.y as i32)
 }
 
 /// The drawing after a drag from the sheet's point of a canvas point to another, or by some px.
-fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Document {
+fn drag_on_sheet(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Document {
     let tools = ToolSettings::default();
     let context =
         ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &tools) };
@@ -83,41 +83,48 @@ fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Doc
 
 #[test]
 fn a_drag_on_the_sheet_takes_the_picture_of_one_piece_along() {
-    let before = painted();
+    let before = painted_document();
     let layout = layout_of(&before);
     let surface = before.surface.clone().unwrap();
     let on_sheet = |x: f32, y: f32| layout.sheet_at(&surface, vec2(x, y)).unwrap();
     let (from, to) = (on_sheet(90.5, 60.5), on_sheet(110.5, 75.5));
-    let after = dragged(&before, ModifierKeys::default(), from, to);
-    let (was, is) = (shown_at(&before, vec2(90.5, 60.5)), shown_at(&after, vec2(110.5, 75.5)));
+    let after = drag_on_sheet(&before, ModifierKeys::default(), from, to);
+    let (was, is) =
+        (image_point_at(&before, vec2(90.5, 60.5)), image_point_at(&after, vec2(110.5, 75.5)));
     assert!(was.distance(is) < 0.05, "what was under the pen is under it: {was} and {is}");
     let board = vec2(250.5, 60.5);
-    assert_eq!(shown_at(&before, board), shown_at(&after, board));
+    assert_eq!(image_point_at(&before, board), image_point_at(&after, board));
 }
 
 #[test]
 fn handles_scale_and_turn_about_the_middle_of_the_piece() {
-    let before = painted();
+    let before = painted_document();
     let layout = layout_of(&before);
     let surface = before.surface.clone().unwrap();
     let piece = layout.pieces()[0];
     let middle = layout.middle_of(&surface, &piece);
     let pivot = layout.sheet_at(&surface, middle).unwrap();
     let gizmo = PieceGizmo::of(&piece, 1.0).unwrap();
-    let larger = dragged(
+    let larger = drag_on_sheet(
         &before,
         ModifierKeys::default(),
         gizmo.corners[0],
         pivot + (gizmo.corners[0] - pivot) * 2.0,
     );
-    let away = |document: &Document, q: Vec2| shown_at(document, q) - shown_at(document, middle);
+    let away = |document: &Document, q: Vec2| {
+        image_point_at(document, q) - image_point_at(document, middle)
+    };
     let beside = middle + vec2(20.0, 10.0);
     assert!(away(&larger, beside).distance(0.5 * away(&before, beside)) < 0.1, "twice as large");
     let turn = Affine2::from_translation(pivot)
         * Affine2::from_angle(-0.5)
         * Affine2::from_translation(-pivot);
-    let turned =
-        dragged(&before, ModifierKeys::default(), gizmo.knob, turn.transform_point2(gizmo.knob));
+    let turned = drag_on_sheet(
+        &before,
+        ModifierKeys::default(),
+        gizmo.knob,
+        turn.transform_point2(gizmo.knob),
+    );
     let Content::Image(live) = &turned.layers[0].content else { panic!("an image") };
     assert!(
         (live.params().bend.pieces[0].rotation - 0.5f32.to_degrees()).abs() < 0.1,
@@ -125,7 +132,7 @@ fn handles_scale_and_turn_about_the_middle_of_the_piece() {
     );
     assert!((away(&turned, beside).length() / away(&before, beside).length() - 1.0).abs() < 1e-3);
     // A second drag continues from the first.
-    let twice = dragged(
+    let twice = drag_on_sheet(
         &turned,
         ModifierKeys { ctrl: true, ..Default::default() },
         pivot + Vec2::X,
@@ -149,7 +156,7 @@ fn other_layers_and_operators_are_refused_in_a_sentence() {
         .1
     };
     assert!(matches!(outcome(&flat), Outcome::Refused(_)));
-    let painted = painted();
+    let painted = painted_document();
     let Content::Image(live) = &painted.layers[0].content else { panic!("an image") };
     let mut image = live.params().clone();
     image.bend.operator = Operator::Depth { gamma: 1.0 };
@@ -165,7 +172,7 @@ proptest! {
         (pen_x, pen_y, goal_x, goal_y) in (45.5f32..155.0, 10.5f32..110.0, 45.5f32..155.0, 10.5f32..110.0),
         shift in any::<bool>(),
     ) {
-        let before = ramped(vec2(from_x, y), vec2(to_x, 110.0 - y));
+        let before = ramp_document(vec2(from_x, y), vec2(to_x, 110.0 - y));
         let (layout, surface) = (layout_of(&before), before.surface.clone().unwrap());
         // Where pixels are, so that what is shown under the pen is known exactly.
         let center = |x: f32, y: f32| vec2(x.floor() + 0.5, y.floor() + 0.5);
@@ -176,16 +183,16 @@ proptest! {
         // Beside the handles, those of the board too.
         prop_assume!(grab_piece(&layout, from, 1.0, keys) == Some((layout.pieces()[0], drag)));
         let pivot = layout.sheet_at(&surface, layout.middle_of(&surface, &layout.pieces()[0])).unwrap();
-        let after = dragged(&before, keys, from, to);
+        let after = drag_on_sheet(&before, keys, from, to);
         let board = vec2(250.5, 60.5);
-        prop_assert_eq!(shown_at(&before, board), shown_at(&after, board));
+        prop_assert_eq!(image_point_at(&before, board), image_point_at(&after, board));
         let Content::Gradient(live) = &after.layers[0].content else { panic!("a gradient") };
         if shift {
             let wanted = (to.distance(pivot) / from.distance(pivot).max(1.0)).max(0.01);
             prop_assert!((live.params().pieces[0].scale / wanted - 1.0).abs() < 1e-3);
         } else {
             // Whole px of the ramp's plane, which its ends scale by up to 1.5.
-            let (was, is) = (shown_at(&before, pen), shown_at(&after, goal));
+            let (was, is) = (image_point_at(&before, pen), image_point_at(&after, goal));
             prop_assert!(was.distance(is) < 0.1, "under the pen was {}, is {}", was, is);
         }
     }

@@ -1,6 +1,6 @@
 //! A color goes on beneath what nearer parts cover inside of it, and holes stay.
 
-use super::shares::{BODY, EYE, PUPIL, SIZE, WING, at, color, drawn};
+use super::shares::{BODY, EYE, PUPIL, SIZE, WING, at, color, draw};
 use crate::document::parts::from_flats::{PartFor, parts_of_flats};
 use crate::document::{Content, Document, Inflation, Layer, OutlineSource, Part, PixelLayer};
 use crate::math::srgb::Color;
@@ -11,7 +11,7 @@ use crate::shape::flats::shares::Pixel;
 use std::sync::Arc;
 
 /// A body of four flats around its eye, and a hole through it in which something stands.
-fn ringed(p: Vec2) -> Pixel {
+fn ringed_color(p: Vec2) -> Pixel {
     let hole = (p - vec2(60.0, 90.0)).length();
     match at(p) {
         BODY if hole < 6.0 => EYE,
@@ -23,7 +23,7 @@ fn ringed(p: Vec2) -> Pixel {
 #[test]
 fn a_color_goes_on_beneath_nearer_colors_inside_of_it_and_a_hole_stays() {
     for side in [1.0, 2.2] {
-        let flats = Flats::of(&drawn(side, ringed), SIZE.rect(), &[]).unwrap();
+        let flats = Flats::of(&draw(side, ringed_color), SIZE.rect(), &[]).unwrap();
         let mut share = flats.share_of(color(BODY), &[]);
         fill_beneath(&mut share, &flats, &[color(EYE), color(PUPIL)], &[color(WING)]);
         for (x, y) in (52..80).flat_map(|y| (103..137).map(move |x| (x, y))) {
@@ -36,7 +36,7 @@ fn a_color_goes_on_beneath_nearer_colors_inside_of_it_and_a_hole_stays() {
 
 #[test]
 fn what_is_farther_away_shows_through_a_hole() {
-    let flats = Flats::of(&drawn(1.0, at), SIZE.rect(), &[]).unwrap();
+    let flats = Flats::of(&draw(1.0, at), SIZE.rect(), &[]).unwrap();
     let own = flats.share_of(color(BODY), &[]);
     let mut share = own.clone();
     fill_beneath(&mut share, &flats, &[color(PUPIL)], &[color(EYE)]);
@@ -54,9 +54,8 @@ fn what_is_farther_away_shows_through_a_hole() {
 fn a_glint_is_no_hole() {
     let glinting = |radius: f32| {
         let glint = |p: Vec2| (p - vec2(80.0, 80.0)).length() < radius;
-        let flats =
-            Flats::of(&drawn(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect(), &[])
-                .unwrap();
+        let flats = Flats::of(&draw(1.0, |p| if glint(p) { EYE } else { at(p) }), SIZE.rect(), &[])
+            .unwrap();
         let mut share = flats.share_of(color(BODY), &[]);
         fill_beneath(&mut share, &flats, &[], &[color(EYE)]);
         share.at(80, 80)
@@ -72,7 +71,7 @@ fn a_belly_that_a_wing_hides_in_part_lies_on_the_body() {
         p if (p - vec2(110.0, 84.0)).length() < 24.0 => EYE,
         p => at(p),
     };
-    let flats = Flats::of(&drawn(1.0, winged), SIZE.rect(), &[]).unwrap();
+    let flats = Flats::of(&draw(1.0, winged), SIZE.rect(), &[]).unwrap();
     let shares = |nearer: &[Pixel]| {
         let nearer: Vec<Color> = nearer.iter().copied().map(color).collect();
         let mut share = flats.share_of(color(BODY), &nearer);
@@ -93,7 +92,7 @@ fn a_belly_that_a_wing_hides_in_part_lies_on_the_body() {
 
 #[test]
 fn a_face_is_whole_beneath_an_eye_that_is_moved_or_hidden() {
-    let tiles = drawn(1.0, at);
+    let tiles = draw(1.0, at);
     let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).parts;
     let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
     let layers = vec![Arc::new(Layer::new("Flats", Content::Pixels(pixels)))];

@@ -65,11 +65,11 @@ fn one_eye(at: [f32; 2]) -> Document {
     Document { layers, ..Document::empty(SIZE) }.with_parts(vec![Arc::new(part)])
 }
 
-fn covered(document: &Document, x: usize, y: usize) -> bool {
+fn is_covered(document: &Document, x: usize, y: usize) -> bool {
     document.surface.as_ref().is_some_and(|surface| surface.coverage(x, y) > 0)
 }
 
-fn painted(document: &Document, tiles: TileGrid) -> Document {
+fn with_paint(document: &Document, tiles: TileGrid) -> Document {
     let id = document.layers[0].id;
     document.with_layer(id, |layer| layer.content = content(tiles.clone())).unwrap().reshaped()
 }
@@ -132,7 +132,9 @@ fn a_glint_does_not_bring_the_eye_before_its_pupil() {
 fn a_part_takes_only_the_area_around_its_point() {
     let document = one_eye([82.0, 48.0]);
     assert!(
-        covered(&document, 80, 50) && !covered(&document, 122, 50) && !covered(&document, 100, 100)
+        is_covered(&document, 80, 50)
+            && !is_covered(&document, 122, 50)
+            && !is_covered(&document, 100, 100)
     );
     assert!(document.parts.lost.is_empty());
 }
@@ -180,20 +182,24 @@ fn a_narrow_passage_separates_places_and_a_wide_one_joins_them() {
 #[test]
 fn a_part_follows_its_place_when_the_flats_are_painted_again() {
     let document = one_eye([80.0, 50.0]);
-    let larger = painted(&document, face(&[([80.0, 50.0], 18.0), EYES[1]]));
-    assert!(covered(&larger, 66, 50) && !covered(&document, 66, 50) && !covered(&larger, 122, 50));
+    let larger = with_paint(&document, face(&[([80.0, 50.0], 18.0), EYES[1]]));
+    assert!(
+        is_covered(&larger, 66, 50)
+            && !is_covered(&document, 66, 50)
+            && !is_covered(&larger, 122, 50)
+    );
     assert_eq!(larger.note_of_lost(Some(&document)), None);
     // The eye was painted elsewhere: the nearest is taken, and the user is told once.
-    let elsewhere = painted(&document, face(&[([70.0, 80.0], 10.0), ([160.0, 60.0], 8.0)]));
-    assert!(covered(&elsewhere, 70, 80) && !covered(&elsewhere, 160, 60));
+    let elsewhere = with_paint(&document, face(&[([70.0, 80.0], 10.0), ([160.0, 60.0], 8.0)]));
+    assert!(is_covered(&elsewhere, 70, 80) && !is_covered(&elsewhere, 160, 60));
     assert_eq!(elsewhere.parts.lost, ["eye"]);
     let note = elsewhere.note_of_lost(Some(&document)).unwrap();
     assert!(note.contains("“eye”") && note.contains("nearest"), "{note}");
     assert_eq!(elsewhere.note_of_lost(Some(&elsewhere)), None);
-    let back = painted(&elsewhere, face(&EYES));
-    assert!(back.parts.lost.is_empty() && covered(&back, 80, 50));
+    let back = with_paint(&elsewhere, face(&EYES));
+    assert!(back.parts.lost.is_empty() && is_covered(&back, 80, 50));
     // Without the color there is no part.
-    assert!(painted(&document, face(&[])).surface.is_none());
+    assert!(with_paint(&document, face(&[])).surface.is_none());
 }
 
 #[test]
@@ -206,7 +212,9 @@ fn a_layer_that_is_moved_takes_the_places_along() {
     let next = document.with_layer(document.layers[0].id, change).unwrap().reshaped();
     // Without that it would be the left eye, which stands where the right one was.
     assert_eq!(next.parts.list[0].place(), Some(vec2(122.0, 50.0)));
-    assert!(covered(&next, 122, 50) && !covered(&next, 164, 50) && next.parts.lost.is_empty());
+    assert!(
+        is_covered(&next, 122, 50) && !is_covered(&next, 164, 50) && next.parts.lost.is_empty()
+    );
 }
 
 #[test]
@@ -214,7 +222,11 @@ fn places_go_with_the_canvas() {
     let document = one_eye([80.0, 50.0]);
     let change = CanvasChange::crop(SIZE, Rect::new(30, 10, 180, 110)).unwrap();
     let cropped = document.on_other_canvas(&change).unwrap();
-    assert!(covered(&cropped, 50, 40) && !covered(&cropped, 92, 40), "{:?}", cropped.parts.list);
+    assert!(
+        is_covered(&cropped, 50, 40) && !is_covered(&cropped, 92, 40),
+        "{:?}",
+        cropped.parts.list
+    );
     assert!(cropped.parts.lost.is_empty());
 }
 
@@ -225,13 +237,14 @@ fn a_place_is_one_of_the_flats_however_its_part_is_moved_and_scaled() {
     let turned = Affine2::from_scale_angle_translation(vec2(2.0, 2.0), 0.6, vec2(20.0, -120.0));
     let moved = document.with_parts(vec![Arc::new(Part { matrix: turned, ..part })]);
     let at = turned.transform_point2(vec2(80.0, 50.0));
-    assert!(covered(&moved, at.x as usize, at.y as usize) && moved.parts.lost.is_empty());
+    assert!(is_covered(&moved, at.x as usize, at.y as usize) && moved.parts.lost.is_empty());
     let other = turned.transform_point2(vec2(122.0, 50.0));
-    assert!(!covered(&moved, other.x as usize, other.y as usize), "{other}");
+    assert!(!is_covered(&moved, other.x as usize, other.y as usize), "{other}");
     // Image size.
     for factor in [0.5, 2.0] {
         let scaled = document.scaled(factor).unwrap().reshaped();
-        let seen = |x: f32, y: f32| covered(&scaled, (x * factor) as usize, (y * factor) as usize);
+        let seen =
+            |x: f32, y: f32| is_covered(&scaled, (x * factor) as usize, (y * factor) as usize);
         assert!(seen(80.0, 50.0) && !seen(122.0, 50.0), "{factor}: {:?}", scaled.parts.list);
         assert!(scaled.parts.lost.is_empty());
     }

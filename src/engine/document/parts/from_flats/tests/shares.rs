@@ -28,7 +28,7 @@ pub fn at(p: Vec2) -> Pixel {
 }
 
 /// Each pixel is the mean over a square about it: sides of 1 are anti-aliased, longer ones blurred.
-pub fn drawn(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
+pub fn draw(side: f32, at: impl Fn(Vec2) -> Pixel) -> TileGrid {
     const N: usize = 8;
     let mut rgba = Vec::with_capacity(SIZE.area() * 4);
     for i in 0..SIZE.area() {
@@ -53,7 +53,7 @@ pub fn color([r, g, b, a]: Pixel) -> Color {
 #[test]
 fn the_shares_of_a_pixel_add_up_to_what_is_painted_of_it() {
     for side in [1.0, 2.2] {
-        let tiles = drawn(side, at);
+        let tiles = draw(side, at);
         let flats = Flats::of(&tiles, SIZE.rect(), &[]).unwrap();
         let shares = [BODY, WING, EYE, PUPIL].map(|own| flats.share_of(color(own), &[]));
         let mut wrong = 0;
@@ -70,15 +70,15 @@ fn the_shares_of_a_pixel_add_up_to_what_is_painted_of_it() {
 #[test]
 fn only_areas_are_colors() {
     // A long straight edge half-way through its pixels is a long row of one mixed color.
-    let halves = drawn(1.0, |p| if p.x < 90.5 { BODY } else { WING });
+    let halves = draw(1.0, |p| if p.x < 90.5 { BODY } else { WING });
     assert_eq!(Flats::of(&halves, SIZE.rect(), &[]).unwrap().colors().len(), 2);
-    assert_eq!(Flats::of(&drawn(2.2, at), SIZE.rect(), &[]).unwrap().colors().len(), 4);
+    assert_eq!(Flats::of(&draw(2.2, at), SIZE.rect(), &[]).unwrap().colors().len(), 4);
 }
 
 #[test]
 fn a_creature_of_flats_that_touch_has_no_rims_and_no_stray_points() {
     for side in [1.0, 2.2] {
-        let tiles = drawn(side, at);
+        let tiles = draw(side, at);
         let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Color).parts;
         assert_eq!(parts.len(), 4);
         let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
@@ -111,7 +111,7 @@ fn a_seam_between_two_flats_is_closed_and_a_gap_within_one_stays() {
             _ if (p.x - 170.0).abs() < 1.0 => [0; 4],
             _ => EYE,
         };
-    let flats = Flats::of(&drawn(1.0, seam), SIZE.rect(), &[]).unwrap();
+    let flats = Flats::of(&draw(1.0, seam), SIZE.rect(), &[]).unwrap();
     let whole = |x: usize, y: usize| {
         [BODY, WING, EYE]
             .iter()
@@ -127,7 +127,7 @@ fn a_seam_between_two_flats_is_closed_and_a_gap_within_one_stays() {
 
 #[test]
 fn what_is_behind_goes_on_beneath_the_edge_of_what_lies_over_it() {
-    let tiles = drawn(1.0, at);
+    let tiles = draw(1.0, at);
     let flats = Flats::of(&tiles, SIZE.rect(), &[]).unwrap();
     let (alone, beneath) = (
         flats.share_of(color(BODY), &[]),

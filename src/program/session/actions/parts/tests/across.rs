@@ -1,12 +1,12 @@
 //! Stories of strokes that stay on the part that they begin on.
 
-use super::{opened, shown, snowman, tell};
+use super::{open, shown_document, snowman, tell};
 use crate::document::{Progress, flatten};
 use crate::session::Session;
 
 /// How many pixels of the body a stroke changes that begins on the head and goes down.
-fn streaked(session: &mut Session) -> usize {
-    let seen = |session: &Session| flatten(shown(session), &Progress::default()).unwrap();
+fn paint_streak(session: &mut Session) -> usize {
+    let seen = |session: &Session| flatten(shown_document(session), &Progress::default()).unwrap();
     let before = seen(session);
     for line in [
         r##"{"in":"hand","do":"color","color":"#ffffff"}"##,
@@ -25,12 +25,12 @@ fn streaked(session: &mut Session) -> usize {
 
 #[test]
 fn a_stroke_stays_on_the_part_it_begins_on_unless_it_may_cross() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":true}"#);
-    assert_eq!(streaked(&mut session), 0);
+    assert_eq!(paint_streak(&mut session), 0);
     tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
     tell(&mut session, r#"{"in":"hand","do":"across parts","on":true}"#);
-    assert!(streaked(&mut session) > 100);
+    assert!(paint_streak(&mut session) > 100);
 }
 
 #[test]

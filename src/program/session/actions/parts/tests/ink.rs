@@ -1,6 +1,6 @@
 //! Stories of drawings with ink.
 
-use super::{opened, shown, snowman, tell};
+use super::{open, shown_document, snowman, tell};
 use crate::document::{Document, Progress, flatten};
 use crate::math::Size;
 use crate::raster::{Picture, TileGrid};
@@ -11,7 +11,7 @@ const INK: [f32; 3] = [30.0, 24.0, 40.0];
 const SIZE: Size = Size { width: 320, height: 240 };
 
 /// A red and a green half of a disc with soft lines of 3 px around and between them, on nothing.
-fn inked() -> Document {
+fn inked_drawing() -> Document {
     let texel = |i: usize| {
         let (x, y) = ((i % 320) as f32 + 0.5, (i / 320) as f32 + 0.5);
         let away = (x - 160.0).hypot(y - 120.0);
@@ -25,8 +25,8 @@ fn inked() -> Document {
     of_picture("disc.png", Picture::srgb8(SIZE, texels).unwrap())
 }
 
-fn seen(session: &Session) -> TileGrid {
-    flatten(shown(session), &Progress::default()).unwrap()
+fn render(session: &Session) -> TileGrid {
+    flatten(shown_document(session), &Progress::default()).unwrap()
 }
 
 fn shape(session: &mut Session) {
@@ -36,12 +36,13 @@ fn shape(session: &mut Session) {
 
 #[test]
 fn a_drawing_with_ink_gets_its_lines_on_top_as_they_were_drawn() {
-    let mut session = opened(inked());
-    let before = seen(&session);
+    let mut session = open(inked_drawing());
+    let before = render(&session);
     shape(&mut session);
-    let names: Vec<&str> = shown(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
+    let names: Vec<&str> =
+        shown_document(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
     assert_eq!(names, ["disc", "Base", "Ink"]);
-    let lit = seen(&session);
+    let lit = render(&session);
     let mut whole = 0;
     let mut changed = 0;
     for (x, y) in (0..240).flat_map(|y| (0..320).map(move |x| (x, y))) {
@@ -58,7 +59,7 @@ fn a_drawing_with_ink_gets_its_lines_on_top_as_they_were_drawn() {
         &mut session,
         r#"{"in":"layer","do":"set","layer":"1","to":{"do":"visible","on":false},"done":true}"#,
     );
-    let unlit = seen(&session);
+    let unlit = render(&session);
     for (x, y) in (0..240).flat_map(|y| (0..320).map(move |x| (x, y))) {
         let (was, is) = (before.pixel(x, y), unlit.pixel(x, y));
         assert!((0..4).all(|c| was[c].abs_diff(is[c]) <= 1), "{x} {y}: {is:?} for {was:?}");
@@ -67,10 +68,10 @@ fn a_drawing_with_ink_gets_its_lines_on_top_as_they_were_drawn() {
 
 #[test]
 fn lines_of_a_drawing_without_ink_are_refused() {
-    let mut session = opened(snowman(false));
+    let mut session = open(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"ink","layer":"0"}"#);
     assert!(session.notes[0].starts_with("No ink"), "{:?}", session.notes);
-    assert_eq!(shown(&session).layers.len(), 1);
+    assert_eq!(shown_document(&session).layers.len(), 1);
 }
 
 #[test]
@@ -80,13 +81,14 @@ fn a_scan_becomes_lines_on_top_of_all_layers() {
         [gray, gray, gray, 255]
     };
     let scan = Picture::srgb8(SIZE, (0..SIZE.area()).map(texel).collect()).unwrap();
-    let mut session = opened(of_picture("scan.png", scan));
+    let mut session = open(of_picture("scan.png", scan));
     tell(&mut session, r#"{"in":"layer","do":"add","kind":"paint"}"#);
     tell(&mut session, r#"{"in":"part","do":"paper","layer":"0"}"#);
     assert_eq!(session.notes, Vec::<String>::new());
-    let names: Vec<&str> = shown(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
+    let names: Vec<&str> =
+        shown_document(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
     assert_eq!(names.last(), Some(&"scan"));
-    let seen = seen(&session);
+    let seen = render(&session);
     assert!(
         seen.pixel(100, 30)[3] == 0 && seen.pixel(100, 62)[3] > 180,
         "{:?}",
