@@ -1,4 +1,4 @@
-//! Memory has a ceiling: files that unpack without end, large maps, light and layers, and very many
+//! Memory has a limit: files that unpack without end, large maps, light and layers, and very many
 //! strokes take no more than what is made of them needs; beyond what there is they get a sentence
 //! with both figures.
 
@@ -244,7 +244,7 @@ fn a_photoshop_file_takes_no_more_than_is_asked_for() {
 #[test]
 fn of_very_many_strokes_few_dabs_are_held() {
     let _turn = watch::turn();
-    DABS.set_ceiling(4 << 20);
+    DABS.set_limit(4 << 20);
     let size = Size::new(1000, 800);
     let stroke = |i: u32| {
         let at = |j: u32| vec2(1000.0 * hash::unit(i, j, 0), 800.0 * hash::unit(i, j, 1));
@@ -256,14 +256,14 @@ fn of_very_many_strokes_few_dabs_are_held() {
     let layer = Layer::new("strokes", Content::Strokes(Live::new(list)));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
     let (pixels, peak) = watched(|| flatten(&document, &Progress::default()).unwrap());
-    DABS.set_ceiling(64 << 20);
+    DABS.set_limit(64 << 20);
     assert!(pixels.iter().count() > 100);
     // All dabs together take some 130 MiB.
     assert!(peak < 90 * MIB, "{peak} bytes");
 }
 
 #[test]
-fn forms_beyond_their_ceiling_are_made_one_at_a_time_to_the_same_surface() {
+fn forms_beyond_their_limit_are_made_one_at_a_time_to_the_same_surface() {
     let _turn = watch::turn();
     let size = Size::new(700, 700);
     let ball = |i: u16| {
@@ -274,9 +274,9 @@ fn forms_beyond_their_ceiling_are_made_one_at_a_time_to_the_same_surface() {
         ))
     };
     let list: Vec<Arc<Part>> = (0..24).map(ball).collect();
-    let usual = FORMS.ceiling();
-    let made = |ceiling: u64| {
-        FORMS.set_ceiling(ceiling);
+    let usual = FORMS.limit();
+    let made = |limit: u64| {
+        FORMS.set_limit(limit);
         let empty = Document::empty(size);
         let most = empty.shape_bytes(&list) as usize;
         let (shaped, peak) = watched(|| empty.with_parts(list.clone()));
@@ -285,7 +285,7 @@ fn forms_beyond_their_ceiling_are_made_one_at_a_time_to_the_same_surface() {
         let mut other = list.clone();
         other[20] = ball(60);
         let next = shaped.with_parts(other[1..].to_vec());
-        FORMS.set_ceiling(usual);
+        FORMS.set_limit(usual);
         let areas = next.part_areas();
         assert_eq!((areas.len(), areas[3].1.at(352, 350), areas[3].1.at(3, 3)), (23, 255, 0));
         ([shaped, next].map(|document| document.surface.unwrap()), peak)

@@ -1,4 +1,4 @@
-//! What memory may be used for: buffers that ask before they are made, and the ceiling of what is
+//! What memory may be used for: buffers that ask before they are made, and the limit of what is
 //! kept for speed alone. Floor 0. Not here: how much the machine has, which floors above read and
 //! pass in.
 
@@ -85,7 +85,7 @@ pub fn room_for(what: &str, bytes: u64, free: u64) -> Result<(), String> {
 /// Bytes that may be kept for speed alone, what could be computed again, and those that are.
 #[derive(Debug)]
 pub struct CachePool {
-    ceiling: AtomicU64,
+    limit: AtomicU64,
     kept: AtomicU64,
 }
 
@@ -95,29 +95,29 @@ pub static DABS: CachePool = CachePool::new(64 << 20);
 pub static FORMS: CachePool = CachePool::new(1 << 30);
 
 impl CachePool {
-    const fn new(ceiling: u64) -> Self {
-        Self { ceiling: AtomicU64::new(ceiling), kept: AtomicU64::new(0) }
+    const fn new(limit: u64) -> Self {
+        Self { limit: AtomicU64::new(limit), kept: AtomicU64::new(0) }
     }
 
     /// Sets how much may be kept. What is kept already stays.
-    pub fn set_ceiling(&self, bytes: u64) {
-        self.ceiling.store(bytes, Ordering::Relaxed);
+    pub fn set_limit(&self, bytes: u64) {
+        self.limit.store(bytes, Ordering::Relaxed);
     }
 
     /// How much may be kept.
-    pub fn ceiling(&self) -> u64 {
-        self.ceiling.load(Ordering::Relaxed)
+    pub fn limit(&self) -> u64 {
+        self.limit.load(Ordering::Relaxed)
     }
 
     /// How much more may be kept.
     pub fn room(&self) -> u64 {
-        self.ceiling().saturating_sub(self.kept.load(Ordering::Relaxed))
+        self.limit().saturating_sub(self.kept.load(Ordering::Relaxed))
     }
 
-    /// `None` where all that is kept would be more than the ceiling.
+    /// `None` where all that is kept would be more than the limit.
     pub fn reserve(&'static self, bytes: u64) -> Option<CacheReservation> {
-        let ceiling = self.ceiling();
-        let more = |kept: u64| kept.checked_add(bytes).filter(|sum| *sum <= ceiling);
+        let limit = self.limit();
+        let more = |kept: u64| kept.checked_add(bytes).filter(|sum| *sum <= limit);
         let kept = self.kept.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
         kept.ok().map(|_| CacheReservation { pool: self, bytes })
     }
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_stays_below_the_ceiling_and_is_given_back() {
+    fn what_is_kept_stays_below_the_limit_and_is_given_back() {
         assert!(DABS.reserve(u64::MAX).is_none());
         let kept = DABS.reserve(1000);
         assert!(kept.is_some() && DABS.kept.load(Ordering::Relaxed) >= 1000);

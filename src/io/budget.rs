@@ -114,7 +114,7 @@ impl Budget {
         }
     }
 
-    /// The usual ceilings on this machine as it is now: `memory_bytes` is what is free, minus a
+    /// The usual limits on this machine as it is now: `memory_bytes` is what is free, minus a
     /// reserve.
     pub fn of_this_machine() -> Self {
         Self::default().within(super::machine::free_bytes())
@@ -164,7 +164,7 @@ impl Budget {
         self.room(file, &document.shape_work(list), bytes)
     }
 
-    /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.
+    /// The size, or a sentence saying which limit it breaks. A side of 0 is not a picture.
     pub fn size(&self, file: &Path, width: u64, height: u64) -> Result<Size> {
         if width == 0 || height == 0 {
             return Err(Error::decode(

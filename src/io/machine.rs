@@ -1,5 +1,5 @@
 //! How much memory this machine has left for the program, according to the system: free memory, the
-//! ceilings of the control groups around the process, its address space. Floor 5. Only this file
+//! limits of the control groups around the process, its address space. Floor 5. Only this file
 //! asks the system; floors beneath are passed figures.
 
 use std::fs;
@@ -13,7 +13,7 @@ pub const UNKNOWN_BYTES: u64 = 4 << 30;
 static CEILING: AtomicU64 = AtomicU64::new(u64::MAX);
 
 /// The program may take so many bytes in all from now on, whatever is free.
-pub fn set_ceiling(bytes: u64) {
+pub fn set_limit(bytes: u64) {
     CEILING.store(bytes, Ordering::Relaxed);
 }
 
@@ -24,14 +24,14 @@ pub fn free_bytes() -> u64 {
     (free - free / 8).min(remaining_below(CEILING.load(Ordering::Relaxed)))
 }
 
-/// What is left of a ceiling for the whole program; all of it where the system does not say what
+/// What is left of a limit for the whole program; all of it where the system does not say what
 /// the program takes.
-fn remaining_below(ceiling: u64) -> u64 {
-    if ceiling == u64::MAX {
-        return ceiling;
+fn remaining_below(limit: u64) -> u64 {
+    if limit == u64::MAX {
+        return limit;
     }
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    ceiling.saturating_sub(field(&status, "VmRSS:").map_or(0, |kib| kib * 1024))
+    limit.saturating_sub(field(&status, "VmRSS:").map_or(0, |kib| kib * 1024))
 }
 
 /// Bytes that may be kept for speed alone (`memory::DABS`): a small share, so that old machines
@@ -41,7 +41,7 @@ pub fn kept_bytes() -> u64 {
     MOST.min(least_available(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)
 }
 
-/// Bytes that the machine has for the program at most: its memory, or the lowest ceiling around the
+/// Bytes that the machine has for the program at most: its memory, or the lowest limit around the
 /// process.
 pub fn whole_bytes() -> u64 {
     whole(Path::new("/")).unwrap_or(UNKNOWN_BYTES)
@@ -51,10 +51,10 @@ fn whole(root: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(root.join(name)).ok();
     let memory = field(&read("proc/meminfo")?, "MemTotal:")? * 1024;
     let groups = read("proc/self/cgroup").unwrap_or_default();
-    let ceiling = |group: &ControlGroup| {
+    let limit = |group: &ControlGroup| {
         fs::read_to_string(group.folder.join(group.names[0])).ok()?.trim().parse().ok()
     };
-    Some(groups_around(root, &groups).iter().filter_map(ceiling).fold(memory, u64::min))
+    Some(groups_around(root, &groups).iter().filter_map(limit).fold(memory, u64::min))
 }
 
 /// The least of what each of Linux's accounts leaves; `None` on other systems. `root`: where its
@@ -76,13 +76,13 @@ fn field(text: &str, name: &str) -> Option<u64> {
 /// A control group that reports memory.
 struct ControlGroup {
     folder: PathBuf,
-    /// The files of its ceiling and of what is used.
+    /// The files of its limit and of what is used.
     names: [&'static str; 2],
     /// The line of `memory.stat` for files held in memory.
     cache: &'static str,
 }
 
-/// What is left under the ceilings of the process's groups, and of all groups around them.
+/// What is left under the limits of the process's groups, and of all groups around them.
 fn remaining_in_groups(root: &Path, groups: &str) -> Option<u64> {
     groups_around(root, groups).iter().filter_map(remaining_in_group).min()
 }
@@ -122,18 +122,18 @@ fn groups_around(root: &Path, groups: &str) -> Vec<ControlGroup> {
 /// What is left in one group; files that it holds in memory count as free, since the system drops
 /// them when needed.
 fn remaining_in_group(group: &ControlGroup) -> Option<u64> {
-    let ControlGroup { folder, names: [ceiling, used], cache } = group;
+    let ControlGroup { folder, names: [limit, used], cache } = group;
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
     let cache =
         read("memory.stat").and_then(|stat| field(&stat, &format!("{cache} "))).unwrap_or(0);
-    Some(number(ceiling)?.saturating_sub(number(used)?.saturating_sub(cache)))
+    Some(number(limit)?.saturating_sub(number(used)?.saturating_sub(cache)))
 }
 
 /// What is left of the process's address space (`ulimit -v`).
 fn remaining_addresses(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
-    let ceiling = field(&read("proc/self/limits")?, "Max address space")?;
-    Some(ceiling.saturating_sub(field(&read("proc/self/status")?, "VmSize:")? * 1024))
+    let limit = field(&read("proc/self/limits")?, "Max address space")?;
+    Some(limit.saturating_sub(field(&read("proc/self/status")?, "VmSize:")? * 1024))
 }
 
 #[cfg(test)]
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_of_all_ceilings_counts() {
+    fn the_least_of_all_limits_counts() {
         assert_eq!(machine(&[]), Some(6_144_000_000));
         let unlimited =
             "Max address space         unlimited            unlimited            bytes\n";
@@ -170,10 +170,10 @@ mod tests {
     fn groups_count_with_all_around_them_and_their_cached_files_are_free() {
         let groups = ("proc/self/cgroup", "0::/user/app\n");
         let open = ("sys/fs/cgroup/user/app/memory.max", "max\n");
-        let ceiling = ("sys/fs/cgroup/user/memory.max", "1000000000\n");
+        let limit = ("sys/fs/cgroup/user/memory.max", "1000000000\n");
         let used = ("sys/fs/cgroup/user/memory.current", "700000000\n");
         let stat = ("sys/fs/cgroup/user/memory.stat", "anon 1\ninactive_file 200000000\n");
-        assert_eq!(machine(&[groups, open, ceiling, used, stat]), Some(500_000_000));
+        assert_eq!(machine(&[groups, open, limit, used, stat]), Some(500_000_000));
         let old = [
             ("proc/self/cgroup", "3:cpu:/a\n2:memory:/elsewhere\n"),
             ("sys/fs/cgroup/memory/memory.limit_in_bytes", "900000000"),
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn the_machine_is_as_large_as_its_lowest_ceiling() {
+    fn the_machine_is_as_large_as_its_lowest_limit() {
         let root = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| {
             let file = root.path().join(name);
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_program_takes_counts_below_its_own_ceiling() {
+    fn what_the_program_takes_counts_below_its_own_limit() {
         assert_eq!(remaining_below(u64::MAX), u64::MAX);
         assert_eq!(remaining_below(1000), 0, "the test alone takes more");
         let most = 1 << 50;

@@ -81,10 +81,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
         }
     };
     crate::memory::ask_for_free_bytes(crate::io::machine::free_bytes);
-    crate::memory::DABS.set_ceiling(crate::io::machine::kept_bytes());
+    crate::memory::DABS.set_limit(crate::io::machine::kept_bytes());
     // A document that is read once is made once.
     let is_edited = matches!(parsed.command, Some(CliCommand::Open(_) | CliCommand::Replay(_)));
-    crate::memory::FORMS.set_ceiling(if is_edited {
+    crate::memory::FORMS.set_limit(if is_edited {
         crate::io::machine::whole_bytes() / 8
     } else {
         0

@@ -1,5 +1,5 @@
 //! Memory, for the status bar: what the program takes, as the system reports, and what the open
-//! documents take of it. Floor 7. The ceiling of what they keep for speed is enforced here, too:
+//! documents take of it. Floor 7. The limit of what they keep for speed is enforced here, too:
 //! counting and freeing are one walk (`session::memory`), on a thread of its own.
 
 use crate::io::machine;
@@ -62,12 +62,12 @@ impl MemoryMeter {
     }
 
     /// Bytes that may be kept for speed.
-    pub fn ceiling(&self, share: f32) -> u64 {
+    pub fn limit(&self, share: f32) -> u64 {
         (f64::from(share) * self.machine_bytes as f64) as u64
     }
 
     /// What documents took at the last count. If that was some time ago, another one begins, which
-    /// also enforces the ceiling. `is_idle`: nothing is painted now.
+    /// also enforces the limit. `is_idle`: nothing is painted now.
     pub fn documents(&mut self, session: &Session, share: f32, is_idle: bool) -> DocumentMemory {
         match self.counting.as_ref().map(Receiver::try_recv) {
             Some(Ok(counted)) => (self.counted, self.counting) = (counted, None),
@@ -80,11 +80,11 @@ impl MemoryMeter {
             && self.counting.is_none()
             && let Some(held) = session.held_documents()
         {
-            let (ceiling, (sender, receiver)) = (self.ceiling(share), channel());
+            let (limit, (sender, receiver)) = (self.limit(share), channel());
             self.since = Some(Instant::now());
             let begun = spawn("counting memory", move || {
                 // The window may be gone by then.
-                let _ = sender.send(held.count(ceiling));
+                let _ = sender.send(held.count(limit));
             });
             // Without a thread the last figures stay.
             self.counting = begun.is_ok().then_some(receiver);
@@ -111,8 +111,8 @@ mod tests {
     }
 
     #[test]
-    fn the_ceiling_is_a_share_of_the_machine() {
+    fn the_limit_is_a_share_of_the_machine() {
         let meter = MemoryMeter { machine_bytes: 8_000_000_000, ..MemoryMeter::default() };
-        assert_eq!(meter.ceiling(USUAL_KEPT_SHARE), 2_000_000_000);
+        assert_eq!(meter.limit(USUAL_KEPT_SHARE), 2_000_000_000);
     }
 }

@@ -21,7 +21,7 @@ pub const ALL: [(&str, Reader); 6] = [
     ("recovery", recovery),
 ];
 
-/// Small ceilings, so that a damaged header that asks for more is refused at once.
+/// Small limits, so that a damaged header that asks for more is refused at once.
 pub fn budget() -> Budget {
     Budget { area_px: 1 << 20, document_px: 1 << 22, side_px: 4096, ..Budget::default() }
 }

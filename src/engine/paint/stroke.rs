@@ -25,7 +25,7 @@ use dabs::{StrokeDabs, TileReach};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it,
-/// and so are its dabs as long as those of all strokes stay below a ceiling.
+/// and so are its dabs as long as those of all strokes stay below a limit.
 #[derive(Clone)]
 pub struct Stroke {
     brush: Brush,

@@ -18,7 +18,7 @@ pub struct MemoryLimit {
 impl MemoryLimit {
     /// From now on, for whatever is opened and done.
     pub fn set(&self) {
-        self.max_memory.into_iter().for_each(machine::set_ceiling);
+        self.max_memory.into_iter().for_each(machine::set_limit);
     }
 }
 
@@ -67,7 +67,7 @@ impl LimitArgs {
     pub fn room_to_paint(&self, file: &Path, document: &Document) -> Result<()> {
         let what = format!("painting {} pixels", document.size);
         let painting = document.flattening_bytes();
-        // What is free was asked for after the document was read; a given ceiling is for both.
+        // What is free was asked for after the document was read; a given limit is for both.
         let held = self.memory.max_memory.map_or(0, |_| MemoryUse::of(document).total());
         self.budget().room(file, &what, painting.saturating_add(held))
     }
@@ -89,7 +89,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_given_ceiling_is_for_the_document_and_for_painting_it() {
+    fn a_given_limit_is_for_the_document_and_for_painting_it() {
         let size = Size::new(512, 512);
         let depth = Plane::full(size, 0.0);
         let (normals, coverage) = (Plane::full(size, Vec3::Z), Plane::full(size, 255));

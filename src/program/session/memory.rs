@@ -1,4 +1,4 @@
-//! The memory that the open documents take, and its ceiling. Floor 6. Not here: the counting
+//! The memory that the open documents take, and its limit. Floor 6. Not here: the counting
 //! (`document::memory_use`).
 
 use super::Session;
@@ -42,16 +42,16 @@ impl Session {
 }
 
 impl HeldDocuments {
-    /// Counts them. Once they keep more than `ceiling` bytes for speed, steps of the history free
+    /// Counts them. Once they keep more than `limit` bytes for speed, steps of the history free
     /// what they keep: the farthest first, and those of the document in front last.
-    pub fn count(&self, ceiling: u64) -> DocumentMemory {
+    pub fn count(&self, limit: u64) -> DocumentMemory {
         let mut count = MemoryCount::default();
         let Some((front, others)) = self.presents.split_first() else {
             return DocumentMemory::default();
         };
         let mut add = |document: &Document, is_shown: bool| {
             let before = count.sum_up();
-            let keeps = is_shown || before.kept < ceiling;
+            let keeps = is_shown || before.kept < limit;
             count.add(document, keeps);
             count.sum_up().minus(before)
         };
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_ceiling_the_farthest_steps_let_go_and_the_picture_stays() {
+    fn beyond_the_limit_the_farthest_steps_let_go_and_the_picture_stays() {
         let mut session = dragged(5);
         let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
         let used = session.held_documents().unwrap().count(3 * RENDERED);

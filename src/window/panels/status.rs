@@ -133,9 +133,9 @@ pub fn cache_limit(
     if let Some(change) = field.row(ui, (kept_share * 100.0).round()) {
         requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
     }
-    let (ceiling, machine) =
-        (bytes_text(memory.ceiling(kept_share)), bytes_text(memory.machine_bytes()));
-    ui.weak(format!("{ceiling} of {machine} for caches, in all documents"));
+    let (limit, machine) =
+        (bytes_text(memory.limit(kept_share)), bytes_text(memory.machine_bytes()));
+    ui.weak(format!("{limit} of {machine} for caches, in all documents"));
 }
 
 /// The memory of the document in front; the menu lists it, and sets how much may be kept for speed.

@@ -166,6 +166,55 @@ fn place(what: &str, p: Vec2) -> Result<(), String> {
     check_range(what, p.y, &COORDINATE)
 }
 
+fn check_bevel(bevel: &Bevel) -> Result<(), String> {
+    check_range("the bevel's width", bevel.width, &Bevel::WIDTH)?;
+    check_range("the bevel's height", bevel.height, &Bevel::HEIGHT)?;
+    let BevelCurve::Points(points) = &bevel.curve else { return Ok(()) };
+    at_most("points of the bevel's curve", points.len(), BevelCurve::MOST_POINTS)?;
+    points.iter().try_for_each(|p| {
+        check_range("a point of the bevel's curve", p.x, &UNIT)?;
+        check_range("a point of the bevel's curve", p.y, &UNIT)
+    })
+}
+
+fn check_body(body: &Primitive) -> Result<(), String> {
+    place("the middle", body.center)?;
+    let Vec3 { x, y, z } = body.half;
+    [body.radius, body.length, body.tube, x, y, z]
+        .iter()
+        .try_for_each(|side| check_range("a side of the body", *side, &Primitive::LENGTH))?;
+    check_range("the radius of its edges", body.round, &Primitive::ROUND)?;
+    let turns = body.turn_deg.to_array();
+    turns.iter().try_for_each(|turn| check_range("its turn", *turn, &Primitive::TURN))
+}
+
+fn check_touch(touch: &Touch) -> Result<(), String> {
+    place("a touch", touch.at)?;
+    check_range("the radius of a touch", touch.radius, &Touch::RADIUS)?;
+    check_range("the reach of a touch", touch.reach, &Touch::REACH)?;
+    let normal = touch.normal.to_array();
+    normal.iter().try_for_each(|v| check_range("a touch's normal", *v, &(-1.0..=1.0)))
+}
+
+fn check_sculpting(stroke: &SculptStroke) -> Result<(), String> {
+    check_range("the size of a stroke", stroke.size, &SculptStroke::SIZE)?;
+    check_range("the hardness of a stroke", stroke.hardness, &SculptStroke::HARDNESS)?;
+    check_range("the strength of a stroke", stroke.strength, &SculptStroke::STRENGTH)?;
+    stroke.samples.iter().try_for_each(|(at, pressure)| {
+        place("a sample", *at)?;
+        check_range("the pressure of a sample", *pressure, &SculptStroke::PRESSURE)
+    })
+}
+
+fn check_light(light: Vec3) -> Result<(), String> {
+    let direction = light.to_array();
+    direction.iter().try_for_each(|v| check_range("a light", *v, &ProfilePicture::LIGHT))?;
+    match Light::has_direction(light) {
+        true => Ok(()),
+        false => Err("the direction of a light has no length".into()),
+    }
+}
+
 impl PartKind {
     fn fits(&self) -> Result<(), String> {
         match self {
@@ -174,28 +223,8 @@ impl PartKind {
                 check_range("the profile", inflation.profile, &Inflation::PROFILE)?;
                 check_range("the rim", inflation.rim_deg, &Inflation::RIM)
             }
-            PartKind::Bevel { bevel, .. } => {
-                check_range("the bevel's width", bevel.width, &Bevel::WIDTH)?;
-                check_range("the bevel's height", bevel.height, &Bevel::HEIGHT)?;
-                let BevelCurve::Points(points) = &bevel.curve else { return Ok(()) };
-                at_most("points of the bevel's curve", points.len(), BevelCurve::MOST_POINTS)?;
-                points.iter().try_for_each(|p| {
-                    check_range("a point of the bevel's curve", p.x, &UNIT)?;
-                    check_range("a point of the bevel's curve", p.y, &UNIT)
-                })
-            }
-            PartKind::Primitive(body) => {
-                place("the middle", body.center)?;
-                let Vec3 { x, y, z } = body.half;
-                [body.radius, body.length, body.tube, x, y, z].iter().try_for_each(|side| {
-                    check_range("a side of the body", *side, &Primitive::LENGTH)
-                })?;
-                check_range("the radius of its edges", body.round, &Primitive::ROUND)?;
-                body.turn_deg
-                    .to_array()
-                    .iter()
-                    .try_for_each(|turn| check_range("its turn", *turn, &Primitive::TURN))
-            }
+            PartKind::Bevel { bevel, .. } => check_bevel(bevel),
+            PartKind::Primitive(body) => check_body(body),
             PartKind::Lathe { axis, puff, .. } => {
                 check_range("the puff", *puff, &Inflation::PUFF)?;
                 axis.iter().flatten().try_for_each(|p| place("the axis", *p))
@@ -210,37 +239,12 @@ impl PartKind {
             }
             PartKind::Touches { touches, .. } => {
                 at_most("touches", touches.len(), Touch::MOST)?;
-                touches.iter().try_for_each(|touch| {
-                    place("a touch", touch.at)?;
-                    check_range("the radius of a touch", touch.radius, &Touch::RADIUS)?;
-                    check_range("the reach of a touch", touch.reach, &Touch::REACH)?;
-                    touch
-                        .normal
-                        .to_array()
-                        .iter()
-                        .try_for_each(|v| check_range("a touch's normal", *v, &(-1.0..=1.0)))
-                })
+                touches.iter().try_for_each(check_touch)
             }
             PartKind::Sculpt { strokes, .. } => {
                 let samples: usize = strokes.iter().map(|stroke| stroke.samples.len()).sum();
                 at_most("samples of sculpting", samples + strokes.len(), SculptStroke::MOST)?;
-                strokes.iter().try_for_each(|stroke| {
-                    check_range("the size of a stroke", stroke.size, &SculptStroke::SIZE)?;
-                    check_range(
-                        "the hardness of a stroke",
-                        stroke.hardness,
-                        &SculptStroke::HARDNESS,
-                    )?;
-                    check_range(
-                        "the strength of a stroke",
-                        stroke.strength,
-                        &SculptStroke::STRENGTH,
-                    )?;
-                    stroke.samples.iter().try_for_each(|(at, pressure)| {
-                        place("a sample", *at)?;
-                        check_range("the pressure of a sample", *pressure, &SculptStroke::PRESSURE)
-                    })
-                })
+                strokes.iter().try_for_each(check_sculpting)
             }
             PartKind::Lines { lines, .. } => {
                 check_range("how far the form turns at lines", lines.angle_deg, &Lines::ANGLE)?;
@@ -253,18 +257,7 @@ impl PartKind {
                         shadings.len()
                     ));
                 }
-                shadings.iter().try_for_each(|shading| {
-                    let light = shading.light;
-                    light
-                        .to_array()
-                        .iter()
-                        .try_for_each(|v| check_range("a light", *v, &ProfilePicture::LIGHT))?;
-                    if Light::has_direction(light) {
-                        Ok(())
-                    } else {
-                        Err("the direction of a light has no length".into())
-                    }
-                })
+                shadings.iter().try_for_each(|shading| check_light(shading.light))
             }
             PartKind::Maps(maps) => maps.source.fits(),
             PartKind::Relief { detail, .. } => {

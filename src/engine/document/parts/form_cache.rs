@@ -1,5 +1,5 @@
 //! What was made of parts, kept for speed: what each of them was made from, where its form lies,
-//! and, as long as the forms of all documents stay below a ceiling, the form itself. Floor 4. Not
+//! and, as long as the forms of all documents stay below a limit, the form itself. Floor 4. Not
 //! here: what is made again (`derive`).
 
 use super::Part;

@@ -127,7 +127,7 @@ pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
     }
     // What is kept for speed goes, and comes again.
     if let Some(held) = session.held_documents() {
-        is_below_ceiling(session, &held)?;
+        is_below_limit(session, &held)?;
         let kept = held.count(0).all.kept;
         let again = session.held_documents().map(|held| held.count(u64::MAX).all.kept);
         if again != Some(kept) {
@@ -140,8 +140,8 @@ pub fn at_end(session: &mut Session, seen: &[Seen], all_formats: bool) -> Kept {
     session.open_documents.iter_mut().try_for_each(|open| steps(open, seen))
 }
 
-/// Beyond what is shown, no more is kept for speed than the ceiling and one more step.
-fn is_below_ceiling(session: &Session, held: &HeldDocuments) -> Kept {
+/// Beyond what is shown, no more is kept for speed than the limit and one more step.
+fn is_below_limit(session: &Session, held: &HeldDocuments) -> Kept {
     let kept = |document: &Document| MemoryUse::of(document).kept;
     let shown: u64 = session.open_documents.iter().map(|open| kept(open.shown_document())).sum();
     // While a change is only shown, the document beneath it is one of them.
@@ -149,11 +149,11 @@ fn is_below_ceiling(session: &Session, held: &HeldDocuments) -> Kept {
         [open.document(), open.saved_document()].into_iter().chain(open.history.others())
     });
     let largest = steps.map(kept).max().unwrap_or_default();
-    let ceiling = held.count(u64::MAX).all.kept / 2;
-    let now = held.count(ceiling).all.kept;
-    match now <= ceiling.max(shown).saturating_add(largest) {
+    let limit = held.count(u64::MAX).all.kept / 2;
+    let now = held.count(limit).all.kept;
+    match now <= limit.max(shown).saturating_add(largest) {
         true => Ok(()),
-        false => Err(Broken::new("memory", format!("{now} bytes are kept, beyond {ceiling}"))),
+        false => Err(Broken::new("memory", format!("{now} bytes are kept, beyond {limit}"))),
     }
 }
 
