@@ -2,13 +2,13 @@
 //! they are asked for, the map values there, memory, and the time of the last redraw. Floor 7.
 
 use crate::canvas::Canvas;
-use crate::document::MemoryUse;
+use crate::document::{Document, MemoryUse};
 use crate::jobs::{JobKind, JobWindow, Jobs, RunningJob};
 use crate::math::Vec2;
 use crate::memory::bytes_text;
 use crate::requests::{UiRequests, WindowRequest};
-use crate::session::Session;
 use crate::session::memory::DocumentMemory;
+use crate::session::{OpenDocument, Session};
 use crate::usage::{KEPT_SHARE, MemoryMeter};
 use crate::widgets::{NumberField, bar, set_accessible_name};
 use eframe::egui::{self, Button, RichText, Ui};
@@ -22,20 +22,7 @@ pub fn show<W: JobWindow>(
     requests: &mut UiRequests,
 ) {
     ui.horizontal(|ui| {
-        let is_shown = |job: &RunningJob| {
-            matches!(job.kind, JobKind::Working | JobKind::Looking) && job.is_long()
-        };
-        for job in jobs.under_way.iter().filter(|job| is_shown(job)) {
-            ui.label(job.title());
-            bar(ui, job.share(), 90.0);
-            if ui.small_button("Cancel").on_hover_text(format!("Cancel: {}", job.name)).clicked() {
-                job.progress.cancel();
-            }
-            ui.separator();
-        }
-        if !jobs.under_way.is_empty() {
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(80));
-        }
+        show_jobs(ui, jobs);
         let Some(open) = session.active() else {
             if !say(ui, jobs) {
                 ui.weak("Open a document, or drop a picture or a normal map on the window");
@@ -43,54 +30,17 @@ pub fn show<W: JobWindow>(
             return;
         };
         let document = open.shown_document();
-        let percent =
-            open.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
-        if ui
-            .add(Button::new(format!("{percent:.0} %")).frame(false))
-            .on_hover_text("Click for actual pixels")
-            .clicked()
-        {
-            requests.request(WindowRequest::Scale(1.0));
-        }
-        ui.weak(document.size.to_string());
-        if open.unwrap_settings().is_some() {
-            ui.label("Unwrapped").on_hover_text(
-                "You are painting on the unwrapped surface; View, Unwrapped shows the picture",
-            );
-        }
-        ui.separator();
-        if let Some(rect) = canvas.selected_rect().filter(|_| document.active_selection.is_some()) {
-            let about = format!(
-                "Selected {} × {} at {}, {}",
-                rect.width(),
-                rect.height(),
-                rect.x0,
-                rect.y0
-            );
-            ui.label(about).on_hover_text("The rectangle around all that is selected");
-            ui.separator();
-        }
+        show_view(ui, open, requests);
+        show_selection(ui, canvas, document);
         if say(ui, jobs) {
             ui.separator();
         }
         // The canvas is drawn later: its state may still belong to the previous document.
         let is_here =
             |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
-        let is_detailed = details.is_some();
-        if let Some(at) = canvas.under.filter(is_here) {
-            let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);
-            ui.label(RichText::new(format!("{x}, {y}")).monospace());
-            if let Some(surface) =
-                document.surface.as_deref().filter(|s| is_detailed && s.coverage(x, y) > 0)
-            {
-                let n = surface.normal(x, y);
-                let about =
-                    format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
-                ui.label(RichText::new(about).monospace())
-                    .on_hover_text("The surface's normal and depth under the pointer");
-            }
-        } else {
-            ui.weak(session.tool.hint());
+        match canvas.under.filter(is_here) {
+            Some(at) => show_point(ui, document, at, details.is_some()),
+            None => _ = ui.weak(session.tool.hint()),
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if let Some(memory) = details {
@@ -101,6 +51,66 @@ pub fn show<W: JobWindow>(
             }
         });
     });
+}
+
+/// What is under way, each with its share and a button that cancels it.
+fn show_jobs<W: JobWindow>(ui: &mut Ui, jobs: &Jobs<W>) {
+    let is_shown =
+        |job: &RunningJob| matches!(job.kind, JobKind::Working | JobKind::Looking) && job.is_long();
+    for job in jobs.under_way.iter().filter(|job| is_shown(job)) {
+        ui.label(job.title());
+        bar(ui, job.share(), 90.0);
+        if ui.small_button("Cancel").on_hover_text(format!("Cancel: {}", job.name)).clicked() {
+            job.progress.cancel();
+        }
+        ui.separator();
+    }
+    if !jobs.under_way.is_empty() {
+        ui.ctx().request_repaint_after(std::time::Duration::from_millis(80));
+    }
+}
+
+/// The zoom, the canvas's size, and whether the planes of the surface are painted on.
+fn show_view(ui: &mut Ui, open: &OpenDocument, requests: &mut UiRequests) {
+    let percent = open.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
+    if ui
+        .add(Button::new(format!("{percent:.0} %")).frame(false))
+        .on_hover_text("Click for actual pixels")
+        .clicked()
+    {
+        requests.request(WindowRequest::Scale(1.0));
+    }
+    ui.weak(open.shown_document().size.to_string());
+    if open.unwrap_settings().is_some() {
+        ui.label("Unwrapped").on_hover_text(
+            "You are painting on the unwrapped surface; View, Unwrapped shows the picture",
+        );
+    }
+    ui.separator();
+}
+
+/// The rectangle around the selection, if there is one.
+fn show_selection(ui: &mut Ui, canvas: &Canvas, document: &Document) {
+    let Some(rect) = canvas.selected_rect().filter(|_| document.active_selection.is_some()) else {
+        return;
+    };
+    let (w, h) = (rect.width(), rect.height());
+    let about = format!("Selected {w} × {h} at {}, {}", rect.x0, rect.y0);
+    ui.label(about).on_hover_text("The rectangle around all that is selected");
+    ui.separator();
+}
+
+/// The point under the pointer, and what the maps hold there if it is asked for.
+fn show_point(ui: &mut Ui, document: &Document, at: Vec2, is_detailed: bool) {
+    let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);
+    ui.label(RichText::new(format!("{x}, {y}")).monospace());
+    let surface = document.surface.as_deref();
+    if let Some(surface) = surface.filter(|s| is_detailed && s.coverage(x, y) > 0) {
+        let n = surface.normal(x, y);
+        let about = format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
+        ui.label(RichText::new(about).monospace())
+            .on_hover_text("The surface's normal and depth under the pointer");
+    }
 }
 
 /// The time of the last redraw, and the memory of the document.

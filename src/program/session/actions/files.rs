@@ -92,49 +92,10 @@ impl FileAction {
             FileAction::ImportBrush { file } => brushes::import(session, file)?,
             FileAction::KeepBrush { name } => brushes::keep(session, name)?,
             FileAction::RemoveBrush { name } => brushes::remove(session, name)?,
-            FileAction::Save { file } => {
-                let Some(open) = session.active() else { return Ok(()) };
-                let document = open.document().clone();
-                let terms = session.saving(file, unless_forced(session));
-                // Nothing here cancels, so it is saved.
-                if let (Some(stamp), Some(open)) = (
-                    storage::save(file, &document, terms, &Progress::default())?,
-                    session.active_mut(),
-                ) {
-                    open.mark_saved(document, file.clone(), stamp);
-                }
-            }
-            FileAction::Export { file, background, quality, bits } => {
-                let Some(open) = session.active() else { return Ok(()) };
-                let (background, quality, bits) = (*background, *quality, *bits);
-                let options =
-                    ExportOptions { background, quality, bits, ..ExportOptions::default() };
-                let terms = Terms::export(unless_forced(session), session.reads());
-                let notes = export(open.document(), file, &options, terms, &Progress::default())?;
-                session.notes.extend(notes);
-            }
-            FileAction::ExportMaps { file, maps, directx, bits } => {
-                let Some(open) = session.active() else { return Ok(()) };
-                let is_exr =
-                    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
-                let options = ShapeOptions { is_directx: *directx, is_16_bit: *bits > 8, is_exr };
-                let terms = Terms::export(unless_forced(session), session.reads());
-                export_maps(open.document(), file, maps, options, &terms)?;
-            }
-            FileAction::ExportUnwrapped { file, scale, bits } => {
-                let Some(open) = session.active() else { return Ok(()) };
-                let settings = session.unwrap_settings();
-                let floats = (*bits > 8).then_some(Highlights::Clipped);
-                let options = UnwrapOptions { scale: *scale, settings, floats };
-                let terms = Terms::export(unless_forced(session), session.reads());
-                unwrapped::export(
-                    &open.drawn_document(),
-                    file,
-                    options,
-                    terms,
-                    &Progress::default(),
-                )?;
-            }
+            FileAction::Save { file } => save_in_front(session, file)?,
+            FileAction::Export { .. }
+            | FileAction::ExportMaps { .. }
+            | FileAction::ExportUnwrapped { .. } => self.export(session)?,
             FileAction::ImportUnwrapped { file } => {
                 let (name, picture) = read_picture(file)?;
                 unwrapped::place(session, &name, picture);
@@ -167,6 +128,49 @@ impl FileAction {
         }
         Ok(())
     }
+
+    /// Writes what an export is of.
+    fn export(&self, session: &mut Session) -> Result<()> {
+        let Some(open) = session.active() else { return Ok(()) };
+        let terms = Terms::export(unless_forced(session), session.reads());
+        match self {
+            FileAction::Export { file, background, quality, bits } => {
+                let (background, quality, bits) = (*background, *quality, *bits);
+                let options =
+                    ExportOptions { background, quality, bits, ..ExportOptions::default() };
+                let notes = export(open.document(), file, &options, terms, &Progress::default())?;
+                session.notes.extend(notes);
+            }
+            FileAction::ExportMaps { file, maps, directx, bits } => {
+                let is_exr =
+                    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+                let options = ShapeOptions { is_directx: *directx, is_16_bit: *bits > 8, is_exr };
+                export_maps(open.document(), file, maps, options, &terms)?;
+            }
+            FileAction::ExportUnwrapped { file, scale, bits } => {
+                let settings = session.unwrap_settings();
+                let floats = (*bits > 8).then_some(Highlights::Clipped);
+                let options = UnwrapOptions { scale: *scale, settings, floats };
+                let document = open.drawn_document();
+                unwrapped::export(&document, file, options, terms, &Progress::default())?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// Saves the document in front.
+fn save_in_front(session: &mut Session, file: &Path) -> Result<()> {
+    let Some(open) = session.active() else { return Ok(()) };
+    let document = open.document().clone();
+    let terms = session.saving(file, unless_forced(session));
+    // Nothing here cancels, so it is saved.
+    let stamp = storage::save(file, &document, terms, &Progress::default())?;
+    if let (Some(stamp), Some(open)) = (stamp, session.active_mut()) {
+        open.mark_saved(document, file.to_path_buf(), stamp);
+    }
+    Ok(())
 }
 
 /// An empty document.
