@@ -12,7 +12,8 @@ impl Document {
     /// With the parts that are outlined by some layers, or by layers in these, keeping their
     /// outlines as pictures: the shape stays when the layers are merged. `None` if canceled.
     ///
-    /// What an outline has left of the frame or above it is cut off.
+    /// What an outline has left of the frame or above it is cut off. A part with nothing left goes
+    /// on naming its layer.
     pub fn with_outlines_frozen(&self, layers: &[LayerId], progress: &Progress) -> Option<Self> {
         let follows = |part: &Part| match part.outline() {
             Some(OutlineSource::Layer { layer, .. }) => {
@@ -50,5 +51,23 @@ fn picture_of(outline: &Outline) -> Option<CoverageFile> {
     let coverage = Plane::from_fn(size, |x, y| {
         outline.coverage().get(x as i32 - rect.x0, y as i32 - rect.y0).unwrap_or(0)
     });
-    Some(CoverageFile { file: String::new(), coverage: Arc::new(coverage) })
+    let is_seen = coverage.values().iter().any(|covered| *covered > 0);
+    is_seen.then(|| CoverageFile { file: String::new(), coverage: Arc::new(coverage) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_of_an_outline_begins_at_the_frame_and_is_never_empty() {
+        let covered = Plane::from_fn(Size::new(6, 4), |_, _| 255);
+        let size_at = |x: i32, y: i32| {
+            let outline = Outline::new((x, y), &covered).expect("it covers something");
+            picture_of(&outline).map(|picture| picture.coverage.size())
+        };
+        assert_eq!(size_at(-2, 3), Some(Size::new(4, 7)));
+        assert_eq!(size_at(-6, 3), None);
+        assert_eq!(size_at(2, -9), None);
+    }
 }

@@ -31,9 +31,7 @@ impl Cells {
         let inside = at.col >= 0 && at.row >= 0 && at.col < self.cols;
         inside.then(|| self.cells.get((at.row * self.cols + at.col) as usize)).flatten()
     }
-}
 
-impl Cells {
     fn count(&self, count: &mut MemoryCount) {
         for tile in self.cells.iter().filter_map(|cell| cell.get()?.as_ref()) {
             if count.is_new(tile) {
