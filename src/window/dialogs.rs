@@ -1,11 +1,9 @@
 //! Dialogs: one at a time, over the window. Each is a struct that holds the input and a function
 //! that shows it. Floor 7.
 
-pub mod adjust;
 pub mod canvas;
 pub mod edge;
 pub mod export;
-pub mod filter;
 pub mod grid;
 pub mod help;
 pub mod import;
@@ -14,6 +12,7 @@ pub mod losses;
 pub mod maps;
 pub mod materials;
 pub mod new;
+pub mod paint_change;
 pub mod palette;
 pub mod path;
 pub mod preferences;
@@ -41,8 +40,7 @@ use std::path::PathBuf;
 /// The dialog that is open.
 pub enum Dialog {
     New(new::NewDialog),
-    Adjust(Box<adjust::AdjustDialog>),
-    Filter(Box<filter::FilterDialog>),
+    PaintChange(Box<paint_change::PaintChangeDialog>),
     Edge(edge::EdgeDialog),
     Keep(edge::KeepDialog),
     Grid,
@@ -116,7 +114,7 @@ impl Dialog {
     /// Shows the dialog; escape and a click outside close it.
     pub fn show(&mut self, ctx: &egui::Context, mut context: DialogContext) -> DialogAnswer {
         let mut modal = Modal::new(Id::unique("dialog"));
-        if let Dialog::Adjust(_) | Dialog::Filter(_) | Dialog::Materials(_) = self {
+        if let Dialog::PaintChange(_) | Dialog::Materials(_) = self {
             // Beside the picture, which shows what it does.
             let beside = Modal::default_area(Id::unique("dialog"))
                 .anchor(egui::Align2::RIGHT_TOP, egui::vec2(-24.0, 72.0));
@@ -141,11 +139,10 @@ impl Dialog {
             modal.inner
         };
         match (&*self, &answer) {
-            (Dialog::Adjust(adjust), DialogAnswer::Close) => adjust.forget(context.requests),
+            (Dialog::PaintChange(change), DialogAnswer::Close) => change.forget(context.requests),
             (Dialog::Materials(materials), DialogAnswer::Close) => {
                 materials.forget(context.requests)
             }
-            (Dialog::Filter(filter), DialogAnswer::Close) => filter.forget(context.requests),
             _ => {}
         }
         answer
@@ -160,8 +157,7 @@ impl Dialog {
         let DialogContext { session, settings, preview, requests, .. } = context;
         match self {
             Dialog::New(new) => new.show(ui, requests),
-            Dialog::Adjust(adjust) => adjust.show(ui, requests),
-            Dialog::Filter(filter) => filter.show(ui, requests),
+            Dialog::PaintChange(change) => change.show(ui, requests),
             Dialog::Edge(edge) => edge.show(ui, requests),
             Dialog::Keep(keep) => {
                 let kept = session.active().map_or(&[][..], |open| &open.document().selections);

@@ -26,6 +26,13 @@ impl UiRequests {
     }
 }
 
+/// What a dialog does to the paint of the selected layers.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PaintChange {
+    Adjust(ColorAdjustment),
+    Filter(PictureFilter),
+}
+
 /// What needs the window: dialogs, other threads, the clipboard.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WindowRequest {
@@ -67,8 +74,7 @@ pub enum WindowRequest {
     Close(usize),
     Quit,
     /// For the paint of the selected layers.
-    AdjustDialog(Box<ColorAdjustment>),
-    FilterDialog(Box<PictureFilter>),
+    PaintChangeDialog(Box<PaintChange>),
     EdgeDialog(EdgeChange),
     KeepDialog,
     GridDialog,

@@ -34,54 +34,11 @@ pub use rows::LiveAdjustment;
 pub use table::ColorTable;
 pub use tones::{BrightnessContrast, Curves, Exposure, Invert, Levels, LevelsRange, Posterize};
 
-use crate::math::named::current_name;
-use parameters::{Holder, Parameters};
+use parameters::{Holder, Parameters, parameter_kinds};
 
-/// Declares the enum of adjustments with the table of their names.
-macro_rules! adjustments {
-    ($($(#[$meta:meta])* $kind:ident = $name:literal => ($label:literal, $hint:literal),)+) => {
-        /// An adjustment with its parameters.
-        #[derive(Clone, Debug, PartialEq)]
-        pub enum ColorAdjustment {
-            $(
-                #[doc = concat!($hint, ".")]
-                $(#[$meta])*
-                $kind($kind),
-            )+
-        }
-
-        impl ColorAdjustment {
-            /// How many kinds there are.
-            pub const COUNT: usize = [$($name),+].len();
-
-            /// One of each kind as it begins, in the order in which they are offered.
-            pub fn all() -> [Self; Self::COUNT] {
-                [$(Self::$kind($kind::default())),+]
-            }
-
-            /// Its name in documents.
-            pub fn name(&self) -> &'static str {
-                match self { $(Self::$kind(_) => $name),+ }
-            }
-
-            /// Its name in the window.
-            pub fn label(&self) -> &'static str {
-                match self { $(Self::$kind(_) => $label),+ }
-            }
-
-            /// What it does, for tooltips.
-            pub fn hint(&self) -> &'static str {
-                match self { $(Self::$kind(_) => $hint),+ }
-            }
-
-            fn parameters(&mut self) -> &mut dyn Parameters {
-                match self { $(Self::$kind(own) => own),+ }
-            }
-        }
-    };
-}
-
-adjustments! {
+parameter_kinds! {
+    /// An adjustment with its parameters.
+    pub enum ColorAdjustment;
     BrightnessContrast = "brightness-contrast"
         => ("Brightness/contrast", "Brighter or darker, with more or less contrast"),
     Levels = "levels" => ("Levels", "What becomes black and what white, and the mid-tones between"),
@@ -105,26 +62,9 @@ adjustments! {
 }
 
 impl ColorAdjustment {
-    /// As it begins, by its name in documents.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let name = current_name(name);
-        Self::all().into_iter().find(|adjustment| adjustment.name() == name)
-    }
-
     /// Whether Photoshop's format has a word for it: of a table it wants a profile too.
     pub fn is_said_by_photoshop(&self) -> bool {
         !matches!(self, Self::ColorLookup(_))
-    }
-
-    /// Shows its parameters to a visitor, which may change them.
-    pub fn visit(&mut self, visitor: &mut dyn ParameterVisitor) {
-        self.parameters().visit(visitor);
-    }
-
-    /// With the nearest numbers that a document may hold.
-    pub fn clamp_to_ranges(mut self) -> Self {
-        self.visit(&mut Holder);
-        self
     }
 
     /// A straight encoded color, adjusted: what each kind says, without tables. Each channel in

@@ -35,60 +35,14 @@ pub use surface::{FlowBlur, SurfaceBlur};
 pub use window::{FilterSource, FilterWindow};
 
 use crate::math::Rect;
-use crate::math::named::current_name;
 use crate::paint::adjustment::ParameterVisitor;
-use crate::paint::adjustment::parameters::{Holder, LengthScaler, Parameters};
+use crate::paint::adjustment::parameters::{Holder, LengthScaler, Parameters, parameter_kinds};
 use crate::surface::Scene;
 use std::sync::Arc;
 
-/// Declares the enum of filters with the table of their names.
-macro_rules! filters {
-    ($($kind:ident = $name:literal => ($label:literal, $hint:literal),)+) => {
-        /// A filter with its parameters.
-        #[derive(Clone, Debug, PartialEq)]
-        pub enum PictureFilter {
-            $(
-                #[doc = concat!($hint, ".")]
-                $kind($kind),
-            )+
-        }
-
-        impl PictureFilter {
-            /// How many kinds there are.
-            pub const COUNT: usize = [$($name),+].len();
-
-            /// One of each kind as it begins, in the order in which they are offered.
-            pub fn all() -> [Self; Self::COUNT] {
-                [$(Self::$kind($kind::default())),+]
-            }
-
-            /// Its name in documents.
-            pub fn name(&self) -> &'static str {
-                match self { $(Self::$kind(_) => $name),+ }
-            }
-
-            /// Its name in the window.
-            pub fn label(&self) -> &'static str {
-                match self { $(Self::$kind(_) => $label),+ }
-            }
-
-            /// What it does, for tooltips.
-            pub fn hint(&self) -> &'static str {
-                match self { $(Self::$kind(_) => $hint),+ }
-            }
-
-            fn parameters(&mut self) -> &mut dyn Parameters {
-                match self { $(Self::$kind(own) => own),+ }
-            }
-
-            fn kernel(&self) -> &dyn FilterKernel {
-                match self { $(Self::$kind(own) => own),+ }
-            }
-        }
-    };
-}
-
-filters! {
+parameter_kinds! {
+    /// A filter with its parameters.
+    pub enum PictureFilter, fn kernel -> FilterKernel;
     GaussianBlur = "gaussian-blur" => ("Gaussian blur", "Soft everywhere alike"),
     BoxBlur = "box-blur" => ("Box blur", "The mean of a square"),
     MotionBlur = "motion-blur" => ("Motion blur", "As if the camera had moved along a line"),
@@ -111,25 +65,6 @@ filters! {
     EdgeFilter = "edges" => ("Edges", "Light lines where colors differ, or dark ones"),
     WrappedOffset = "offset"
         => ("Offset", "Shifted; what leaves on one side enters on the other"),
-}
-
-impl PictureFilter {
-    /// As it begins, by its name in documents.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let name = current_name(name);
-        Self::all().into_iter().find(|filter| filter.name() == name)
-    }
-
-    /// Shows its parameters to a visitor, which may change them.
-    pub fn visit(&mut self, visitor: &mut dyn ParameterVisitor) {
-        self.parameters().visit(visitor);
-    }
-
-    /// With the nearest numbers that a document may hold.
-    pub fn clamp_to_ranges(mut self) -> Self {
-        self.visit(&mut Holder);
-        self
-    }
 }
 
 /// What a filter does to pixels.

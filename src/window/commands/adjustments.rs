@@ -1,9 +1,8 @@
 //! Adjustments: new layers, and the same done to paint. Floor 7.
 
-use super::row::{MenuCommand, ctrl, has_document, row};
-use crate::document::Content;
+use super::row::{MenuCommand, ctrl, has_document, has_paint, row};
 use crate::paint::ColorAdjustment;
-use crate::requests::{UiRequests, WindowRequest};
+use crate::requests::{PaintChange, UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, Session};
 use eframe::egui::{Key, KeyboardShortcut};
@@ -22,13 +21,12 @@ fn adjust(session: &Session, requests: &mut UiRequests, name: &str) {
             let act = LayerAction::Adjust { layer, adjustment, done: true };
             requests.act(Action::Layer(act));
         }
-        Some(adjustment) => requests.request(WindowRequest::AdjustDialog(Box::new(adjustment))),
+        Some(adjustment) => {
+            let change = PaintChange::Adjust(adjustment);
+            requests.request(WindowRequest::PaintChangeDialog(Box::new(change)));
+        }
         None => {}
     }
-}
-
-fn has_paint(session: &Session) -> bool {
-    session.layer().is_some_and(|layer| matches!(layer.content, Content::Pixels(_)))
 }
 
 const NO_KEYS: &[KeyboardShortcut] = &[];

@@ -1,11 +1,10 @@
 //! Filters: new layers, and the same done to paint. Floor 7.
 
-use super::row::{MenuCommand, has_document, row};
-use crate::document::Content;
+use super::row::{MenuCommand, has_document, has_paint, row};
 use crate::paint::PictureFilter;
-use crate::requests::{UiRequests, WindowRequest};
+use crate::requests::{PaintChange, UiRequests, WindowRequest};
+use crate::session::Action;
 use crate::session::actions::LayerAction;
-use crate::session::{Action, Session};
 
 fn add(requests: &mut UiRequests, name: &str) {
     let filter = PictureFilter::from_name(name);
@@ -15,12 +14,8 @@ fn add(requests: &mut UiRequests, name: &str) {
 
 fn filter(requests: &mut UiRequests, name: &str) {
     if let Some(filter) = PictureFilter::from_name(name) {
-        requests.request(WindowRequest::FilterDialog(Box::new(filter)));
+        requests.request(WindowRequest::PaintChangeDialog(Box::new(PaintChange::Filter(filter))));
     }
-}
-
-fn has_paint(session: &Session) -> bool {
-    session.layer().is_some_and(|layer| matches!(layer.content, Content::Pixels(_)))
 }
 
 /// Declares both menus: the name in documents, of the layer's command, of the command on paint, and

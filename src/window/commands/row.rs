@@ -1,6 +1,7 @@
 //! One row of the menus: a command with its keys, and the short functions that rows are written
 //! with. Floor 7.
 
+use crate::document::Content;
 use crate::panel_layout::PanelLayout;
 use crate::requests::UiRequests;
 use crate::session::Session;
@@ -105,4 +106,9 @@ pub fn has_surface(session: &Session) -> bool {
 
 pub fn has_layer(session: &Session) -> bool {
     session.layer().is_some()
+}
+
+/// Whether the primary layer is painted on.
+pub fn has_paint(session: &Session) -> bool {
+    session.layer().is_some_and(|layer| matches!(layer.content, Content::Pixels(_)))
 }

@@ -189,8 +189,10 @@ impl MainWindow {
             Err(error) => return self.messages.push(with_advice(&error)),
         };
         let to = ColorAdjustment::ColorLookup(ColorLookup { table: Some(table) });
-        if let Some(Dialog::Adjust(adjust)) = self.dialogs.last_mut() {
-            return adjust.take_table(to);
+        if let Some(Dialog::PaintChange(change)) = self.dialogs.last_mut()
+            && change.can_take_table()
+        {
+            return change.take_table(to);
         }
         let layer = self.session.layer_paths();
         let to = Property::Adjustment { to };

@@ -3,7 +3,7 @@
 
 use super::MainWindow;
 use crate::dialogs::{
-    Dialog, adjust, canvas, edge, filter, import, looks, materials, new, palette, preferences,
+    Dialog, canvas, edge, import, looks, materials, new, paint_change, palette, preferences,
 };
 use crate::file_purpose::FilePurpose;
 use crate::panel_layout::PanelSide;
@@ -55,13 +55,9 @@ impl MainWindow {
                 let size = self.session.active().map(|open| open.document().size);
                 self.dialogs.extend(size.map(|size| canvas::dialog_for(&ask, size)));
             }
-            WindowRequest::AdjustDialog(adjustment) => {
-                let dialog = adjust::AdjustDialog::new(*adjustment, &self.session);
-                self.dialogs.push(Dialog::Adjust(Box::new(dialog)));
-            }
-            WindowRequest::FilterDialog(filter) => {
-                let dialog = filter::FilterDialog::new(*filter, &self.session);
-                self.dialogs.push(Dialog::Filter(Box::new(dialog)));
+            WindowRequest::PaintChangeDialog(change) => {
+                let dialog = paint_change::PaintChangeDialog::new(*change, &self.session);
+                self.dialogs.push(Dialog::PaintChange(Box::new(dialog)));
             }
             WindowRequest::EdgeDialog(change) => {
                 self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change)))

@@ -1,5 +1,5 @@
-//! What adjustments are set by: each visits its parameters with their names, ranges and defaults,
-//! so that readers, writers, panels, checks and stories need no list of their own. Floor 3.
+//! What adjustments and filters are set by: each visits its parameters with their names, ranges and
+//! defaults, so that readers, writers, panels, checks and stories need no list of their own. Floor 3.
 
 use super::curve::ToneCurve;
 use super::table::ColorTable;
@@ -104,6 +104,84 @@ pub(in crate::paint) trait Parameters {
     /// Shows its parameters to a visitor, which may change them.
     fn visit(&mut self, visitor: &mut dyn ParameterVisitor);
 }
+
+/// Declares an enum of kinds that have parameters, with the table of their names: the variant and
+/// its type, its name in documents, its name in the window and what it does.
+macro_rules! parameter_kinds {
+    (
+        $(#[$meta:meta])* pub enum $Kinds:ident;
+        $($kind:ident = $name:literal => ($label:literal, $hint:literal),)+
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum $Kinds {
+            $(
+                #[doc = concat!($hint, ".")]
+                $kind($kind),
+            )+
+        }
+
+        impl $Kinds {
+            /// How many kinds there are.
+            pub const COUNT: usize = [$($name),+].len();
+
+            /// One of each kind as it begins, in the order in which they are offered.
+            pub fn all() -> [Self; Self::COUNT] {
+                [$(Self::$kind($kind::default())),+]
+            }
+
+            /// As it begins, by its name in documents.
+            pub fn from_name(name: &str) -> Option<Self> {
+                let name = $crate::math::named::current_name(name);
+                Self::all().into_iter().find(|kind| kind.name() == name)
+            }
+
+            /// Its name in documents.
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $name),+ }
+            }
+
+            /// Its name in the window.
+            pub fn label(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $label),+ }
+            }
+
+            /// What it does, for tooltips.
+            pub fn hint(&self) -> &'static str {
+                match self { $(Self::$kind(_) => $hint),+ }
+            }
+
+            /// Shows its parameters to a visitor, which may change them.
+            pub fn visit(&mut self, visitor: &mut dyn ParameterVisitor) {
+                let parameters: &mut dyn Parameters = match self { $(Self::$kind(own) => own),+ };
+                parameters.visit(visitor);
+            }
+
+            /// With the nearest numbers that a document may hold.
+            pub fn clamp_to_ranges(mut self) -> Self {
+                self.visit(&mut Holder);
+                self
+            }
+        }
+    };
+    // The same; an accessor returns the kind's own value by a trait.
+    (
+        $(#[$meta:meta])* pub enum $Kinds:ident, fn $accessor:ident -> $Trait:ident;
+        $($kind:ident = $name:literal => ($label:literal, $hint:literal),)+
+    ) => {
+        parameter_kinds! {
+            $(#[$meta])* pub enum $Kinds;
+            $($kind = $name => ($label, $hint),)+
+        }
+
+        impl $Kinds {
+            fn $accessor(&self) -> &dyn $Trait {
+                match self { $(Self::$kind(own) => own),+ }
+            }
+        }
+    };
+}
+pub(in crate::paint) use parameter_kinds;
 
 /// Brings every number into its range.
 pub(in crate::paint) struct Holder;
