@@ -223,6 +223,7 @@ fn painted(surface: &Arc<Surface>) -> Document {
         operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     let contents = [

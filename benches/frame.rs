@@ -80,6 +80,7 @@ fn ramp(to: Vec2) -> Content {
         operator: D_N,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     }))
 }

@@ -48,6 +48,7 @@ use crate::paint::{Brush, Fill, LiquifySettings};
 use crate::surface::Operator;
 use crop::CropSettings;
 use gizmo::GizmoMemory;
+use gradient::GradientSettings;
 use purpose::StrokePurpose;
 use snap::{SnapTargets, ViewAids};
 use symmetry::SymmetrySettings;
@@ -122,8 +123,8 @@ pub struct ToolSettings {
     pub second_color: Color,
     /// How new marks follow the surface.
     pub operator: Operator,
-    /// Whether new gradients are live layers, and not painted into the selected paint layer.
-    pub live_gradients: bool,
+    /// The gradient tool.
+    pub gradient: GradientSettings,
     /// Whether a stroke that begins on a part of the shape may go on to others.
     pub crosses_parts: bool,
     /// How strokes repeat.
@@ -158,7 +159,7 @@ impl ToolSettings {
         Self {
             brush,
             presses_by_speed: false,
-            live_gradients: false,
+            gradient: GradientSettings::default(),
             color: Color::BLACK,
             second_color: Color::WHITE,
             operator: Operator::None,

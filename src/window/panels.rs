@@ -14,6 +14,7 @@ pub mod curve;
 pub mod effects;
 pub mod fill;
 mod form_drawing;
+pub mod gradient;
 pub mod history;
 pub mod layers;
 mod liquify;

@@ -96,6 +96,7 @@ fn gradient(name: &str, (from, to): (Vec2, Vec2), stops: &Stops, operator: Opera
         operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     Layer::new(name, Content::Gradient(Live::new(gradient)))

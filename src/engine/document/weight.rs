@@ -134,6 +134,7 @@ mod tests {
             operator: Operator::None,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            style: Default::default(),
             pieces: Vec::new(),
         };
         let gradient = || Content::Gradient(Live::new(of_no_stops.clone()));

@@ -15,7 +15,7 @@ pub use color::{EffectPaint, EffectPattern};
 pub use matte::EffectTile;
 pub use settings::{
     BevelStyle, BevelTechnique, ChoiceField, ColorField, EffectField, EffectFill, EffectSettings,
-    FlagField, GlowSource, GlowTechnique, RampStyle, StrokePosition,
+    FlagField, GlowSource, GlowTechnique, StrokePosition,
 };
 
 use crate::math::range::clamp_to_range;

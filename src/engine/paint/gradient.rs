@@ -4,22 +4,25 @@
 use super::image::{BentFrame, transform};
 pub use super::ramp::GradientStop;
 use super::ramp::Ramp;
+use super::ramp_style::RampStyle;
 use super::scene::{ImageFilter, Scene};
-use crate::math::{Affine2, PlaneMap, Rect, Vec2, srgb::Color};
+use crate::math::{Affine2, PlaneMap, Rect, Vec2, srgb::Color, vec2};
 use crate::raster::tile::{TILE, transparent_f32};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, Bend, Operator, Weights, links};
 
-/// ramp(t(D(q))), t the projection on the segment [from, to], clamped. Its two ends are its
-/// anchors.
+/// ramp(t(D(q))), t the position on the segment [from, to] in one of several styles, clamped; on a
+/// straight ramp the projection. Its two ends are its anchors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
     /// Where the ramp begins, px of its frame.
     pub from: Vec2,
     /// Where it ends.
     pub to: Vec2,
+    /// How it runs from there to there: straight, around, outward.
+    pub style: RampStyle,
     /// At least one. Between two stops straight-alpha encoded values are interpolated linearly.
     pub stops: Vec<GradientStop>,
     /// How it is bent over the surface.
@@ -46,6 +49,7 @@ impl Gradient {
         Self {
             from,
             to,
+            style: RampStyle::default(),
             stops: colors.iter().enumerate().map(stop).collect(),
             operator: Operator::None,
             filter: ImageFilter::default(),
@@ -92,7 +96,11 @@ impl Gradient {
                 let color = match self.filter {
                     ImageFilter::Bilinear => ramp.at(field.at(x, y)),
                     ImageFilter::Antialias => {
-                        ramp.mean(field.at(x, y), field.footprint(x, y, scene))
+                        let (t, width) = (field.at(x, y), field.footprint(x, y, scene));
+                        match self.style.is_closed() {
+                            true => ramp.closed_mean(t, width),
+                            false => ramp.mean(t, width),
+                        }
                     }
                 };
                 pixels[row + (x - area.x0) as usize] = color;
@@ -102,12 +110,16 @@ impl Gradient {
     }
 }
 
-/// t(D(q)), before it is clamped, at every pixel center of a rectangle.
+/// Where every pixel center of a rectangle is on the ramp, before it is clamped.
 struct RampPositions {
+    style: RampStyle,
     rect: Rect,
-    t: Vec<f32>,
-    /// ∇t on a flat canvas.
-    flat: Vec2,
+    /// D(q) along the segment, in its lengths, from its beginning on.
+    along: Vec<f32>,
+    /// The same across it; empty where it does not matter.
+    across: Vec<f32>,
+    /// ∇ of both on a flat canvas.
+    flat: [Vec2; 2],
 }
 
 impl RampPositions {
@@ -124,25 +136,43 @@ impl RampPositions {
         let (from, along) = (gradient.from, gradient.to - gradient.from);
         let squared = along.length_squared();
         if squared > 0.0 {
-            let flat = along / squared;
-            let t =
-                d.x.iter()
-                    .zip(&d.y)
-                    .map(|(&x, &y)| (x - from.x) * flat.x + (y - from.y) * flat.y)
-                    .collect();
-            Self { rect, t, flat: frame.linear.matrix2.transpose() * flat }
+            let to_position = |axis: Vec2| -> Vec<f32> {
+                let along = |(&x, &y)| (x - from.x) * axis.x + (y - from.y) * axis.y;
+                d.x.iter().zip(&d.y).map(along).collect()
+            };
+            let axes = [along, along.perp()].map(|axis| axis / squared);
+            let is_straight = matches!(gradient.style, RampStyle::Linear | RampStyle::Reflected);
+            Self {
+                style: gradient.style,
+                rect,
+                along: to_position(axes[0]),
+                across: if is_straight { Vec::new() } else { to_position(axes[1]) },
+                flat: axes.map(|axis| frame.linear.matrix2.transpose() * axis),
+            }
         } else {
             // A segment of length 0: the whole canvas lies beyond its end.
-            Self { rect, t: vec![1.0; d.x.len()], flat: Vec2::ZERO }
+            let style = RampStyle::Linear;
+            let (along, across) = (vec![1.0; d.x.len()], Vec::new());
+            Self { style, rect, along, across, flat: [Vec2::ZERO; 2] }
         }
     }
 
-    fn at(&self, x: i32, y: i32) -> f32 {
-        self.t[(y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize]
+    fn index(&self, x: i32, y: i32) -> usize {
+        (y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize
     }
 
-    /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the pixel's square in every
-    /// direction.
+    /// Along and across.
+    fn point(&self, x: i32, y: i32) -> Vec2 {
+        let i = self.index(x, y);
+        vec2(self.along[i], self.across.get(i).copied().unwrap_or(0.0))
+    }
+
+    fn at(&self, x: i32, y: i32) -> f32 {
+        self.style.position(self.point(x, y))
+    }
+
+    /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the
+    /// pixel's square in every direction.
     ///
     /// Differences are taken only between neighbors of one surface; a pixel without neighbors
     /// counts as unbent.
@@ -151,28 +181,30 @@ impl RampPositions {
             .surface
             .as_deref()
             .map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
-        let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: f32| {
+        let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: Vec2| {
             let back = if linked & before != 0 { 1 } else { 0 };
             let ahead = if linked & after != 0 { 1 } else { 0 };
             match back + ahead {
                 0 => flat,
                 n => {
-                    (self.at(x + ahead * dx, y + ahead * dy)
-                        - self.at(x - back * dx, y - back * dy))
+                    (self.point(x + ahead * dx, y + ahead * dy)
+                        - self.point(x - back * dx, y - back * dy))
                         / n as f32
                 }
             }
         };
-        let dx = slope(links::LEFT, links::RIGHT, 1, 0, self.flat.x);
-        let dy = slope(links::UP, links::DOWN, 0, 1, self.flat.y);
-        dx.hypot(dy)
+        let [along, across] = self.flat;
+        let dx = slope(links::LEFT, links::RIGHT, 1, 0, vec2(along.x, across.x));
+        let dy = slope(links::UP, links::DOWN, 0, 1, vec2(along.y, across.y));
+        let steepest = self.style.slope(self.point(x, y));
+        dx.dot(steepest).hypot(dy.dot(steepest))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, vec2};
+    use crate::math::Size;
 
     fn black_to_white(from: Vec2, to: Vec2) -> Gradient {
         Gradient::new(from, to, &[Color::BLACK, Color::WHITE])
@@ -206,6 +238,30 @@ mod tests {
         let sharp = black_to_white(vec2(50.5, 0.0), vec2(51.0, 0.0));
         assert_eq!(pixel(&sharp, 50, 10)[0], 64);
         assert_eq!(pixel(&Gradient { filter: ImageFilter::Bilinear, ..sharp }, 50, 10)[0], 0);
+    }
+
+    #[test]
+    fn ramps_run_outward_around_and_both_ways() {
+        let line = black_to_white(vec2(50.0, 50.0), vec2(90.0, 50.0));
+        let styled = |style| Gradient { style, ..line.clone() };
+        let gray = |style, x, y| pixel(&styled(style), x, y)[0];
+        // Pixel centers are 0.5 from the middle's corner.
+        assert_eq!(gray(RampStyle::Radial, 50, 70), 131);
+        assert_eq!(gray(RampStyle::Radial, 50, 29), 131);
+        assert_eq!(gray(RampStyle::Reflected, 29, 3), 131);
+        assert_eq!(gray(RampStyle::Diamond, 60, 60), 134);
+        assert_eq!(gray(RampStyle::Angle, 50, 20), 63);
+        assert_eq!(gray(RampStyle::Angle, 10, 49), 127);
+    }
+
+    #[test]
+    fn a_closed_ramp_has_a_sharp_seam_and_its_mean_in_the_middle() {
+        let style = RampStyle::Angle;
+        let around = Gradient { style, ..black_to_white(vec2(50.0, 50.5), vec2(90.0, 50.5)) };
+        // The seam runs through the middle of this row: half of both ends.
+        assert!(pixel(&around, 80, 50)[0].abs_diff(127) <= 2);
+        assert!(pixel(&around, 80, 49)[0] < 6 && pixel(&around, 80, 51)[0] > 249);
+        assert!(pixel(&around, 49, 50)[0].abs_diff(127) < 20, "around the middle");
     }
 
     #[test]

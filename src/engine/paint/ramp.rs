@@ -119,6 +119,24 @@ impl Ramp {
         std::array::from_fn(|i| ((high[i] - low[i]) / width) as f32)
     }
 
+    /// The same of a ramp whose end meets its beginning, positions beyond `[0, 1]` wrapped.
+    pub fn closed_mean(&self, t: f32, width: f32) -> [f32; 4] {
+        if width.is_nan() || width < 1e-4 {
+            return self.at(t);
+        }
+        let half = width.min(1e3) / 2.0;
+        let t = t.max(-1e3).min(1e3);
+        let (begin, end) = (self.integral(0.0), self.integral(1.0));
+        let integral = |t: f32| {
+            let turns = t.floor();
+            let inside = self.integral(t - turns);
+            std::array::from_fn::<f64, 4, _>(|i| f64::from(turns) * (end[i] - begin[i]) + inside[i])
+        };
+        let (low, high) = (integral(t - half), integral(t + half));
+        let width = f64::from(t + half) - f64::from(t - half);
+        std::array::from_fn(|i| ((high[i] - low[i]) / width) as f32)
+    }
+
     /// ∫ of the premultiplied color from some fixed position to `t`; linear beyond `[0, 1]`.
     fn integral(&self, t: f32) -> [f64; 4] {
         let inside = t.max(0.0).min(1.0);
@@ -185,6 +203,22 @@ mod tests {
                 (0..4).for_each(|c| sum[c] += f64::from(at[c]) / f64::from(n));
             }
             assert_near(ramp.mean(t, width), sum.map(|v| v as f32), 2e-4);
+        }
+    }
+
+    #[test]
+    fn the_closed_mean_goes_on_at_the_beginning() {
+        let stops = [stop(0.2, "#ff8000ff"), stop(0.7, "#0000ff20"), stop(0.9, "#ffffffff")];
+        let ramp = Ramp::new(&stops).unwrap();
+        for (t, width) in [(0.5, 0.3), (0.02, 0.2), (0.97, 0.5), (0.5, 3.0)] {
+            let n = 20_000;
+            let mut sum = [0.0f64; 4];
+            for i in 0..n {
+                let at = t + width * ((i as f32 + 0.5) / n as f32 - 0.5);
+                let at = ramp.at(at.rem_euclid(1.0));
+                (0..4).for_each(|c| sum[c] += f64::from(at[c]) / f64::from(n));
+            }
+            assert_near(ramp.closed_mean(t, width), sum.map(|v| v as f32), 5e-4);
         }
     }
 

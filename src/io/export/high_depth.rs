@@ -274,6 +274,7 @@ mod tests {
             operator: Operator::None,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            style: Default::default(),
             pieces: Vec::new(),
         };
         let layer = Layer::new("gradient", Content::Gradient(Live::new(gradient)));

@@ -6,9 +6,8 @@ use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use crate::math::srgb::{self, Color};
 use crate::math::{Rect, Size, Vec2, vec2};
-use crate::paint::effect::RampStyle;
+use crate::paint::RampStyle;
 use crate::paint::{Gradient, GradientStop, ImageFilter};
-use crate::surface::Operator;
 
 /// What a fill layer is filled with.
 #[derive(Clone, Debug, PartialEq)]
@@ -238,39 +237,18 @@ fn at<const N: usize>(marks: &[Mark<[f32; N]>], t: f32) -> Option<[f32; N]> {
 }
 
 impl GradientFill {
-    /// As a gradient of this program, on the rectangle that it fills; `None` where it is not
-    /// straight.
-    pub fn live(&self, rect: Rect) -> Option<Gradient> {
-        if self.way != RampStyle::Linear {
-            return None;
-        }
+    /// As a gradient of this program, on the rectangle that it fills.
+    pub fn live(&self, rect: Rect) -> Gradient {
         let (middle, half) = self.line(rect);
-        Some(Gradient {
-            from: middle - half,
-            to: middle + half,
-            stops: self.stops.clone(),
-            operator: Operator::None,
-            filter: ImageFilter::Bilinear,
-            frame: Default::default(),
-            pieces: Vec::new(),
-        })
+        let from = if self.way == RampStyle::Linear { middle - half } else { middle };
+        let line = Gradient::new(from, middle + half, &[]);
+        let stops = self.stops.clone();
+        Gradient { style: self.way, stops, filter: ImageFilter::Bilinear, ..line }
     }
 
     /// Its middle, and from there to its end.
     fn line(&self, rect: Rect) -> (Vec2, Vec2) {
         RampStyle::line(rect, self.degrees, self.scale, self.offset)
-    }
-
-    /// Straight RGBA of the canvas.
-    pub fn pixels(&self, size: Size, rect: Rect) -> Vec<u8> {
-        let line = self.line(rect);
-        let mut out = Vec::with_capacity(size.area() * 4);
-        for y in 0..size.height as usize {
-            for x in 0..size.width as usize {
-                out.extend(self.at(self.way.place(line, vec2(x as f32 + 0.5, y as f32 + 0.5))));
-            }
-        }
-        out
     }
 
     /// The color of a pixel.

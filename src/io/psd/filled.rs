@@ -42,12 +42,7 @@ fn draw_fill(
     match fill {
         LayerFill::Solid(color) => Content::Fill(color),
         LayerFill::Gradient(gradient) => {
-            let rect = filled_rect(record, &gradient, size);
-            if let Some(live) = gradient.live(rect) {
-                return Content::Gradient(Live::new(live));
-            }
-            record.note_conversion("its gradient became pixels");
-            pixels(gradient.pixels(size, rect), size.rect())
+            Content::Gradient(Live::new(gradient.live(filled_rect(record, &gradient, size))))
         }
         LayerFill::Pattern(fill) => {
             match patterns.iter().find_map(|pattern| pattern.pixels(&fill, size)) {
@@ -71,7 +66,7 @@ fn show_fill(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
         LayerFill::Solid(color) if is_plain && is_of(record, |_| Some(color)) => {
             Some(Content::Fill(color))
         }
-        LayerFill::Gradient(gradient) if is_plain => straight(record, &gradient, size),
+        LayerFill::Gradient(gradient) if is_plain => opaque_gradient(record, &gradient, size),
         _ => None,
     };
     let Some(live) = live else {
@@ -92,12 +87,12 @@ fn show_fill(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     live
 }
 
-/// A straight, opaque gradient whose colors the pixels have.
-fn straight(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option<Content> {
+/// An opaque gradient whose colors the pixels have.
+fn opaque_gradient(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option<Content> {
     let rect = filled_rect(record, gradient, size);
-    let live =
-        gradient.live(rect).filter(|live| live.stops.iter().all(|stop| stop.color.a == 255))?;
-    is_of(record, |at| gradient.color_at(rect, at)).then(|| Content::Gradient(Live::new(live)))
+    let is_opaque = gradient.stops.iter().all(|stop| stop.color.a == 255);
+    let is_shown = is_opaque && is_of(record, |at| gradient.color_at(rect, at));
+    is_shown.then(|| Content::Gradient(Live::new(gradient.live(rect))))
 }
 
 /// What a gradient fills: the layer as far as its pixels and mask reach, or the canvas.

@@ -7,7 +7,8 @@ use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::range::STOPS;
 use crate::math::{Size, TURNS, UNIT, Vec2, srgb::Color, vec2};
 use crate::paint::{
-    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, Text,
+    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, RampStyle,
+    Text,
 };
 use crate::raster::Outside;
 use crate::surface::plane_piece::PlanePiece;
@@ -49,6 +50,7 @@ impl LayerReader<'_> {
             operator: operator(fields)?.unwrap_or_default(),
             filter: fields.one_of("filter", &ImageFilter::ALL, ImageFilter::Antialias)?,
             frame: Default::default(),
+            style: fields.one_of("style", &RampStyle::ALL, RampStyle::default())?,
             pieces: pieces(fields)?,
         })
     }
@@ -294,6 +296,7 @@ pub fn write_image(out: &mut JsonObject, image: &PlacedImage, canvas: Size) {
 pub fn write_gradient(out: &mut JsonObject, gradient: &Gradient) {
     out.set("from", object::point(gradient.from));
     out.set("to", object::point(gradient.to));
+    out.word("style", &RampStyle::ALL, gradient.style, RampStyle::default());
     out.set("stops", gradient.stops.iter().map(GradientStop::to_json).collect());
     out.object("operator", write_operator(gradient.operator));
     write_pieces(out, &gradient.pieces);

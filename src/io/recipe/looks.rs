@@ -192,7 +192,8 @@ mod tests {
         let (from, to) = (vec2(0.0, 0.0), vec2(90.0, 70.0));
         let (operator, filter) = (Operator::default(), ImageFilter::Antialias);
         let frame = Default::default();
-        let gradient = Gradient { from, to, stops, operator, filter, frame, pieces: Vec::new() };
+        let bent = Gradient::new(from, to, &[]).with_operator(operator);
+        let gradient = Gradient { stops, filter, frame, ..bent };
         document.with_top(Layer::new("Color", Content::Gradient(Live::new(gradient))))
     }
 

@@ -91,6 +91,7 @@ mod tests {
             operator: Operator::None,
             filter: ImageFilter::Antialias,
             frame: Default::default(),
+            style: Default::default(),
             pieces: Vec::new(),
         }))
     }

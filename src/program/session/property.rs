@@ -15,7 +15,7 @@ use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
     Adjust, Brush, ColorAdjustment, DrawingHand, FormDrawing, FormPattern, Gradient, GradientStop,
     ImageFilter, LayerEffect, LiveAdjustment, LiveFilter, PictureFilter, PlacedImage, Placement,
-    Text,
+    RampStyle, Text,
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
@@ -78,6 +78,8 @@ actions! {
         "text" Worded { text: Text }
         "stops" Stops { stops: Vec<GradientStop> }
         "ends" Ends { from: Vec2, to: Vec2 }
+        /// How a gradient runs from end to end.
+        "ramp" Ramp { style: RampStyle }
         /// A mask derived from the surface, or none.
         "mask" Mask { mask: Option<DerivedMask> }
         "mask inverted" MaskInverted { on: bool }
@@ -156,6 +158,7 @@ impl Property {
             Property::Worded { .. } => "Text",
             Property::Stops { .. } => "Gradient stops",
             Property::Ends { .. } => "Gradient ends",
+            Property::Ramp { .. } => "Gradient style",
             Property::Mask { .. }
             | Property::MaskInverted { .. }
             | Property::MaskDisabled { .. } => "Layer mask",
@@ -308,6 +311,7 @@ impl Property {
             Property::Bend { operator } => next.operator = *operator,
             Property::Stops { stops } if !stops.is_empty() => next.stops.clone_from(stops),
             Property::Ends { from, to } => (next.from, next.to) = (*from, *to),
+            Property::Ramp { style } => next.style = *style,
             Property::Pieces { pieces } => next.pieces.clone_from(pieces),
             Property::Filtered { filter } => next.filter = *filter,
             _ => return None,

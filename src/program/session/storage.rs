@@ -181,6 +181,7 @@ fn clay(size: Size) -> Gradient {
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     }
 }

@@ -82,6 +82,7 @@ fn clay(background: Color, size: Size) -> Gradient {
         operator: Operator::Normal { alpha: 0.35, beta: 0.5, detail: 0.0 },
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     }
 }

@@ -6,12 +6,39 @@ mod painted;
 use super::snap::{SnapLines, SnapTargets};
 use super::{BrushTarget, GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
 use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live};
-use crate::math::Vec2;
-use crate::paint::{Gradient, GradientStop, ImageFilter};
+use crate::math::{Vec2, srgb::Color};
+use crate::paint::{Gradient, RampColors, RampStyle};
 use painted::PaintedGradient;
 
 /// A shorter drag leaves no gradient, px.
 const SHORTEST_PX: f32 = 2.0;
+
+/// What new gradients are like.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GradientSettings {
+    /// They are live layers, and not painted into the selected paint layer.
+    pub live: bool,
+    /// How they run from where the pen comes down to where it is lifted.
+    pub style: RampStyle,
+    /// Their colors.
+    pub colors: RampColors,
+    /// Whether they run the other way.
+    pub reverse: bool,
+}
+
+impl GradientSettings {
+    /// A gradient from one point to another, px of the canvas.
+    ///
+    /// * `first`, `second`: the user's colors, of which some ramps are made.
+    pub fn gradient(self, from: Vec2, to: Vec2, [first, second]: [Color; 2]) -> Gradient {
+        let mut stops = self.colors.stops(first, second);
+        if self.reverse {
+            stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
+            stops.reverse();
+        }
+        Gradient { style: self.style, stops, ..Gradient::new(from, to, &[]) }
+    }
+}
 
 /// Which end of a gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,24 +68,14 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             return drag_end(context, layer.id, gradient, end);
         }
     }
-    let stops = vec![
-        GradientStop { t: 0.0, color: context.tools.color },
-        GradientStop { t: 1.0, color: context.tools.second_color },
-    ];
     let from = context.snap.point(at).at;
-    let gradient = Gradient {
-        from,
-        to: from,
-        stops,
-        operator: context.tools.operator,
-        filter: ImageFilter::Antialias,
-        frame: Default::default(),
-        pieces: Vec::new(),
-    };
+    let tools = context.tools;
+    let gradient = tools.gradient.gradient(from, from, [tools.color, tools.second_color]);
+    let gradient = gradient.with_operator(tools.operator);
     let place = selected.and_then(|layer| context.document.place_of(layer.id));
     let (document, snap, lines) =
         (context.document.clone(), context.snap.clone(), SnapLines::default());
-    let is_painted = !context.tools.live_gradients && context.target == BrushTarget::Layer;
+    let is_painted = !tools.gradient.live && context.target == BrushTarget::Layer;
     let paint = selected.filter(|layer| matches!(layer.content, Content::Pixels(_)) && is_painted);
     if let Some(layer) = paint {
         if let Some(why) = closed::unpaintable(context.document, layer) {

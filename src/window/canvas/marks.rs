@@ -6,7 +6,7 @@ mod pieces;
 
 use crate::document::Content;
 use crate::math::{Affine2, Vec2};
-use crate::paint::{BrushMode, Scene, Stroke as PaintStroke};
+use crate::paint::{BrushMode, RampStyle, Scene, Stroke as PaintStroke};
 use crate::session::Session;
 use crate::surface::unwrap::PlaneLayout;
 use crate::theme::color32;
@@ -243,8 +243,13 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
     match &layer.content {
         Content::Gradient(live) => {
             let (from, to) = (to_screen(live.params().from), to_screen(live.params().to));
-            painter.line_segment([from, to], Stroke::new(3.0, Color32::from_black_alpha(110)));
-            painter.line_segment([from, to], line);
+            let looks = [Stroke::new(3.0, Color32::from_black_alpha(110)), line];
+            for look in looks {
+                painter.line_segment([from, to], look);
+                if live.params().style == RampStyle::Radial {
+                    painter.circle_stroke(from, from.distance(to), look);
+                }
+            }
         }
         Content::Shading(_) => {
             // From the middle toward each light, as far as it leans.

@@ -1,7 +1,7 @@
 //! The options bar above the canvas: one row with what the tool in hand needs, bending first; the
 //! rest is behind *More*. Floor 7.
 
-use super::{assistants, brush_mode, crop, fill, liquify, select, shaping, transform};
+use super::{assistants, brush_mode, crop, fill, gradient, liquify, select, shaping, transform};
 use crate::operators::{
     OPERATORS, OfferedOperator, OperatorOwner, give, has_operator, hint_of, set, whose,
 };
@@ -11,7 +11,7 @@ use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
 use crate::tools::{Symmetry, ToolKind};
-use crate::widgets::{NumberField, ValueChange, check, check_box, more, segment, segments, title};
+use crate::widgets::{NumberField, ValueChange, check, more, segment, segments, title};
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{ScrollArea, Ui};
 
@@ -93,7 +93,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             liquify::options(ui, session, requests);
             symmetry(ui, session, requests);
         }
-        ToolKind::Gradient => gradient(ui, session, requests),
+        ToolKind::Gradient => gradient::options(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
         tool => drop(ui.weak(tool.hint())),
@@ -113,16 +113,6 @@ const SYMMETRIES: [(Symmetry, &str); 8] = [
 ];
 const SYMMETRY_HINT: &str = "Repeats every stroke about an axis or a point, which the tool \
                              Assistants moves; each copy bends at its own place";
-
-/// Where new gradients go.
-fn gradient(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let mut on = session.tools.live_gradients;
-    let hint = "New gradients are layers whose ends can be moved; otherwise they go into the selected paint layer";
-    if check_box(ui, &mut on, "Live").on_hover_text(hint).changed() {
-        requests.act(Action::Hand(HandAction::LiveGradients { on }));
-    }
-    ui.weak(session.tool.hint());
-}
 
 /// How strokes repeat, as a menu.
 fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {

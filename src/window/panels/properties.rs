@@ -11,7 +11,7 @@ use crate::file_purpose::FilePurpose;
 use crate::math::{Vec2, vec2};
 use crate::mood_pictures::MoodPictures;
 use crate::operators::{OPERATORS, OfferedOperator};
-use crate::paint::{Adjust, Gradient, ImageFilter, PlacedImage, Placement};
+use crate::paint::{Adjust, Gradient, ImageFilter, PlacedImage, Placement, RampStyle};
 use crate::raster::Outside;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
@@ -299,10 +299,16 @@ fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut LayerSetter) {
 
 fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut LayerSetter) {
     operator(ui, gradient.operator, setter);
+    if let Some(style) = choice_row(ui, "Style", gradient.style, &RampStyle::LABELS) {
+        setter.set(Property::Ramp { style }, true);
+    }
     title(ui, "Stops");
     let changed = ramp::show(ui, &gradient.stops);
     setter.take(changed.map(|c| c.map(|stops| Property::Stops { stops })));
     ui.horizontal(|ui| {
+        if let Some(stops) = super::gradient::stops_menu(ui, &gradient.stops) {
+            setter.set(Property::Stops { stops }, true);
+        }
         if ui.button("Swap ends").clicked() {
             setter.set(Property::Ends { from: gradient.to, to: gradient.from }, true);
         }

@@ -97,6 +97,7 @@ fn gradient() -> Layer {
             operator: NORMAL,
             filter,
             frame,
+            style: Default::default(),
             pieces: Vec::new(),
         })),
     )

@@ -224,6 +224,12 @@ impl Carrier<'_> {
         PlanePiece::go_along(&mut next.pieces, at, |p| {
             frame.stretch_at(p).unwrap_or(Mat2::IDENTITY)
         });
+        let is_mirrored = frame.stretch_at(from).is_some_and(|m| m.determinant() < 0.0);
+        if is_mirrored && next.style.is_closed() {
+            // In a mirror it runs around the other way.
+            next.stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
+            next.stops.reverse();
+        }
         next
     }
 

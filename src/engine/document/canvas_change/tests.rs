@@ -88,6 +88,7 @@ pub(super) fn ramp(operator: Operator) -> Layer {
             operator,
             filter,
             frame,
+            style: Default::default(),
             pieces: Vec::new(),
         })),
     )

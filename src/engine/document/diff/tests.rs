@@ -94,6 +94,7 @@ impl RandomNumbers {
                     operator: Operator::None,
                     filter: Default::default(),
                     frame: Default::default(),
+                    style: Default::default(),
                     pieces: Vec::new(),
                 };
                 Content::Gradient(Live::new(gradient))

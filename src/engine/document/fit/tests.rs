@@ -59,6 +59,7 @@ fn what_leaves_a_range_is_refused_with_the_layers_name() {
             operator: Operator::None,
             filter: crate::paint::ImageFilter::Antialias,
             frame: Default::default(),
+            style: Default::default(),
             pieces: Vec::new(),
         };
         Layer::new("Ramp", Content::Gradient(Live::new(gradient)))

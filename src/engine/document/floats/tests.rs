@@ -34,6 +34,7 @@ fn gradient(from: Vec2, to: Vec2, operator: Operator) -> Layer {
         operator,
         filter,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     Layer::new("gradient", Content::Gradient(Live::new(gradient)))
@@ -155,8 +156,8 @@ fn a_picture_that_is_rounded_once_is_the_one_of_floats_whatever_the_blend_mode()
     let ramp = |from: Vec2, to: Vec2, stops: [GradientStop; 2], blend: BlendMode| {
         let filter = ImageFilter::Antialias;
         let (operator, frame, pieces) = (Operator::None, Default::default(), Vec::new());
-        let gradient =
-            Gradient { from, to, stops: stops.to_vec(), operator, filter, frame, pieces };
+        let bent = Gradient::new(from, to, &[]).with_operator(operator);
+        let gradient = Gradient { stops: stops.to_vec(), filter, frame, pieces, ..bent };
         Layer { blend, ..Layer::new("ramp", Content::Gradient(Live::new(gradient))) }
     };
     let mut farthest_of_bytes = 0.0f32;

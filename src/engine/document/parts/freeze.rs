@@ -66,7 +66,8 @@ mod tests {
             let outline = Outline::new((x, y), &covered).expect("it covers something");
             picture_of(&outline).map(|picture| picture.coverage.size())
         };
-        assert_eq!(size_at(-2, 3), Some(Size::new(4, 7)));
+        // With an empty pixel beyond it.
+        assert_eq!(size_at(-2, 3), Some(Size::new(5, 8)));
         assert_eq!(size_at(-6, 3), None);
         assert_eq!(size_at(2, -9), None);
     }

@@ -67,6 +67,7 @@ fn document() -> Document {
         operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     let samples = [40.0, 120.0, 190.0].map(|x| Sample::at(vec2(x, 60.0 + 0.2 * x))).to_vec();

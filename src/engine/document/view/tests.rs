@@ -27,6 +27,7 @@ fn ball() -> Document {
         operator: Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Bilinear,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     let layer = Layer::new("ramp", Content::Gradient(Live::new(gradient)));

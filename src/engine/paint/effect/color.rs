@@ -1,10 +1,10 @@
 //! Which color an effect has in each pixel: one, a ramp, or a repeated picture. Floor 3. Not here:
 //! how much of it a pixel gets (`matte`).
 
-use super::settings::RampStyle;
 use super::{EffectFill, EffectKind, EffectTile, LayerEffect};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size, Vec2, vec2};
+use crate::paint::RampStyle;
 use crate::paint::ramp::Ramp;
 use crate::raster::tile::transparent_f32;
 use crate::raster::{PlanarTile, TILE, TileAt, TilePaint};
@@ -83,13 +83,11 @@ impl RampStyle {
         let reach = half.length().max(1e-6);
         let along = half / reach;
         let from = at - middle;
-        let (u, v) = (from.dot(along) / reach, from.dot(vec2(-along.y, along.x)) / reach);
+        let p = vec2(from.dot(along) / reach, from.dot(vec2(-along.y, along.x)) / reach);
         match self {
-            RampStyle::Linear => (u + 1.0) / 2.0,
-            RampStyle::Reflected => u.abs(),
-            RampStyle::Radial => from.length() / reach,
-            RampStyle::Diamond => u.abs() + v.abs(),
-            RampStyle::Angle => (-v.atan2(u) / std::f32::consts::TAU).rem_euclid(1.0),
+            // Straight ramps begin at the other end of the line.
+            RampStyle::Linear => (p.x + 1.0) / 2.0,
+            around => around.position(p),
         }
     }
 }

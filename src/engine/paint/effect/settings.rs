@@ -5,6 +5,7 @@ use super::EffectKind;
 use crate::math::number_settings::number_settings;
 use crate::math::srgb::Color;
 use crate::math::{NumberSetting, Range, TURNS, UNIT};
+use crate::paint::RampStyle;
 use crate::raster::BlendMode;
 
 crate::named! {
@@ -30,23 +31,6 @@ crate::named! {
         Inside = "inside" => "Inside",
         /// Half on it.
         Center = "center" => "Center",
-    }
-}
-
-crate::named! {
-    /// How a ramp runs.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum RampStyle {
-        /// Straight.
-        Linear = "linear" => "Linear",
-        /// From the middle outward.
-        Radial = "radial" => "Radial",
-        /// Around the middle.
-        Angle = "angle" => "Angle",
-        /// Straight, both ways from the middle.
-        Reflected = "reflected" => "Reflected",
-        /// From the middle outward in a diamond.
-        Diamond = "diamond" => "Diamond",
     }
 }
 

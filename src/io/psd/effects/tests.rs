@@ -1,7 +1,7 @@
 use super::*;
 use crate::math::srgb::Color;
 use crate::paint::GradientStop;
-use crate::paint::effect::RampStyle;
+use crate::paint::RampStyle;
 
 fn read_again(effects: &[LayerEffect]) -> Vec<LayerEffect> {
     as_read(effects).map_or(Vec::new(), |read| {

@@ -4,9 +4,9 @@ use super::{BLENDS, KEYS, KINDS, RecordEffects};
 use crate::math::srgb::Color;
 use crate::paint::adjustment::ToneCurve;
 use crate::paint::effect::{
-    BevelStyle, BevelTechnique, EffectFill, GlowSource, GlowTechnique, RampStyle, StrokePosition,
+    BevelStyle, BevelTechnique, EffectFill, GlowSource, GlowTechnique, StrokePosition,
 };
-use crate::paint::{EffectKind, GradientStop, LayerEffect};
+use crate::paint::{EffectKind, GradientStop, LayerEffect, RampStyle};
 use crate::psd::colors::{Colors, Mode};
 use crate::psd::cursor::ByteCursor;
 use crate::psd::descriptor::DescriptorWriter;

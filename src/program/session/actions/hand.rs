@@ -5,12 +5,15 @@ use crate::io::recipe::read_brush;
 use crate::math::range::clamp_to_range;
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::settings::BrushNumber;
-use crate::paint::{BrushMode, Fill, LiquifySettings, LiquifyTool, Property};
+use crate::paint::{
+    BrushMode, Fill, LiquifySettings, LiquifyTool, Property, RampColors, RampStyle,
+};
 use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, as_in_recipes, names, record};
 use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::gizmo::TransformTarget;
+use crate::tools::gradient::GradientSettings;
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
 use crate::tools::{ShapeSettings, Symmetry, ToolKind};
 use serde_json::Value;
@@ -20,6 +23,9 @@ names!(PaintLimit);
 names!(LiquifyTool);
 record!(LiquifySettings { tool, size, strength, one_object, foreshortened });
 names!(TransformTarget);
+names!(RampColors);
+names!(RampStyle);
+record!(GradientSettings { live, style, colors, reverse });
 record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
 as_in_recipes!(BrushMode);
@@ -76,6 +82,8 @@ actions! {
         "axes" Axes { center: Option<Vec2>, turn: f32 }
         "fill" Fill { fill: Fill }
         "liquify" Liquify { liquify: LiquifySettings }
+        /// What new gradients are like.
+        "gradient" Gradient { gradient: GradientSettings }
         /// Whether new gradients are live layers, and not painted into the selected paint layer.
         "live gradients" LiveGradients { on: bool }
         /// Whether a mouse presses less the faster it moves.
@@ -149,7 +157,8 @@ impl HandAction {
                     SymmetryAxes { center: *center, turn: *turn }.clamp_to_ranges()
             }
             HandAction::Fill { fill } => session.tools.fill = *fill,
-            HandAction::LiveGradients { on } => session.tools.live_gradients = *on,
+            HandAction::Gradient { gradient } => session.tools.gradient = *gradient,
+            HandAction::LiveGradients { on } => session.tools.gradient.live = *on,
             HandAction::PressBySpeed { on } => session.tools.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = mode.clamp_to_ranges(),
             HandAction::TransformTarget { carried } => session.tools.transform.target = *carried,

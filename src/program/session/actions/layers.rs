@@ -14,10 +14,9 @@ pub(super) use steps::copy_layer;
 use crate::Result;
 use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live, Progress};
 use crate::io::Budget;
-use crate::math::{PlaneMap, Vec2, vec2};
+use crate::math::{PlaneMap, Vec2};
 use crate::paint::{
-    ColorAdjustment, EffectLight, FormDrawing, Gradient, GradientStop, ImageFilter, LiveAdjustment,
-    LiveFilter, PictureFilter, Text,
+    ColorAdjustment, EffectLight, FormDrawing, LiveAdjustment, LiveFilter, PictureFilter, Text,
 };
 use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
@@ -27,7 +26,7 @@ use crate::shading::{Model, PixelShading};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{self, mapped};
 use flattening::bake_displacement;
-use new::{lit_layer, make_layer, selecting};
+use new::{NewLayerSettings, lit_layer, make_layer, selecting};
 use steps::{
     EditStep, attach, clear_layers, delete, duplicate, group, moves, paint_mask,
     selection_after_move, ungroup,
@@ -141,18 +140,7 @@ impl LayerAction {
 
     /// Performs it.
     pub fn apply(&self, session: &mut Session) {
-        let gradient_settings = Gradient {
-            from: vec2(0.0, 0.0),
-            to: vec2(1.0, 1.0),
-            stops: vec![
-                GradientStop { t: 0.0, color: session.tools.color },
-                GradientStop { t: 1.0, color: session.tools.second_color },
-            ],
-            operator: session.tools.operator,
-            filter: ImageFilter::Antialias,
-            frame: Default::default(),
-            pieces: Vec::new(),
-        };
+        let settings = NewLayerSettings::of(&session.tools);
         session.drop_gesture();
         if let LayerAction::PaintBall { layer, hollows } = self {
             return self.paint_ball(session, layer, *hollows);
@@ -229,8 +217,7 @@ impl LayerAction {
             _ => {
                 let no_room = || self.no_room(open.document(), &Budget::of_this_machine());
                 let refusal = self.refusal(open.document()).map(str::to_owned).or_else(no_room);
-                let edit =
-                    if refusal.is_none() { self.edit(open, &gradient_settings) } else { None };
+                let edit = if refusal.is_none() { self.edit(open, &settings) } else { None };
                 match edit {
                     Some(edit) => {
                         open.take(edit);
@@ -271,29 +258,20 @@ impl LayerAction {
 
     /// Does an edit that needs no settings on an open document.
     pub(super) fn step_on(&self, open: &mut OpenDocument) {
-        let settings = Gradient {
-            from: vec2(0.0, 0.0),
-            to: vec2(1.0, 1.0),
-            stops: Vec::new(),
-            frame: Default::default(),
-            operator: Default::default(),
-            filter: ImageFilter::Antialias,
-            pieces: Vec::new(),
-        };
-        if let Some(edit) = self.edit(open, &settings) {
+        if let Some(edit) = self.edit(open, &NewLayerSettings::default()) {
             open.take(edit);
         }
     }
 
     /// The step: its name, the resulting document, and the new selection.
-    fn edit(&self, open: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
+    fn edit(&self, open: &OpenDocument, settings: &NewLayerSettings) -> Option<Edit> {
         let document = open.document();
         let layer = |path: &LayerPath| path.find(document).cloned();
         let selected =
             |layer: &LayerPaths| layer.find(document).map(|ids| document.outermost(&ids));
         let (label, document, select) = match self {
             LayerAction::Add { kind } => {
-                let new = selecting(document, make_layer(*kind, document, gradient_settings));
+                let new = selecting(document, make_layer(*kind, document, settings));
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, slot_above(open))?, vec![id])
             }

@@ -50,6 +50,7 @@ pub(super) fn everything() -> Document {
         operator: Default::default(),
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     let environment = Some(Environment::new("sky.png".into(), picture));

@@ -101,7 +101,8 @@ mod tests {
     use super::*;
     use crate::document::Layer;
     use crate::math::{Size, Vec2, vec2};
-    use crate::tools::gradient::press;
+    use crate::paint::{RampColors, RampStyle};
+    use crate::tools::gradient::{GradientSettings, press};
     use crate::tools::{ToolContext, ToolSettings};
 
     /// An opaque white left half of 100 × 60 px.
@@ -142,7 +143,8 @@ mod tests {
             "{left:?} {middle:?} {right:?}"
         );
         assert!([left, middle, right].iter().all(|pixel| pixel[3] == 255));
-        let live = ToolSettings { live_gradients: true, ..tools };
+        let settings = GradientSettings { live: true, ..tools.gradient };
+        let live = ToolSettings { gradient: settings, ..tools };
         let Outcome::Commit { document: after, select, .. } =
             drag(&document, &live, ends.0, ends.1)
         else {
@@ -150,6 +152,31 @@ mod tests {
         };
         assert_eq!((after.layers.len(), select), (2, Some(after.layers[1].id)));
         assert_eq!(pixel(&after, 1, 20), [255; 4], "the paint stays");
+    }
+
+    #[test]
+    fn a_round_gradient_fades_from_the_color_into_the_paint() {
+        let gradient = GradientSettings {
+            style: RampStyle::Radial,
+            colors: RampColors::Fading,
+            ..GradientSettings::default()
+        };
+        let tools = ToolSettings { gradient, ..ToolSettings::default() };
+        let ends = (vec2(25.0, 30.0), vec2(45.0, 30.0));
+        let painted = |tools: &ToolSettings| {
+            let Outcome::Commit { document, .. } =
+                drag(&document(LayerLock::None), tools, ends.0, ends.1)
+            else {
+                panic!("painted")
+            };
+            [(25, 30), (25, 40), (25, 52)].map(|(x, y)| pixel(&document, x, y))
+        };
+        let [middle, half, beyond] = painted(&tools);
+        assert!(middle[0] < 12 && half[0].abs_diff(128) < 24, "{middle:?} {half:?}");
+        assert_eq!(beyond, [255; 4]);
+        let reversed = GradientSettings { reverse: true, ..gradient };
+        let [middle, _, beyond] = painted(&ToolSettings { gradient: reversed, ..tools });
+        assert!(middle[0] > 243 && beyond == [0, 0, 0, 255], "{middle:?} {beyond:?}");
     }
 
     #[test]

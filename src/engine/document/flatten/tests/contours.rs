@@ -178,6 +178,7 @@ fn live_layers_are_rendered_for_both_sides_alike() {
         operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     let brush = Brush { size: 300.0, hardness: 1.0, ..Brush::default() };

@@ -152,6 +152,7 @@ fn a_gradient_and_a_bent_image_follow_their_frame() {
             operator,
             filter,
             frame,
+            style: Default::default(),
             pieces: Vec::new(),
         };
         Layer::new("ramp", Content::Gradient(Live::new(gradient)))
@@ -269,6 +270,7 @@ fn an_applied_transform_shows_what_it_showed() {
         operator,
         filter,
         frame,
+        style: Default::default(),
         pieces: Vec::new(),
     };
     let ramp = Layer::new("ramp", Content::Gradient(Live::new(gradient)));

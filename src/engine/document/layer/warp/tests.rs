@@ -35,6 +35,7 @@ fn ramp() -> Layer {
         operator: Default::default(),
         filter: ImageFilter::Antialias,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     Layer::new("ramp", Content::Gradient(Live::new(content)))

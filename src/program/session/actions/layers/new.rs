@@ -4,14 +4,16 @@
 use crate::document::{
     Content, DetailSource, Document, Group, Layer, Live, NormalLayer, PixelLayer, StrokeList,
 };
-use crate::math::{Size, vec2};
-use crate::paint::{FormDrawing, FormPattern, Gradient, Placement};
+use crate::math::{Size, srgb::Color, vec2};
+use crate::paint::{FormDrawing, FormPattern, Gradient, Placement, RampStyle};
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::names;
 use crate::shading::{Model, RadianceScaling, Shading};
-use crate::surface::NoiseRelief;
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
+use crate::surface::{NoiseRelief, Operator};
+use crate::tools::ToolSettings;
+use crate::tools::gradient::GradientSettings;
 
 rilievo_engine::named! {
     /// Kinds of new layers.
@@ -67,10 +69,39 @@ fn on_canvas(size: Size) -> f32 {
     (size.longer_side() / 1024.0).max(0.5).min(8.0)
 }
 
+/// What new layers take from the settings of tools.
+pub(super) struct NewLayerSettings {
+    colors: [Color; 2],
+    gradient: GradientSettings,
+    operator: Operator,
+}
+
+impl Default for NewLayerSettings {
+    fn default() -> Self {
+        Self::of(&ToolSettings::default())
+    }
+}
+
+impl NewLayerSettings {
+    pub fn of(tools: &ToolSettings) -> Self {
+        let colors = [tools.color, tools.second_color];
+        Self { colors, gradient: tools.gradient, operator: tools.operator }
+    }
+
+    /// A gradient from above to below, or from the middle outward.
+    fn gradient(&self, size: Size) -> Gradient {
+        let (middle, reach) = (size.center(), vec2(0.0, 0.35 * size.height as f32));
+        let is_straight = self.gradient.style == RampStyle::Linear;
+        let from = if is_straight { middle - reach } else { middle };
+        let gradient = self.gradient.gradient(from, middle + reach, self.colors);
+        gradient.with_operator(self.operator)
+    }
+}
+
 pub(super) fn make_layer(
     kind: NewLayer,
     document: &Document,
-    gradient_settings: &Gradient,
+    settings: &NewLayerSettings,
 ) -> Layer {
     let size = document.size;
     let (name, content) = match kind {
@@ -82,22 +113,8 @@ pub(super) fn make_layer(
         NewLayer::Hatching => {
             ("Hatching", make_drawing(FormPattern::Hatching(HatchSettings::DEFAULT), size))
         }
-        NewLayer::Fill => (
-            "Fill",
-            Content::Fill(
-                gradient_settings
-                    .stops
-                    .first()
-                    .map_or(crate::math::srgb::Color::BLACK, |stop| stop.color),
-            ),
-        ),
-        NewLayer::Gradient => {
-            let middle = size.center();
-            let reach = vec2(0.0, 0.35 * size.height as f32);
-            let gradient =
-                Gradient { from: middle - reach, to: middle + reach, ..gradient_settings.clone() };
-            ("Gradient", Content::Gradient(Live::new(gradient)))
-        }
+        NewLayer::Fill => ("Fill", Content::Fill(settings.colors[0])),
+        NewLayer::Gradient => ("Gradient", Content::Gradient(Live::new(settings.gradient(size)))),
         NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
         NewLayer::RadianceScaling => {
             ("Bring out form", Content::RadianceScaling(RadianceScaling::default()))

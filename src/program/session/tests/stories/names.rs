@@ -68,7 +68,7 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         Worded { .. } => &["picture or how it lies", "name"],
         Bend { .. } | Pieces { .. } | Filtered { .. } => &["picture or how it lies", "gradient"],
         Place { .. } | Beyond { .. } => &["picture or how it lies", "detail"],
-        Stops { .. } | Ends { .. } => &["gradient"],
+        Stops { .. } | Ends { .. } | Ramp { .. } => &["gradient"],
         Mask { .. } | MaskInverted { .. } | MaskDisabled { .. } => &["mask"],
         Grained { .. } | Strength { .. } => &["detail"],
         Features { .. } => &["material", "scaling"],

@@ -61,7 +61,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
     (&["image"], &["anchors", "power", "adjust"]),
     (&["image", "gradient"], &["operator", "pieces", "filter"]),
     (&["image", "normals"], &["placement", "outside"]),
-    (&["gradient"], &["stops", "ends"]),
+    (&["gradient"], &["stops", "ends", "ramp"]),
     (&["lines"], &["lines"]),
     (&["hatching"], &["hatching"]),
     (&["lines", "hatching"], &["hand", "line size", "drawn with"]),

@@ -55,6 +55,7 @@ fn ramp_document(from: Vec2, to: Vec2) -> Document {
         operator,
         filter,
         frame: Default::default(),
+        style: Default::default(),
         pieces: Vec::new(),
     };
     Document {
