@@ -1,7 +1,7 @@
 //! The Image menu: the canvas of the document, with everything on it.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl_alt, has_document, row, submenu};
+use super::row::{LINE, MenuCommand, ctrl_alt, has_document, row, submenu};
 use crate::document::canvas_change::CanvasMirror;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
@@ -17,10 +17,10 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Crop to selection",
         &[],
         "The canvas becomes the rectangle around all that is selected",
-        always,
+        has_document,
         |_, r| act(r, CanvasAction::CropToSelection {}),
     ),
-    row("Trim canvas", &[], "Removes borders that hold no paint", always, |_, requests| {
+    row("Trim canvas", &[], "Removes borders that hold no paint", has_document, |_, requests| {
         act(requests, CanvasAction::Trim {})
     }),
     row(
@@ -45,21 +45,21 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[],
         "A quarter turn counter-clockwise, with everything on the canvas: the shape and its lights \
          too",
-        always,
+        has_document,
         |_, requests| act(requests, CanvasAction::Turn { degrees: 90.0 }),
     ),
     row(
         "Turn canvas right",
         &[],
         "A quarter turn clockwise, with everything on the canvas",
-        always,
+        has_document,
         |_, requests| act(requests, CanvasAction::Turn { degrees: -90.0 }),
     ),
     row(
         "Turn canvas upside down",
         &[],
         "A half turn, with everything on the canvas",
-        always,
+        has_document,
         |_, requests| act(requests, CanvasAction::Turn { degrees: 180.0 }),
     ),
     row(
@@ -74,14 +74,14 @@ pub const COMMANDS: &[MenuCommand] = &[
         "Mirror canvas left and right",
         &[],
         "Mirrors the picture, not the view, with everything on the canvas",
-        always,
+        has_document,
         |_, requests| act(requests, CanvasAction::Mirror { mirror: CanvasMirror::LeftRight }),
     ),
     row(
         "Mirror canvas up and down",
         &[],
         "Mirrors the picture, with everything on the canvas",
-        always,
+        has_document,
         |_, requests| act(requests, CanvasAction::Mirror { mirror: CanvasMirror::UpDown }),
     ),
 ];
