@@ -39,6 +39,7 @@ pub mod selections;
 mod several;
 pub mod source;
 mod strokes;
+pub mod symmetry;
 pub mod view;
 mod weight;
 
@@ -70,6 +71,7 @@ pub use progress::Progress;
 pub use scale::{DocumentReducer, ReducedSurface, SurfaceReduction};
 pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
+pub use symmetry::{Symmetry, SymmetrySettings};
 
 use crate::paint::{EffectLight, Scene, Selection};
 use crate::{math::Size, raster::Asset, surface::Surface};
@@ -102,6 +104,8 @@ pub struct Document {
     pub effect_light: EffectLight,
     /// What strokes are drawn along; not part of the picture.
     pub assistants: Arc<Vec<Assistant>>,
+    /// How new strokes repeat; not part of the picture.
+    pub symmetry: SymmetrySettings,
 }
 
 impl Document {
@@ -119,6 +123,7 @@ impl Document {
             guides: Arc::default(),
             effect_light: EffectLight::default(),
             assistants: Arc::default(),
+            symmetry: SymmetrySettings::default(),
         }
     }
 

@@ -21,7 +21,7 @@
 //! | `transforms` | where the frames of layers lie |
 //! | `selections` | selections |
 //! | `effects` | effects of layers, and their light |
-//! | `guides` | guides and assistants |
+//! | `guides` | guides, assistants and symmetry |
 //! | `pictures` | the files that layers name, each decoded once |
 //! | `version` | which version a document needs |
 //! | `value` | the trait of values that replays write as recipes do |
@@ -66,7 +66,7 @@ pub use strokes::write_stroke;
 
 use super::json::{Fields, JsonNode, JsonObject, Printer};
 use super::{Budget, Files, RecipeFolder, files, maps};
-use crate::document::{Document, Guides, SelectionList, SurfaceSource};
+use crate::document::{Document, Guides, SelectionList, SurfaceSource, SymmetrySettings};
 use crate::math::Size;
 use crate::paint::{Scene, Selection};
 use crate::raster::Asset;
@@ -168,6 +168,9 @@ pub fn read_unshaped(
     let guides = root.get("guides").map_or(Ok(Guides::default()), |node| guides::read(&node))?;
     let assistants =
         root.get("assistants").map_or(Ok(Vec::new()), |node| guides::read_assistants(&node))?;
+    let symmetry = root
+        .get("symmetry")
+        .map_or(Ok(SymmetrySettings::default()), |node| guides::read_symmetry(&node))?;
     root.finish()?;
 
     let CanvasAndSurface { size, surface, files, notes: of_maps } =
@@ -216,6 +219,7 @@ pub fn read_unshaped(
         effect_light,
         guides: Arc::new(guides),
         assistants: Arc::new(assistants),
+        symmetry,
     };
     let document = match source.onto {
         _ if parts.is_empty() => bare,

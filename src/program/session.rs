@@ -29,7 +29,7 @@ pub use property::Property;
 pub use view::CanvasView;
 
 use crate::Result;
-use crate::document::{Document, Layer, LayerId};
+use crate::document::{Document, Layer, LayerId, SymmetrySettings};
 use crate::io::fs::Disk;
 use crate::io::recipe::{BrushPreset, presets};
 use crate::io::replace::is_same_file;
@@ -160,6 +160,11 @@ impl Session {
     /// The document in front as shown, with the preview.
     pub fn shown_document(&self) -> Option<&Document> {
         self.active().map(OpenDocument::shown_document)
+    }
+
+    /// How strokes in the document in front repeat.
+    pub fn symmetry(&self) -> SymmetrySettings {
+        self.shown_document().map_or_else(Default::default, |document| document.symmetry)
     }
 
     /// The selected layer as shown.

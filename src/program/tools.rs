@@ -30,7 +30,6 @@ pub mod select;
 pub mod shape;
 pub mod snap;
 pub mod strokes;
-pub mod symmetry;
 pub mod transform;
 pub mod unwrapped;
 
@@ -40,7 +39,6 @@ pub use pen::{GRAB_PT, ModifierKeys, PenSample};
 pub use purpose::BrushTarget;
 pub use select::SelectSettings;
 pub use shape::ShapeSettings;
-pub use symmetry::Symmetry;
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
@@ -51,7 +49,6 @@ use gizmo::GizmoMemory;
 use gradient::GradientSettings;
 use purpose::StrokePurpose;
 use snap::{SnapTargets, ViewAids};
-use symmetry::SymmetrySettings;
 use transform::TransformSettings;
 
 /// Everything a tool works with, as it is when the pen comes down.
@@ -127,8 +124,6 @@ pub struct ToolSettings {
     pub gradient: GradientSettings,
     /// Whether a stroke that begins on a part of the shape may go on to others.
     pub crosses_parts: bool,
-    /// How strokes repeat.
-    pub symmetry: SymmetrySettings,
     /// The fill tool.
     pub fill: Fill,
     /// The selection tools.
@@ -164,7 +159,6 @@ impl ToolSettings {
             second_color: Color::WHITE,
             operator: Operator::None,
             crosses_parts: false,
-            symmetry: SymmetrySettings::default(),
             fill: Fill::default(),
             select: SelectSettings::default(),
             lasso: Vec::new(),

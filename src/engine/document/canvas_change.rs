@@ -227,6 +227,7 @@ impl Document {
             assistants: Arc::new(
                 self.assistants.iter().filter_map(|own| own.transformed(&change.map)).collect(),
             ),
+            symmetry: self.symmetry.transformed(&change.map, [self.size, change.to]),
         };
         let next =
             if parts.is_empty() { bare } else { bare.with_parts(parts).with_attachments_of(self) };

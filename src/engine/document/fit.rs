@@ -72,6 +72,7 @@ impl Document {
         self.guides
             .fits()
             .and_then(|()| Assistant::all_fit(&self.assistants))
+            .and_then(|()| self.symmetry.fits())
             .map_err(|why| format!("{why}."))
     }
 

@@ -29,6 +29,7 @@ impl Document {
                 (self.effect_light != other.effect_light).then(|| "the effects' light".into())
             })
             .or_else(|| (self.assistants != other.assistants).then(|| "the assistants".into()))
+            .or_else(|| (self.symmetry != other.symmetry).then(|| "the symmetry".into()))
     }
 }
 

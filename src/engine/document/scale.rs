@@ -35,6 +35,7 @@ impl Document {
             layers,
             guides,
             assistants,
+            symmetry: self.symmetry.scaled(scale.per_axis),
             ..scale.scale_selections(self)
         };
         let shaped = if self.parts.is_empty() { scaled } else { scale.parts(self, scaled)? };
@@ -64,6 +65,7 @@ impl Document {
             assistants: Arc::new(
                 self.assistants.iter().map(|own| own.scaled(scale.per_axis)).collect(),
             ),
+            symmetry: self.symmetry.scaled(scale.per_axis),
             ..scale.scale_selections(self)
         };
         let part = |part: &Arc<Part>| scale.part(part);

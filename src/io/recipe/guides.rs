@@ -1,10 +1,11 @@
-//! Guides and assistants of a document, read and written.
+//! Guides, assistants and symmetry of a document, read and written.
 //! Floor 5.
 
 use crate::Result;
-use crate::document::{Assistant, AssistantKind, Document, Guides};
+use crate::document::symmetry::{MOST_ROUND, SymmetryAxes};
+use crate::document::{Assistant, AssistantKind, Document, Guides, Symmetry, SymmetrySettings};
 use crate::json::{JsonNode, JsonObject, object};
-use crate::math::COORDINATE;
+use crate::math::{COORDINATE, TURNS};
 use serde_json::Value;
 
 /// `{ "vertical": [x …], "horizontal": [y …] }`.
@@ -36,6 +37,40 @@ fn read_assistant(node: &JsonNode) -> Result<Assistant> {
     Ok(assistant)
 }
 
+/// How strokes repeat without a number.
+const SYMMETRIES: [(Symmetry, &str); 4] = [
+    (Symmetry::None, "none"),
+    (Symmetry::Vertical, "vertical"),
+    (Symmetry::Horizontal, "horizontal"),
+    (Symmetry::Both, "both"),
+];
+
+/// `{ "kind": …, "center": [x, y], "turn": degrees }`; the kind is a word or a number of turns.
+pub fn read_symmetry(node: &JsonNode) -> Result<SymmetrySettings> {
+    let mut fields = node.fields()?;
+    let kind = fields.require("kind")?;
+    let kind = match kind.value().is_number() {
+        true => Symmetry::Radial(kind.whole(2..=MOST_ROUND)?),
+        false => kind.one_of(&SYMMETRIES)?,
+    };
+    let center = fields.get("center").map(|node| node.point()).transpose()?;
+    let turn = fields.number("turn", 0.0, TURNS)?;
+    fields.finish()?;
+    Ok(SymmetrySettings { kind, axes: SymmetryAxes { center, turn } })
+}
+
+fn write_symmetry(symmetry: &SymmetrySettings) -> Value {
+    let mut out = JsonObject::default();
+    let word = SYMMETRIES.iter().find(|(kind, _)| *kind == symmetry.kind).map(|(_, word)| *word);
+    match (symmetry.kind, word) {
+        (Symmetry::Radial(turns), _) => out.set("kind", turns.into()),
+        (_, word) => out.set_some("kind", word, Value::from),
+    }
+    out.set_some("center", symmetry.axes.center, object::point);
+    out.number("turn", symmetry.axes.turn, 0.0);
+    out.into_value()
+}
+
 /// Absent ones are not written.
 pub fn write(out: &mut JsonObject, document: &Document) {
     if !document.guides.is_empty() {
@@ -43,6 +78,9 @@ pub fn write(out: &mut JsonObject, document: &Document) {
     }
     if !document.assistants.is_empty() {
         out.set("assistants", document.assistants.iter().map(write_assistant).collect());
+    }
+    if document.symmetry != SymmetrySettings::default() {
+        out.set("symmetry", write_symmetry(&document.symmetry));
     }
 }
 
@@ -65,7 +103,9 @@ fn write_assistant(assistant: &Assistant) -> Value {
 
 /// Whether the first version has no words for what is there.
 pub fn is_needed(document: &Document) -> bool {
-    !document.guides.is_empty() || !document.assistants.is_empty()
+    !document.guides.is_empty()
+        || !document.assistants.is_empty()
+        || document.symmetry != SymmetrySettings::default()
 }
 
 #[cfg(test)]
@@ -107,6 +147,18 @@ mod tests {
     }
 
     #[test]
+    fn symmetry_comes_back_with_its_axes() {
+        let axes = SymmetryAxes { center: Some(vec2(12.25, -3.0)), turn: 30.5 };
+        for kind in [Symmetry::Vertical, Symmetry::Both, Symmetry::Radial(7), Symmetry::None] {
+            let symmetry = SymmetrySettings { kind, axes };
+            let document = Document { symmetry, ..Document::empty(Size::new(40, 30)) };
+            let text = recipe::print(&document);
+            assert!(text.contains(r#""version": 2"#), "{text}");
+            assert_eq!(back(&text).unwrap().symmetry, symmetry);
+        }
+    }
+
+    #[test]
     fn what_is_no_guide_or_assistant_is_refused_by_its_path() {
         let with = |what: &str| {
             let text = format!(
@@ -123,5 +175,7 @@ mod tests {
         assert!(
             with(r#""assistants":[{"kind":"curve","points":[]}]"#).contains("assistants[0].kind")
         );
+        assert!(with(r#""symmetry":{"kind":"oblique"}"#).contains("symmetry.kind"));
+        assert!(with(r#""symmetry":{"kind":1}"#).contains("symmetry.kind"));
     }
 }

@@ -370,7 +370,8 @@ pub fn is_same(a: &Document, b: &Document) -> bool {
             .iter()
             .zip(&b.selections)
             .all(|(a, b)| a.name == b.name && Arc::ptr_eq(&a.selection, &b.selection));
-    let same_aids = a.guides == b.guides && a.assistants == b.assistants;
+    let same_aids =
+        a.guides == b.guides && a.assistants == b.assistants && a.symmetry == b.symmetry;
     same_active && same_kept && same_aids && is_same_look(a, b)
 }
 

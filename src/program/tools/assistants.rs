@@ -6,8 +6,8 @@ mod along;
 pub use along::{StrokeStart, press_along};
 
 use super::snap::{SnapLines, SnapTargets};
-use super::symmetry::{AxisHandle, SymmetryAxes};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::symmetry::{AxisHandle, SymmetrySettings};
 use crate::document::{Assistant, AssistantKind, Document};
 use crate::math::Vec2;
 use std::sync::Arc;
@@ -40,14 +40,12 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let moving = Moving { index, handle: Some(handle), from: pen.place(), is_new: false };
         return begin(context, Vec::clone(&document.assistants), moving);
     }
-    if let Some(handle) = context.tools.symmetry.axes.handle_at(
-        context.tools.symmetry.kind,
-        document.size,
-        pen.place(),
-        context.px_per_pt,
-    ) {
-        let (canvas, axes) = (document.size, context.tools.symmetry.axes);
-        return (Some(Box::new(AxisGesture { handle, axes, canvas })), Outcome::Idle);
+    let symmetry = document.symmetry;
+    let (at, px_per_pt) = (pen.place(), context.px_per_pt);
+    let axes = symmetry.axes;
+    if let Some(handle) = axes.handle_at(symmetry.kind, document.size, at, px_per_pt, near_px) {
+        let moved = AxisGesture { document: document.clone(), handle, symmetry };
+        return (Some(Box::new(moved)), Outcome::Idle);
     }
     if document.assistants.len() >= Assistant::MOST {
         return (
@@ -153,9 +151,15 @@ impl Gesture for AssistantGesture {
 
 /// The axes of symmetry, moved or turned.
 struct AxisGesture {
+    document: Document,
     handle: AxisHandle,
-    axes: SymmetryAxes,
-    canvas: crate::math::Size,
+    symmetry: SymmetrySettings,
+}
+
+impl AxisGesture {
+    fn with(&self) -> Document {
+        Document { symmetry: self.symmetry, ..self.document.clone() }
+    }
 }
 
 impl Gesture for AxisGesture {
@@ -163,13 +167,16 @@ impl Gesture for AxisGesture {
         let Some(pen) = pens.last().filter(|pen| pen.place().is_finite()) else {
             return Outcome::Idle;
         };
-        self.axes = self.axes.dragged(self.handle, self.canvas, pen.place(), pen.keys.shift);
-        self.release()
+        let (canvas, steps) = (self.document.size, pen.keys.shift);
+        self.symmetry.axes = self.symmetry.axes.dragged(self.handle, canvas, pen.place(), steps);
+        Outcome::Preview(self.with())
     }
 
     fn release(&mut self) -> Outcome {
-        let axes = self.axes;
-        Outcome::set(move |tools| tools.symmetry.axes = axes)
+        if self.symmetry == self.document.symmetry {
+            return Outcome::Cancel;
+        }
+        Outcome::Commit { label: "Move axes".into(), document: self.with(), select: None }
     }
 }
 

@@ -9,8 +9,8 @@ pub use erase::is_on;
 use super::closed;
 use super::purpose::StrokePurpose;
 use super::retouch::{self, ActiveWork};
-use super::symmetry::SymmetryImage;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::symmetry::SymmetryImage;
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, OutlineSource, Part, PixelLayer,
     StrokeList,
@@ -78,7 +78,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     }
     let color =
         if is_eraser { Color { a: 255, ..context.tools.color } } else { context.tools.color };
-    let images = context.tools.symmetry.images(document.size);
+    let images = document.symmetry.images(document.size);
     let like = |image: &SymmetryImage| {
         Stroke::new(image.brush(&brush), context.tools.operator, color, Vec::new())
             .within(context.document.stroke_selection())

@@ -1,8 +1,8 @@
 //! The liquify tool: strokes that displace what the selected layer or group shows. The layer itself
 //! stays as it is. Floor 5. Not here: what a dab does (`paint::liquify`).
 
-use super::symmetry::SymmetryImage;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, closed};
+use crate::document::symmetry::SymmetryImage;
 use crate::document::{Content, Document, LayerId};
 use crate::paint::{LiquifySettings, LiquifyStroke, LiquifyTool};
 use crate::raster::Lattice;
@@ -54,7 +54,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             ),
         )
     };
-    let images = context.tools.symmetry.images(document.size);
+    let images = document.symmetry.images(document.size);
     let strokes: Vec<(SymmetryImage, LiquifyStroke)> = images.into_iter().map(of_image).collect();
     let old = layer.liquify.clone();
     let mut lattice = old.as_deref().cloned().unwrap_or_default();

@@ -3,8 +3,8 @@
 //! the pen (`brush`).
 
 use super::purpose::StrokePurpose;
-use super::symmetry::SymmetryImage;
 use super::{DocumentChoice, Outcome, PenSample, ToolContext};
+use crate::document::symmetry::SymmetryImage;
 use crate::document::{Content, Layer, Progress, flatten};
 use crate::math::Vec2;
 use crate::paint::{ActiveRetouching, ActiveStrokes, BrushMode, Sample, Scene, Stroke};
@@ -106,11 +106,12 @@ pub(super) fn begin_stroke(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::Symmetry;
     use crate::document::{Document, PixelLayer};
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::{Brush, Pickup};
     use crate::tools::ToolSettings;
-    use crate::tools::{ModifierKeys, Symmetry, ToolKind, press};
+    use crate::tools::{ModifierKeys, ToolKind, press};
 
     /// A red square at the left of a paint layer, over a blue ground.
     fn document() -> Document {
@@ -142,8 +143,8 @@ mod tests {
 
     #[test]
     fn a_smudge_drags_the_layers_paint_and_its_mirror_image() {
-        let (document, mut tools) = (document(), with_mode(BrushMode::Smudge { length: 1.0 }));
-        tools.symmetry.kind = Symmetry::Vertical;
+        let (mut document, tools) = (document(), with_mode(BrushMode::Smudge { length: 1.0 }));
+        document.symmetry.kind = Symmetry::Vertical;
         let tiles = drawn(&on_paint(&document, &tools), vec2(50.0, 60.0), vec2(90.0, 60.0));
         assert!(tiles.pixel(80, 60)[3] > 200 && tiles.pixel(80, 80)[3] == 0);
         // The image drags transparency onto transparency, from the right.

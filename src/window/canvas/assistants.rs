@@ -1,10 +1,10 @@
 //! Assistants over the picture: their lines and, with the tool, their handles and those of the
 //! symmetry's axes. Floor 7. Not here: strokes along them (`tools::assistants`).
 
+use crate::document::Symmetry;
 use crate::document::{Assistant, AssistantKind};
 use crate::math::{Vec2, vec2};
 use crate::session::Session;
-use crate::tools::Symmetry;
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke};
 
 const LINE: Color32 = Color32::from_rgb(240, 120, 60);
@@ -39,8 +39,8 @@ pub fn draw(
     }
     let handles = document.assistants.iter().flat_map(|assistant| assistant.points.iter().copied());
     let zoom = session.active().and_then(|open| open.view).map_or(1.0, |view| view.zoom);
-    let axes = session.tools.symmetry.axes.handles(document.size, 1.0 / zoom);
-    let axes = axes.into_iter().filter(|_| session.tools.symmetry.kind != Symmetry::None);
+    let axes = session.symmetry().axes.handles(document.size, 1.0 / zoom);
+    let axes = axes.into_iter().filter(|_| session.symmetry().kind != Symmetry::None);
     for at in handles.chain(axes).map(to_screen) {
         painter.circle_filled(at, 6.0, Color32::from_black_alpha(140));
         painter.circle_filled(at, 4.5, Color32::WHITE);

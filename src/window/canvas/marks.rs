@@ -146,8 +146,7 @@ fn draw_picked(painter: &Painter, session: &Session, at: Pos2) {
 /// The axes of symmetry.
 fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(document) = session.shown_document() else { return };
-    for axis in session.tools.symmetry.kind.lines_about(document.size, session.tools.symmetry.axes)
-    {
+    for axis in document.symmetry.kind.lines_about(document.size, document.symmetry.axes) {
         let ends = axis.map(to_screen);
         painter.line_segment(ends, Stroke::new(2.2, Color32::from_black_alpha(70)));
         let dashes = Stroke::new(1.0, Color32::from_rgb(120, 200, 255));

@@ -2,10 +2,10 @@
 //! strokes. Floor 7.
 
 use crate::document::AssistantKind;
+use crate::document::Symmetry;
 use crate::requests::UiRequests;
 use crate::session::actions::{GuideAction, HandAction};
 use crate::session::{Action, Session};
-use crate::tools::Symmetry;
 use crate::tools::snap::ViewAids;
 use crate::widgets::NumberField;
 use eframe::egui::{Button, Ui};
@@ -49,7 +49,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if let Some(changed) = magnetism.inline(ui, aids.magnetism, 80.0) {
         set(ViewAids { magnetism: changed.to, ..aids });
     }
-    if session.tools.symmetry.kind != Symmetry::None && ui.button("Axes to the middle").clicked() {
+    if session.symmetry().kind != Symmetry::None && ui.button("Axes to the middle").clicked() {
         requests.act(Action::Hand(HandAction::Axes { center: None, turn: 0.0 }));
     }
 }

@@ -2,6 +2,7 @@
 //! rest is behind *More*. Floor 7.
 
 use super::{assistants, brush_mode, crop, fill, gradient, liquify, select, shaping, transform};
+use crate::document::Symmetry;
 use crate::operators::{
     OPERATORS, OfferedOperator, OperatorOwner, give, has_operator, hint_of, set, whose,
 };
@@ -10,7 +11,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
-use crate::tools::{Symmetry, ToolKind};
+use crate::tools::ToolKind;
 use crate::widgets::{NumberField, ValueChange, check, more, segment, segments, title};
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{ScrollArea, Ui};
@@ -116,7 +117,7 @@ const SYMMETRY_HINT: &str = "Repeats every stroke about an axis or a point, whic
 
 /// How strokes repeat, as a menu.
 fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let now = session.tools.symmetry.kind;
+    let now = session.symmetry().kind;
     let known = SYMMETRIES.iter().find(|(choice, _)| *choice == now).map(|(_, label)| *label);
     let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| symmetries(ui, now, requests));
     menu.response.on_hover_text(SYMMETRY_HINT);
@@ -184,7 +185,7 @@ fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool == ToolKind::Brush {
         brush_mode::options(ui, session, requests);
     }
-    if session.tools.symmetry.kind != Symmetry::None {
+    if session.symmetry().kind != Symmetry::None {
         symmetry(ui, session, requests);
     }
     more(ui, |ui| more_of_brush(ui, session, is_wide, requests));
@@ -211,7 +212,7 @@ fn more_of_brush(ui: &mut Ui, session: &Session, is_wide: bool, requests: &mut U
         brush_mode::limits(ui, session, requests);
     }
     title(ui, "Symmetry");
-    ui.horizontal_wrapped(|ui| symmetries(ui, session.tools.symmetry.kind, requests));
+    ui.horizontal_wrapped(|ui| symmetries(ui, session.symmetry().kind, requests));
     title(ui, "Mouse and finger");
     let hint = "A mouse, or a finger without pressure, presses less when it moves faster";
     if let Some(on) = check(ui, "Pressure from speed", hint, session.tools.presses_by_speed) {

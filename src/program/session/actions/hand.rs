@@ -1,6 +1,8 @@
 //! The current settings: tool, brush, colors, operator.
 //! Floor 6.
 
+use crate::document::symmetry::{MOST_ROUND, SymmetryAxes};
+use crate::document::{Document, Symmetry, SymmetrySettings};
 use crate::io::recipe::read_brush;
 use crate::math::range::clamp_to_range;
 use crate::math::{Vec2, srgb::Color};
@@ -14,8 +16,7 @@ use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::gradient::GradientSettings;
-use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
-use crate::tools::{ShapeSettings, Symmetry, ToolKind};
+use crate::tools::{ShapeSettings, ToolKind};
 use serde_json::Value;
 
 names!(ToolKind);
@@ -55,7 +56,7 @@ impl ReplayValue for Symmetry {
 }
 
 actions! {
-    /// These actions do not change a document.
+    /// These actions do not change a document, but for symmetry, which belongs to it.
     HandAction {
         "tool" Tool { tool: ToolKind }
         /// Selects one of the available brushes by its key.
@@ -151,10 +152,13 @@ impl HandAction {
             HandAction::Operator { operator } => {
                 session.tools.operator = operator.clamp_to_ranges()
             }
-            HandAction::Symmetry { symmetry } => session.tools.symmetry.kind = *symmetry,
+            HandAction::Symmetry { symmetry } => {
+                let kind = *symmetry;
+                set_symmetry(session, |own| SymmetrySettings { kind, ..own });
+            }
             HandAction::Axes { center, turn } => {
-                session.tools.symmetry.axes =
-                    SymmetryAxes { center: *center, turn: *turn }.clamp_to_ranges()
+                let axes = SymmetryAxes { center: *center, turn: *turn }.clamp_to_ranges();
+                set_symmetry(session, |own| SymmetrySettings { axes, ..own });
             }
             HandAction::Fill { fill } => session.tools.fill = *fill,
             HandAction::Gradient { gradient } => session.tools.gradient = *gradient,
@@ -166,5 +170,19 @@ impl HandAction {
             HandAction::AcrossParts { on } => session.tools.crosses_parts = *on,
             HandAction::Reach { to } => BrushNumber::Reach.set(brush, *to),
         }
+    }
+}
+
+/// How new strokes of the document repeat, as a step.
+fn set_symmetry(session: &mut Session, change: impl FnOnce(SymmetrySettings) -> SymmetrySettings) {
+    session.drop_gesture();
+    let Some(open) = session.active_mut() else {
+        return session.say("There is no document.");
+    };
+    let document = open.document();
+    let symmetry = change(document.symmetry);
+    if symmetry != document.symmetry {
+        let next = Document { symmetry, ..document.clone() };
+        open.commit("Symmetry", next);
     }
 }

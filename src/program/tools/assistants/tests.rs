@@ -1,11 +1,12 @@
 use super::*;
-use crate::document::{Content, Layer, Live, StrokeList};
+use crate::document::symmetry::SymmetryAxes;
+use crate::document::{Content, Layer, Live, StrokeList, Symmetry};
 use crate::math::{Size, vec2};
 use crate::paint::Brush;
 use crate::tools::ToolSettings;
 use crate::tools::purpose::StrokePurpose;
 use crate::tools::snap::ViewAids;
-use crate::tools::{ModifierKeys, Symmetry, brush};
+use crate::tools::{ModifierKeys, brush};
 
 fn empty() -> Document {
     let strokes = Content::Strokes(Live::new(StrokeList::default()));
@@ -131,15 +132,19 @@ fn assistants_are_laid_moved_and_taken_away_each_in_one_step() {
 
 #[test]
 fn axes_of_symmetry_are_moved_by_their_middle_and_turned_by_their_end() {
-    let (document, mut tools) = (empty(), ToolSettings::default());
-    tools.symmetry.kind = Symmetry::Vertical;
+    let (mut document, tools) = (empty(), ToolSettings::default());
+    document.symmetry.kind = Symmetry::Vertical;
     let context = ToolContext::new(&document, &tools);
-    let mut moving = press(&context, PenSample::at(vec2(100.0, 75.0))).0.unwrap();
-    let moved = moving.drag(&[PenSample::at(vec2(60.0, 50.0))]).settings().symmetry.axes;
+    let drag = |from: Vec2, to: Vec2| {
+        let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
+        gesture.drag(&[PenSample::at(to)]);
+        let Outcome::Commit { document, .. } = gesture.release() else { panic!("a step") };
+        document.symmetry.axes
+    };
+    let moved = drag(vec2(100.0, 75.0), vec2(60.0, 50.0));
     assert_eq!(moved.middle(document.size), vec2(60.0, 50.0));
     let end = SymmetryAxes::default().handles(document.size, 1.0)[1];
-    let mut turning = press(&context, PenSample::at(end)).0.unwrap();
-    let turned = turning.drag(&[PenSample::at(vec2(160.0, 75.0))]).settings().symmetry.axes;
+    let turned = drag(end, vec2(160.0, 75.0));
     let images = Symmetry::Vertical.images_about(document.size, turned);
     let at = images[1].sample(&crate::paint::Sample::at(vec2(30.0, 20.0))).at;
     assert!(at.distance(vec2(30.0, 130.0)) < 1e-2, "{at}: the axis lies level now");

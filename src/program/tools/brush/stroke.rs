@@ -1,11 +1,11 @@
 //! A stroke between the pen coming down and lifting, and its mirror images: live on a stroke layer,
 //! pixels on a paint layer. Floor 5.
 
+use crate::document::symmetry::SymmetryImage;
 use crate::document::{Content, Document, LayerId, Live, PixelLayer, StrokeList};
 use crate::paint::{Sample, Scene, StabilizedPen, Stroke};
 use crate::raster::{Tile, TileAt, TileGrid};
 use crate::tools::retouch::ActiveWork;
-use crate::tools::symmetry::SymmetryImage;
 use crate::tools::{Gesture, Outcome, PenSample};
 use std::sync::Arc;
 

@@ -1,10 +1,11 @@
 use super::*;
+use crate::document::{Symmetry, SymmetrySettings};
 use crate::math::{Size, Vec2, vec2};
 use crate::paint::{Brush, Stabilizer};
 use crate::raster::TileGrid;
 use crate::surface::Operator;
+use crate::tools::ModifierKeys;
 use crate::tools::ToolSettings;
-use crate::tools::{ModifierKeys, Symmetry};
 use std::sync::Arc;
 
 fn context<'a>(
@@ -173,10 +174,10 @@ fn blank() -> Content {
 
 #[test]
 fn mirror_images_are_strokes_of_their_own() {
-    let empty = Document::empty(Size::new(200, 150));
+    let symmetry = SymmetrySettings { kind: Symmetry::Vertical, ..SymmetrySettings::default() };
+    let empty = Document { symmetry, ..Document::empty(Size::new(200, 150)) };
     let brush = Brush { size: 8.0, hardness: 1.0, ..Brush::default() };
-    let mut tools = ToolSettings::with_brush(brush);
-    tools.symmetry.kind = Symmetry::Vertical;
+    let tools = ToolSettings::with_brush(brush);
     let mirrored = context(&empty, None, &tools);
     let (document, _) =
         draw(&mirrored, StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
@@ -184,7 +185,8 @@ fn mirror_images_are_strokes_of_their_own() {
     let ends: Vec<Vec2> =
         list.params().strokes.iter().map(|stroke| stroke.samples()[1].at).collect();
     assert_eq!(ends, [vec2(60.0, 90.0), vec2(140.0, 90.0)]);
-    let on_paint = ToolContext { document: &paint_layer(), layer: None, ..mirrored };
+    let paint = Document { symmetry, ..paint_layer() };
+    let on_paint = ToolContext { document: &paint, layer: None, ..mirrored };
     let id = on_paint.document.layers[0].id;
     let (painted, _) = draw(
         &ToolContext { layer: Some(id), ..on_paint },

@@ -1,10 +1,10 @@
 use super::*;
-use crate::document::{Group, Layer, PixelLayer, Progress, flatten};
+use crate::document::{Group, Layer, PixelLayer, Progress, Symmetry, flatten};
 use crate::math::{Rect, Size, Vec2, srgb::Color, vec2};
 use crate::paint::LiquifySettings;
 use crate::raster::{CoverageGrid, TileAt, TileGrid};
+use crate::tools::ModifierKeys;
 use crate::tools::ToolSettings;
-use crate::tools::{ModifierKeys, Symmetry};
 
 const SIZE: Size = Size::new(256, 192);
 
@@ -126,11 +126,11 @@ fn what_cannot_be_displaced_says_why() {
 
 #[test]
 fn a_stroke_and_its_mirror_image_displace_alike() {
-    let document = document();
+    let mut document = document();
+    document.symmetry.kind = Symmetry::Vertical;
     let layer = Some(document.layers[0].id);
     for tool in [LiquifyTool::Push, LiquifyTool::Grow, LiquifyTool::TwirlLeft] {
-        let mut tools = ToolSettings { liquify: settings(tool), ..ToolSettings::default() };
-        tools.symmetry.kind = Symmetry::Vertical;
+        let tools = ToolSettings { liquify: settings(tool), ..ToolSettings::default() };
         let context = ToolContext { layer, ..ToolContext::new(&document, &tools) };
         let (gesture, _) = press(&context, PenSample::at(vec2(60.0, 100.0)));
         let mut gesture = gesture.unwrap();

@@ -3,6 +3,7 @@
 //! refused. Not here: parts (`parts`).
 
 use super::dice::{Dice, Roll};
+use crate::document::Symmetry;
 use crate::document::parts::from_flats::PartFor;
 use crate::document::{DerivedMask, Inflation, LayerTransform, TransformShape};
 use crate::io::recipe::value::RecipeValue;
@@ -28,7 +29,6 @@ use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::surface::{Anchor, NoiseRelief, Operator};
-use crate::tools::Symmetry;
 use serde_json::{Value, json};
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Symmetry: every stroke of the brush with its mirror images, each a stroke of its own over its
-//! own part of the surface. Floor 5.
+//! own part of the surface. A value of the document, not part of the picture. Floor 4.
 
-use crate::math::range::clamp_to_range;
-use crate::math::{COORDINATE, Mat2, Size, TURNS, Vec2, vec2};
+use crate::math::range::{check_range, clamp_to_range};
+use crate::math::{COORDINATE, Mat2, PlaneMap, Size, TURNS, Vec2, vec2};
 use crate::paint::{Brush, Sample, StrokeFrame};
 
 /// How strokes repeat about a point, by default the middle of the canvas.
@@ -47,6 +47,54 @@ impl SymmetrySettings {
     pub fn images(&self, canvas: Size) -> Vec<SymmetryImage> {
         self.kind.images_about(canvas, self.axes)
     }
+
+    /// Refuses what files cannot hold.
+    pub fn fits(&self) -> Result<(), String> {
+        if let Symmetry::Radial(turns) = self.kind
+            && !(2..=MOST_ROUND).contains(&turns)
+        {
+            return Err(format!("Symmetry turns {turns} times; it must turn 2 to {MOST_ROUND}"));
+        }
+        if let Some(center) = self.axes.center {
+            check_range("the middle of symmetry", center.x, &COORDINATE)?;
+            check_range("the middle of symmetry", center.y, &COORDINATE)?;
+        }
+        check_range("the turn of symmetry", self.axes.turn, &TURNS)
+    }
+
+    /// The same axes after a map of the canvas from one size to another; without them where they go
+    /// out of range.
+    pub(super) fn transformed(&self, map: &PlaneMap, [from, to]: [Size; 2]) -> Self {
+        let middle = self.axes.middle(from);
+        let upward = middle - self.axes.rotation() * Vec2::Y * SPAN_PX;
+        let (Some(center), Some(end)) = (map.to_canvas(middle), map.to_canvas(upward)) else {
+            return Self { axes: SymmetryAxes::default(), ..*self };
+        };
+        let turn = match self.axes.turn == 0.0 && (end - center).x.abs() < 1e-3 && end.y < center.y
+        {
+            true => 0.0,
+            false => turn_of(end - center),
+        };
+        // The middle of the canvas stays the middle of the canvas.
+        let is_middle = self.axes.center.is_none() && center.distance(to.center()) < 1e-3;
+        let next =
+            Self { axes: SymmetryAxes { center: (!is_middle).then_some(center), turn }, ..*self };
+        if next.fits().is_ok() { next } else { Self { axes: SymmetryAxes::default(), ..*self } }
+    }
+
+    /// On a canvas `per_axis` times as large.
+    pub(super) fn scaled(&self, per_axis: Vec2) -> Self {
+        let center = self.axes.center.map(|center| center * per_axis);
+        Self { axes: SymmetryAxes { center, ..self.axes }.clamp_to_ranges(), ..*self }
+    }
+}
+
+/// Far enough from the middle to see how an axis leans, px.
+const SPAN_PX: f32 = 1024.0;
+
+/// How far an axis is turned whose upper end lies there, degrees counter-clockwise.
+fn turn_of(upward: Vec2) -> f32 {
+    (-upward.x).atan2(-upward.y).to_degrees()
 }
 
 /// What the user drags.
@@ -87,18 +135,17 @@ impl SymmetryAxes {
         [middle, middle - self.rotation() * Vec2::Y * HANDLE_PT * px_per_pt]
     }
 
-    /// The handle at a point, if there are axes.
+    /// The handle at a point, within so many px of the canvas, if there are axes.
     pub fn handle_at(
         &self,
         symmetry: Symmetry,
         canvas: Size,
         at: Vec2,
         px_per_pt: f32,
+        near_px: f32,
     ) -> Option<AxisHandle> {
         let [middle, end] = self.handles(canvas, px_per_pt);
-        let near = |handle: Vec2| {
-            symmetry != Symmetry::None && handle.distance(at) <= super::pen::GRAB_PT * px_per_pt
-        };
+        let near = |handle: Vec2| symmetry != Symmetry::None && handle.distance(at) <= near_px;
         if near(end) { Some(AxisHandle::End) } else { near(middle).then_some(AxisHandle::Middle) }
     }
 
@@ -108,8 +155,7 @@ impl SymmetryAxes {
             AxisHandle::Middle => Self { center: Some(at), ..*self },
             AxisHandle::End => {
                 let by = at - self.middle(canvas);
-                let turn =
-                    if by.length() < 1.0 { self.turn } else { (-by.x).atan2(-by.y).to_degrees() };
+                let turn = if by.length() < 1.0 { self.turn } else { turn_of(by) };
                 let turn = if steps { (turn / STEP_DEGREES).round() * STEP_DEGREES } else { turn };
                 Self { turn, ..*self }
             }
@@ -216,7 +262,7 @@ impl SymmetryImage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{srgb::Color, vec2};
+    use crate::math::srgb::Color;
     use crate::paint::stroke::render_tile;
     use crate::paint::{
         Adjust, Curve, Dynamics, Input, PictureSource, Property, Scene, Stroke, Tip,
@@ -254,6 +300,24 @@ mod tests {
         let rays = Symmetry::Radial(5).axes(CANVAS);
         assert!(rays.len() == 5 && rays.iter().all(|ray| ray[0] == vec2(100.0, 50.0)));
         assert!((rays[0][1].x - 100.0).abs() < 1e-3 && rays[0][1].y < 0.0, "the first goes up");
+    }
+
+    #[test]
+    fn axes_stay_on_the_picture_when_the_canvas_changes() {
+        let upright = SymmetrySettings { kind: Symmetry::Vertical, ..SymmetrySettings::default() };
+        let larger = Size::new(260, 100);
+        let shift = PlaneMap::translation(vec2(10.0, 0.0));
+        let moved = upright.transformed(&shift, [CANVAS, larger]);
+        assert_eq!(moved.axes, SymmetryAxes { center: Some(vec2(110.0, 50.0)), turn: 0.0 });
+        let centered = PlaneMap::translation(vec2(30.0, 0.0));
+        assert_eq!(upright.transformed(&centered, [CANVAS, larger]), upright);
+        let leaning = SymmetryAxes { center: Some(vec2(20.0, 30.0)), turn: 25.0 };
+        let own = SymmetrySettings { axes: leaning, ..upright };
+        let same = own.transformed(&PlaneMap::IDENTITY, [CANVAS, CANVAS]).axes;
+        assert!((same.turn - 25.0).abs() < 1e-3 && same.center == leaning.center, "{same:?}");
+        assert!(own.fits().is_ok());
+        let often = SymmetrySettings { kind: Symmetry::Radial(MOST_ROUND + 1), ..own };
+        assert!(often.fits().is_err());
     }
 
     #[test]
