@@ -40,6 +40,7 @@ pub const PROPERTIES: &[&str] = &[
     r#"{"do":"adjust","adjust":{"blur":#,"exposure":0,"hue":0,"saturation":#,"brightness":1,"contrast":#}}"#,
     r##"{"do":"stops","stops":[[#,"#102030"],[#,"#ffffff80"]]}"##,
     r#"{"do":"ends","from":[#,1],"to":[2,#]}"#,
+    r#"{"do":"ramp","style":"radial"}"#,
     r#"{"do":"mask","mask":{"kind":"fresnel","f0":#,"power":#}}"#,
     r#"{"do":"mask","mask":{"kind":"curvature","scale":4,"blur":#,"from":0.25,"to":#}}"#,
     r#"{"do":"mask","mask":{"kind":"curvature","scale":#,"blur":0,"from":#,"to":0.5}}"#,
