@@ -39,8 +39,8 @@ use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{corners, on_screen, quad};
 use eframe::egui::{
-    self, Color32, ColorImage, Sense, Stroke, TextureHandle, TextureOptions, TextureWrapMode, Ui,
-    pos2,
+    self, Color32, ColorImage, Painter, Sense, Stroke, TextureHandle, TextureOptions,
+    TextureWrapMode, Ui, pos2,
 };
 use overlay::{Insets, Overlay};
 use parts::PartMarks;
@@ -91,6 +91,18 @@ pub struct Canvas {
     pub is_busy: bool,
     /// Errors to report once.
     pub trouble: Option<Error>,
+}
+
+/// Where what helps the hand is drawn, and for which tool.
+#[derive(Clone, Copy)]
+struct AidsPlace {
+    /// The canvas in the window.
+    rect: egui::Rect,
+    view: CanvasView,
+    screen_from_canvas: Affine2,
+    /// What is under the pointer, px of what is shown.
+    under: Option<Vec2>,
+    tool: ToolKind,
 }
 
 impl Canvas {
@@ -218,20 +230,13 @@ impl Canvas {
         let under = pointer.map(|p| inverse.transform_point2(vec2(p.x, p.y)));
         self.under = under.filter(|p| canvas.contains(p.x.floor() as i32, p.y.floor() as i32));
         let tool = self.hand.tool(session);
-        if let Some((layout, surface)) = layout.as_ref().zip(open.document().surface.as_ref()) {
-            self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
-            let on_sheet = OnSheet { layout, surface };
-            guides::draw_unwrapped(&painter, session, on_sheet, &to_screen(screen_from_canvas));
-            self.ants.draw_unwrapped(&painter, session, on_sheet, screen_from_canvas);
-            marks::draw_unwrapped(&painter, session, layout, screen_from_canvas, under, tool);
-        } else {
-            let visible = visible_rect(&view, rect);
-            let place = to_screen(screen_from_canvas);
-            guides::draw(&painter, session, &place, visible, view.zoom);
-            rulers::draw(ui, session, rect, screen_from_canvas, under);
-            self.ants.draw(&painter, session, screen_from_canvas, visible);
-            marks::draw(&painter, session, screen_from_canvas, under, tool);
-            self.parts.draw(&painter, session, screen_from_canvas, under, tool);
+        let aids = AidsPlace { rect, view, screen_from_canvas, under, tool };
+        match layout.as_ref().zip(open.document().surface.as_ref()) {
+            Some((layout, surface)) => {
+                self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
+                self.draw_aids_unwrapped(&painter, session, OnSheet { layout, surface }, &aids);
+            }
+            None => self.draw_aids(ui, &painter, session, &aids),
         }
         lasso_keys(ui, session, actions);
         crop::keys(ui, session, actions);
@@ -243,6 +248,31 @@ impl Canvas {
         if response.hovered() || self.hand.is_looking() {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
+    }
+
+    /// What helps the hand, over the picture: guides, rulers, selections, the tool's own marks.
+    fn draw_aids(&mut self, ui: &Ui, painter: &Painter, session: &Session, aids: &AidsPlace) {
+        let AidsPlace { rect, view, screen_from_canvas, under, tool } = *aids;
+        let visible = visible_rect(&view, rect);
+        guides::draw(painter, session, &to_screen(screen_from_canvas), visible, view.zoom);
+        rulers::draw(ui, session, rect, screen_from_canvas, under);
+        self.ants.draw(painter, session, screen_from_canvas, visible);
+        marks::draw(painter, session, screen_from_canvas, under, tool);
+        self.parts.draw(painter, session, screen_from_canvas, under, tool);
+    }
+
+    /// The same over the unwrapped surface.
+    fn draw_aids_unwrapped(
+        &mut self,
+        painter: &Painter,
+        session: &Session,
+        on_sheet: OnSheet,
+        aids: &AidsPlace,
+    ) {
+        let AidsPlace { screen_from_canvas, under, tool, .. } = *aids;
+        guides::draw_unwrapped(painter, session, on_sheet, &to_screen(screen_from_canvas));
+        self.ants.draw_unwrapped(painter, session, on_sheet, screen_from_canvas);
+        marks::draw_unwrapped(painter, session, on_sheet.layout, screen_from_canvas, under, tool);
     }
 
     /// Whether a canvas that was wholly visible is so no more: the window, or it, has another size.

@@ -200,32 +200,7 @@ impl PointerState {
             }
             while let Some(report) = self.pen.next() {
                 self.reports.push(report);
-                let report = report.pressed_along(&self.pressure);
-                match report.phase {
-                    // A press outside an open menu closes it, and does nothing else.
-                    PenPhase::Down(_) if ours(report.at) && Popup::is_any_open(ui.ctx()) => {
-                        Popup::close_all(ui.ctx())
-                    }
-                    PenPhase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
-                        self.press(&report, button, &mut listening);
-                    }
-                    PenPhase::Down(PointerButton::Primary)
-                        if rulers::is_on(canvas.rect, session, report.at)
-                            && is_in_front(report.at) =>
-                    {
-                        self.pull(&report, canvas.rect, &mut listening);
-                    }
-                    PenPhase::Down(_) => {}
-                    PenPhase::Move => self.move_to(&report, &mut listening),
-                    PenPhase::Up => {
-                        self.move_to(&report, &mut listening);
-                        self.release(&mut listening);
-                    }
-                    PenPhase::Lost if self.holding == PointerGesture::Drawing => {
-                        self.release(&mut listening)
-                    }
-                    PenPhase::Lost => self.holding = PointerGesture::Nothing,
-                }
+                self.follow_report(ui, canvas, &report, &mut listening);
             }
             match event {
                 Event::Key { key: Key::Escape, pressed: true, .. }
@@ -246,6 +221,42 @@ impl PointerState {
         }
         self.pen.end_frame();
         listening.flush();
+    }
+
+    /// One report of the pen: a press on the canvas or its rulers, a move, a release.
+    fn follow_report(
+        &mut self,
+        ui: &Ui,
+        canvas: &Response,
+        report: &PenReport,
+        listening: &mut FrameInput,
+    ) {
+        let session = listening.session;
+        let report = report.pressed_along(&self.pressure);
+        let is_in_front = ui.ctx().layer_id_at(report.at) == Some(canvas.layer_id);
+        let is_here = is_in_front && canvas.rect.contains(report.at);
+        match report.phase {
+            // A press outside an open menu closes it, and does nothing else.
+            PenPhase::Down(_) if is_here && Popup::is_any_open(ui.ctx()) => {
+                Popup::close_all(ui.ctx())
+            }
+            PenPhase::Down(button) if is_here && self.pen.touches() < 2 => {
+                self.press(&report, button, listening);
+            }
+            PenPhase::Down(PointerButton::Primary)
+                if is_in_front && rulers::is_on(canvas.rect, session, report.at) =>
+            {
+                self.pull(&report, canvas.rect, listening);
+            }
+            PenPhase::Down(_) => {}
+            PenPhase::Move => self.move_to(&report, listening),
+            PenPhase::Up => {
+                self.move_to(&report, listening);
+                self.release(listening);
+            }
+            PenPhase::Lost if self.holding == PointerGesture::Drawing => self.release(listening),
+            PenPhase::Lost => self.holding = PointerGesture::Nothing,
+        }
     }
 
     /// A finger, or a pen that reports itself as one. A tap with two fingers is undo.

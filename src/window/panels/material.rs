@@ -29,7 +29,29 @@ pub fn shading(
     if is_painter {
         painter::moods(ui, shading, moods, setter);
     }
-    let words = match is_painter {
+    let [ambient, diffuse, specular] = term_words(is_painter);
+    term(ui, ambient, shading.ambient, setter, |term| Property::Ambient { term });
+    term(ui, diffuse, shading.diffuse, setter, |term| Property::Diffuse { term });
+    term(ui, specular, shading.specular, setter, |term| Property::Specular { term });
+    if is_painter {
+        painter::terms(ui, shading.painter, setter);
+    }
+    if shading.is_lighting_beneath() {
+        painter::pixels(ui, &shading.pixel, setter);
+    }
+    highlight(ui, shading, setter);
+    steps_and_rays(ui, shading, setter);
+    pictures(ui, shading, setter);
+    if shading.model.has_lamps() {
+        lights(ui, &shading.lights, canvas, setter);
+        painter::shadows(ui, shading.shadows, setter);
+    }
+    features(ui, &shading.features, setter);
+}
+
+/// The names of the three terms and what they are, for the painter's light and for other models.
+fn term_words(is_painter: bool) -> [(&'static str, &'static str); 3] {
+    match is_painter {
         true => [
             ("Soft light", "Light from all around; 0 turns it off"),
             ("Key", "Light of the lamps; 0 turns it off"),
@@ -40,85 +62,70 @@ pub fn shading(
             ("Light", "Light of the lamps (diffuse); 0 turns it off"),
             ("Shine", "Highlights of the lamps (specular); 0 turns them off"),
         ],
-    };
-    term(ui, words[0], shading.ambient, setter, |term| Property::Ambient { term });
-    term(ui, words[1], shading.diffuse, setter, |term| Property::Diffuse { term });
-    term(ui, words[2], shading.specular, setter, |term| Property::Specular { term });
-    if is_painter {
-        painter::terms(ui, shading.painter, setter);
     }
-    if shading.is_lighting_beneath() {
-        painter::pixels(ui, &shading.pixel, setter);
-    }
+}
+
+/// A row with a number of the model.
+fn number(
+    ui: &mut Ui,
+    field: NumberField,
+    value: f32,
+    setter: &mut LayerSetter,
+    put: impl Fn(f32) -> Property,
+) {
+    setter.take(field.row(ui, value).map(|change| change.map(put)));
+}
+
+/// How small highlights are, how flat the light is, how far glass bends.
+fn highlight(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
     match shading.model {
         Model::Phong | Model::Toon | Model::Painter => {
-            let number = NumberField::new("Shininess", 1.0..=400.0, "How small the highlight is")
+            let field = NumberField::new("Shininess", 1.0..=400.0, "How small the highlight is")
                 .logarithmic()
                 .decimals(0);
-            setter.take(
-                number.row(ui, shading.shininess).map(|c| c.map(|to| Property::Shininess { to })),
-            );
+            number(ui, field, shading.shininess, setter, |to| Property::Shininess { to });
         }
         Model::SubLambertian => {
-            let number = NumberField::new("Flatness", 0.0..=1.0, "1 is matt, 0 flat like the moon");
-            setter.take(
-                number.row(ui, shading.exponent).map(|c| c.map(|to| Property::Exponent { to })),
-            );
+            let field = NumberField::new("Flatness", 0.0..=1.0, "1 is matt, 0 flat like the moon");
+            number(ui, field, shading.exponent, setter, |to| Property::Exponent { to });
         }
         Model::Ashikhmin => {
             let (nu, nv) = (shading.nu, shading.nv);
-            let a = NumberField::new("Along x", 1.0..=1000.0, "How narrow the highlight is")
-                .logarithmic()
-                .row(ui, nu);
-            setter.take(a.map(|c| c.map(|nu| Property::Anisotropy { nu, nv })));
-            let b = NumberField::new("Along y", 1.0..=1000.0, "How narrow the highlight is")
-                .logarithmic()
-                .row(ui, nv);
-            setter.take(b.map(|c| c.map(|nv| Property::Anisotropy { nu, nv })));
+            let field = |label| {
+                NumberField::new(label, 1.0..=1000.0, "How narrow the highlight is").logarithmic()
+            };
+            number(ui, field("Along x"), nu, setter, |nu| Property::Anisotropy { nu, nv });
+            number(ui, field("Along y"), nv, setter, |nv| Property::Anisotropy { nu, nv });
         }
         Model::Refraction => {
-            let number = NumberField::new("Index", 1.0..=3.0, "Glass is 1.5");
-            setter.take(
-                number.row(ui, shading.index).map(|c| c.map(|to| Property::RefractiveIndex { to })),
-            );
+            let field = NumberField::new("Index", 1.0..=3.0, "Glass is 1.5");
+            number(ui, field, shading.index, setter, |to| Property::RefractiveIndex { to });
         }
         _ => {}
     }
+}
+
+/// How many tones there are, how far occluders reach, how often rays bounce.
+fn steps_and_rays(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
     if shading.model == Model::Toon {
-        let number = NumberField::new("Tones", 2.0..=12.0, "Flat bands of light").decimals(0);
-        setter.take(
-            number
-                .row(ui, shading.bands as f32)
-                .map(|c| c.map(|to| Property::Bands { to: to as u32 })),
-        );
+        let field = NumberField::new("Tones", 2.0..=12.0, "Flat bands of light").decimals(0);
+        let put = |to: f32| Property::Bands { to: to as u32 };
+        number(ui, field, shading.bands as f32, setter, put);
     }
     if matches!(shading.model, Model::AmbientOcclusion | Model::DiffuseEnvironment) {
-        let number =
-            NumberField::new("Distance", 0.0..=400.0, "Distance up to which occluders count, px")
-                .decimals(0);
-        setter.take(
-            number
-                .row(ui, shading.occlusion_radius_px)
-                .map(|c| c.map(|to| Property::Occlusion { to })),
-        );
+        let hint = "Distance up to which occluders count, px";
+        let field = NumberField::new("Distance", 0.0..=400.0, hint).decimals(0);
+        let put = |to| Property::Occlusion { to };
+        number(ui, field, shading.occlusion_radius_px, setter, put);
     }
     if shading.model.is_bouncing() {
         let hint = "How often rays that meet the surface are reflected again; 0 shows the \
                     environment only";
         let most = *Shading::BOUNCES.end() as f32;
-        let number = NumberField::new("Bounces", 0.0..=most, hint).decimals(0);
-        setter.take(
-            number
-                .row(ui, shading.bounces as f32)
-                .map(|c| c.map(|to| Property::Bounces { to: to as u32 })),
-        );
+        let field = NumberField::new("Bounces", 0.0..=most, hint).decimals(0);
+        let put = |to: f32| Property::Bounces { to: to as u32 };
+        number(ui, field, shading.bounces as f32, setter, put);
     }
-    pictures(ui, shading, setter);
-    if shading.model.has_lamps() {
-        lights(ui, &shading.lights, canvas, setter);
-        painter::shadows(ui, shading.shadows, setter);
-    }
-    features(ui, &shading.features, setter);
 }
 
 /// The environment or the lit spheres, if the model uses them.
@@ -228,61 +235,8 @@ fn term(
 
 fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter) {
     title(ui, "Lights");
-    let with = |i: usize, light: Light| {
-        let mut lights = lights.to_vec();
-        if let Some(slot) = lights.get_mut(i) {
-            *slot = light;
-        }
-        Property::Lights { lights }
-    };
-    for (i, light) in lights.iter().enumerate() {
-        ui.horizontal(|ui| {
-            let direction = match light.kind {
-                LightKind::Directional { direction } => direction,
-                // A point light far enough away is a direction, which the ball shows.
-                LightKind::Point { position } => position,
-            };
-            if let (Some(changed), LightKind::Directional { .. }) =
-                (ball(ui, &format!("Direction of light {}", i + 1), direction), light.kind)
-            {
-                let kind = |direction| LightKind::Directional { direction };
-                setter.take(Some(
-                    changed.map(|direction| with(i, Light { kind: kind(direction), ..*light })),
-                ));
-            }
-            ui.vertical(|ui| {
-                ui.horizontal(|ui| {
-                    let color =
-                        colors::button(ui, &format!("Color of light {}", i + 1), light.color);
-                    setter.take(color.map(|c| c.map(|color| with(i, Light { color, ..*light }))));
-                    if lights.len() > 1 && ui.small_button("Remove").clicked() {
-                        let mut left = lights.to_vec();
-                        left.remove(i);
-                        setter.set(Property::Lights { lights: left }, true);
-                    }
-                });
-                let label = format!("Light {}", i + 1);
-                let number =
-                    NumberField::new(&label, 0.0..=4.0, "Intensity").row(ui, light.intensity);
-                setter.take(
-                    number.map(|c| c.map(|intensity| with(i, Light { intensity, ..*light }))),
-                );
-                if let LightKind::Point { position } = light.kind {
-                    let label = format!("Height {}", i + 1);
-                    let height = NumberField::new(
-                        &label,
-                        0.0..=4000.0,
-                        "Height above the nearest point, px",
-                    )
-                    .decimals(0);
-                    let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
-                    let height = height.row(ui, position.z);
-                    setter.take(
-                        height.map(|c| c.map(|z| with(i, Light { kind: kind(z), ..*light }))),
-                    );
-                }
-            });
-        });
+    for i in 0..lights.len() {
+        light(ui, lights, i, setter);
     }
     ui.horizontal_wrapped(|ui| {
         let far = LightKind::Directional { direction: vec3(-0.6, 0.2, 0.5) };
@@ -291,16 +245,60 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
         };
         for (text, kind) in [("Add light", far), ("Add light at a point", near)] {
             if ui.button(text).clicked() {
-                let more = lights.iter().copied().chain([Light {
-                    kind,
-                    intensity: 0.5,
-                    ..Light::default()
-                }]);
-                setter.set(Property::Lights { lights: more.collect() }, true);
+                let new = Light { kind, intensity: 0.5, ..Light::default() };
+                let lights = lights.iter().copied().chain([new]).collect();
+                setter.set(Property::Lights { lights }, true);
             }
         }
     });
     ui.weak("The anchor tool (A) drags lights on the canvas.");
+}
+
+/// One of the lamps: its direction as a ball, its color, its strength and, of a lamp at a point,
+/// its height.
+fn light(ui: &mut Ui, lights: &[Light], i: usize, setter: &mut LayerSetter) {
+    let own = lights[i];
+    let put = |light: Light| {
+        let mut lights = lights.to_vec();
+        lights[i] = light;
+        Property::Lights { lights }
+    };
+    let number_of = i + 1;
+    ui.horizontal(|ui| {
+        let direction = match own.kind {
+            LightKind::Directional { direction } => direction,
+            // A point light far enough away is a direction, which the ball shows.
+            LightKind::Point { position } => position,
+        };
+        let turned = ball(ui, &format!("Direction of light {number_of}"), direction);
+        if matches!(own.kind, LightKind::Directional { .. }) {
+            let kind = |direction| LightKind::Directional { direction };
+            setter.take(turned.map(|c| c.map(|to| put(Light { kind: kind(to), ..own }))));
+        }
+        ui.vertical(|ui| {
+            ui.horizontal(|ui| {
+                let color = colors::button(ui, &format!("Color of light {number_of}"), own.color);
+                setter.take(color.map(|c| c.map(|color| put(Light { color, ..own }))));
+                if lights.len() > 1 && ui.small_button("Remove").clicked() {
+                    let mut left = lights.to_vec();
+                    left.remove(i);
+                    setter.set(Property::Lights { lights: left }, true);
+                }
+            });
+            let label = format!("Light {number_of}");
+            let field = NumberField::new(&label, 0.0..=4.0, "Intensity");
+            let put_intensity = |intensity| put(Light { intensity, ..own });
+            number(ui, field, own.intensity, setter, put_intensity);
+            if let LightKind::Point { position } = own.kind {
+                let (label, hint) =
+                    (format!("Height {number_of}"), "Height above the nearest point, px");
+                let field = NumberField::new(&label, 0.0..=4000.0, hint).decimals(0);
+                let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
+                let put_height = |z| put(Light { kind: kind(z), ..own });
+                number(ui, field, position.z, setter, put_height);
+            }
+        });
+    });
 }
 
 /// A ball on which a direction is dragged: toward the light, camera space (y up).

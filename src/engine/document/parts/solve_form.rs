@@ -4,9 +4,9 @@ use super::body::{self, SolvedOutline, inflate_outline, solve_form};
 use super::outlines::OutlineKey;
 use super::{Part, PartKind};
 use crate::document::Document;
-use crate::math::Affine2;
+use crate::math::{Affine2, Vec2};
 use crate::raster::Plane;
-use crate::shape::{Form, Outline, OutlineRim, Roundness, bevel, sweep};
+use crate::shape::{Form, Outline, OutlineRim, Primitive, Roundness, bevel, sweep};
 use std::sync::Arc;
 
 impl Document {
@@ -21,13 +21,6 @@ impl Document {
         known: Option<Arc<SolvedOutline>>,
     ) -> Option<(Arc<SolvedOutline>, Form)> {
         let most_px = self.most_px();
-        let bare = |outline: Arc<Outline>| SolvedOutline {
-            outline,
-            joined: None,
-            pillow: None,
-            tube: None,
-        };
-        let silhouette = |puff: f32| Roundness { puff, rim_deg: 90.0 };
         let (body, form) = match &part.kind {
             PartKind::Inflate { inflation, .. } => {
                 let body = inflate_outline(own?, joined, known.as_deref(), inflation.profile);
@@ -39,55 +32,14 @@ impl Document {
                 let form = bevel::bevel_outline(&outline, bevel);
                 (bare(outline), form)
             }
-            PartKind::Lathe { axis, puff, .. } => {
-                let outline = own?;
-                let axis = axis.map(|axis| axis.map(|p| still.transform_point2(p)));
-                let squares = sweep::turn_outline(&outline, axis);
-                let form = Form::of_squares(
-                    &outline,
-                    &squares,
-                    &OutlineRim::silhouette(&outline),
-                    silhouette(*puff),
-                );
-                (bare(outline), form)
-            }
-            PartKind::Sweep { balls, puff } => {
-                let length = still.matrix2.determinant().abs().sqrt();
-                let through = balls.iter().map(|b| sweep::Ball {
-                    at: still.transform_point2(b.at),
-                    radius: b.radius * length,
-                });
-                let (outline, squares) = sweep::sweep(&through.collect::<Vec<_>>(), most_px)?;
-                let form = Form::of_squares(
-                    &outline,
-                    &squares,
-                    &OutlineRim::silhouette(&outline),
-                    silhouette(*puff),
-                );
-                (bare(Arc::new(outline)), form)
-            }
-            PartKind::Primitive(body) => {
-                let length = still.matrix2.determinant().abs().sqrt();
-                let mut seen = *body;
-                seen.center = still.transform_point2(body.center);
-                for side in [&mut seen.radius, &mut seen.length, &mut seen.tube, &mut seen.round] {
-                    *side *= length;
-                }
-                seen.half *= length;
-                seen.turn_deg.z -= still.matrix2.x_axis.to_angle().to_degrees();
-                let form = seen.form(most_px)?;
-                let outline = Arc::new(Outline::new(form.corner, &form.coverage)?);
-                (bare(outline), form)
-            }
+            PartKind::Lathe { axis, puff, .. } => turn(own?, *axis, *puff, still),
+            PartKind::Sweep { balls, puff } => sweep_balls(balls, *puff, still, most_px)?,
+            PartKind::Primitive(body) => with_own_outline(seen_body(body, still).form(most_px)?)?,
             PartKind::Profiles { shadings, .. } => {
                 let drawn = source?.outline(self, most_px)?;
-                let form = body::of_profiles(shadings, &drawn, still, most_px)?;
-                (bare(Arc::new(Outline::new(form.corner, &form.coverage)?)), form)
+                with_own_outline(body::of_profiles(shadings, &drawn, still, most_px)?)?
             }
-            PartKind::Maps(maps) => {
-                let form = body::of_maps(maps, still, most_px)?;
-                (bare(Arc::new(Outline::new(form.corner, &form.coverage)?)), form)
-            }
+            PartKind::Maps(maps) => with_own_outline(body::of_maps(maps, still, most_px)?)?,
             PartKind::Touches { .. }
             | PartKind::Sculpt { .. }
             | PartKind::Relief { .. }
@@ -97,4 +49,66 @@ impl Document {
         };
         Some((Arc::new(body), form))
     }
+}
+
+/// An outline in which nothing is solved.
+fn bare(outline: Arc<Outline>) -> SolvedOutline {
+    SolvedOutline { outline, joined: None, pillow: None, tube: None }
+}
+
+/// A form outlined by what it covers itself.
+fn with_own_outline(form: Form) -> Option<(SolvedOutline, Form)> {
+    Some((bare(Arc::new(Outline::new(form.corner, &form.coverage)?)), form))
+}
+
+/// A form from squares of its height, with a rim that is seen from the side.
+fn round(outline: &Outline, squares: &Plane<f32>, puff: f32) -> Form {
+    let roundness = Roundness { puff, rim_deg: 90.0 };
+    Form::of_squares(outline, squares, &OutlineRim::silhouette(outline), roundness)
+}
+
+fn turn(
+    outline: Arc<Outline>,
+    axis: Option<[Vec2; 2]>,
+    puff: f32,
+    still: Affine2,
+) -> (SolvedOutline, Form) {
+    let axis = axis.map(|axis| axis.map(|p| still.transform_point2(p)));
+    let form = round(&outline, &sweep::turn_outline(&outline, axis), puff);
+    (bare(outline), form)
+}
+
+fn sweep_balls(
+    balls: &[sweep::Ball],
+    puff: f32,
+    still: Affine2,
+    most_px: usize,
+) -> Option<(SolvedOutline, Form)> {
+    let scale = length_factor(still);
+    let seen = |ball: &sweep::Ball| sweep::Ball {
+        at: still.transform_point2(ball.at),
+        radius: ball.radius * scale,
+    };
+    let seen: Vec<sweep::Ball> = balls.iter().map(seen).collect();
+    let (outline, squares) = sweep::sweep(&seen, most_px)?;
+    let form = round(&outline, &squares, puff);
+    Some((bare(Arc::new(outline)), form))
+}
+
+/// A body as it lies on the canvas.
+fn seen_body(body: &Primitive, still: Affine2) -> Primitive {
+    let mut seen = *body;
+    let scale = length_factor(still);
+    seen.center = still.transform_point2(body.center);
+    for side in [&mut seen.radius, &mut seen.length, &mut seen.tube, &mut seen.round] {
+        *side *= scale;
+    }
+    seen.half *= scale;
+    seen.turn_deg.z -= still.matrix2.x_axis.to_angle().to_degrees();
+    seen
+}
+
+/// How many times a map makes lengths longer.
+fn length_factor(map: Affine2) -> f32 {
+    map.matrix2.determinant().abs().sqrt()
 }
