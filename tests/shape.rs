@@ -53,11 +53,11 @@ fn a_shape_has_a_part_for_each_color_or_place_and_tells_what_has_none() {
         (known.len() - 1, said(&output))
     };
     assert_eq!(parts(&[], "colors"), (2, String::new()));
-    let (count, told) = parts(&["--places"], "places");
+    let (count, told) = parts(&["--areas"], "areas");
     assert_eq!(count, 3);
     assert!(told.contains("face.png: One area is left without a part"), "{told}");
-    let alone = rilievo(&["shape", "face.png", "--places", "-o", "maps"]).output().unwrap();
-    assert_eq!(alone.status.code(), Some(2), "--places is of flats: {}", said(&alone));
+    let alone = rilievo(&["shape", "face.png", "--areas", "-o", "maps"]).output().unwrap();
+    assert_eq!(alone.status.code(), Some(2), "--areas is of flats: {}", said(&alone));
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn a_drawing_of_one_color_or_of_nothing_is_refused_for_what_it_is() {
         };
         refused(&shape(&desk, &file, &[]), &[&file, why]);
         let flats = desk.path(&file);
-        for more in [&["--places"][..], &[]] {
+        for more in [&["--areas"][..], &[]] {
             let more = [&["--flats", flats.to_str().unwrap()][..], more].concat();
             refused(&shape(&desk, &file, &more), &[&file, why]);
         }

@@ -170,13 +170,13 @@ impl Session {
     /// The selected layer as shown.
     pub fn layer(&self) -> Option<&Arc<Layer>> {
         let open = self.active()?;
-        open.shown_document().layer(open.primary?)
+        open.shown_document().layer(open.active_layer?)
     }
 
     /// The path of the selected layer.
     pub fn layer_path(&self) -> Option<LayerPath> {
         let open = self.active()?;
-        LayerPath::of(open.document(), open.primary?)
+        LayerPath::of(open.document(), open.active_layer?)
     }
 
     /// The paths of the selected layers, without those in a group that is selected.

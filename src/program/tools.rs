@@ -58,12 +58,12 @@ pub struct ToolContext<'a> {
     pub document: &'a Document,
     /// The settings of the tools.
     pub tools: &'a ToolSettings,
-    /// The primary layer.
+    /// The active layer.
     pub layer: Option<LayerId>,
     /// All selected layers, those in a selected group left out, bottom first; tools that make no
     /// marks work on all of them.
     pub layers: &'a [LayerId],
-    /// The selected strokes of the primary layer.
+    /// The selected strokes of the active layer.
     pub strokes: &'a [usize],
     /// The selected part of the shape, by its id.
     pub part: Option<&'a str>,
@@ -100,7 +100,7 @@ impl<'a> ToolContext<'a> {
         }
     }
 
-    /// The selected layers: if none are given, the primary one.
+    /// The selected layers: if none are given, the active one.
     pub fn selected_layers(&self) -> &[LayerId] {
         if self.layers.is_empty() { self.layer.as_slice() } else { self.layers }
     }

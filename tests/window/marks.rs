@@ -40,7 +40,7 @@ fn a_stroke_is_selected_in_the_list_ordered_duplicated_and_deleted() {
     let heights = |harness: &Story| -> Vec<f32> {
         let open = session(harness).active().unwrap();
         open.document()
-            .strokes(open.primary.unwrap())
+            .strokes(open.active_layer.unwrap())
             .iter()
             .map(|stroke| stroke.samples()[0].at.y)
             .collect()

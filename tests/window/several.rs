@@ -123,7 +123,7 @@ fn an_assistant_is_laid_and_a_stroke_beside_it_is_straight() {
     press(&mut harness, "Brush");
     drag(&mut harness, vec2(-100.0, 9.0), vec2(80.0, -14.0));
     let open = session(&harness).active().unwrap();
-    let strokes = open.document().strokes(open.primary.unwrap());
+    let strokes = open.document().strokes(open.active_layer.unwrap());
     let on = assistants[0].points[0].y;
     assert!(
         strokes[0].samples().iter().all(|sample| (sample.at.y - on).abs() < 0.05),

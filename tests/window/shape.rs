@@ -145,10 +145,10 @@ fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     picture.save(&file).unwrap();
     let mut harness = opening(&file);
     asked(&mut harness);
-    press(&mut harness, "A part for each place");
+    press(&mut harness, "A part for each area");
     give(&mut harness);
     let places =
-        |harness: &Story| parts(harness).iter().filter(|part| part.place().is_some()).count();
+        |harness: &Story| parts(harness).iter().filter(|part| part.area_point().is_some()).count();
     assert_eq!((parts(&harness).len(), places(&harness)), (3, 2));
 
     // As one part it can be split later.
@@ -156,19 +156,19 @@ fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
     asked(&mut harness);
     press(&mut harness, "One part");
     give(&mut harness);
-    assert!(harness.query_by_label("Split by place").is_none(), "it is of no color");
+    assert!(harness.query_by_label("Split by area").is_none(), "it is of no color");
     let mut harness = opening(&file);
     asked(&mut harness);
     harness.get_by_label_contains("A part for each color").click();
     steps(&mut harness);
     give(&mut harness);
     assert_eq!((parts(&harness).len(), places(&harness)), (2, 0));
-    press(&mut harness, "Split by place");
+    press(&mut harness, "Split by area");
     steps(&mut harness);
     assert_eq!(parts(&harness).len(), 3, "{:?} {:?}", session(&harness).notes, parts(&harness));
     assert_eq!(places(&harness), 2);
     assert!(
-        harness.query_by_label("Split by place").is_none(),
+        harness.query_by_label("Split by area").is_none(),
         "a part of one place cannot be split"
     );
 

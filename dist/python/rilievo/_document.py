@@ -56,7 +56,7 @@ class Document:
     def shape(self, layer="0", preset="pillow", flats=True):
         """Give a flat drawing a shape, a part for each flat color, and a light above it.
 
-        ``flats`` may be ``False`` (one part) or ``"places"`` (a part for each separate area).
+        ``flats`` may be ``False`` (one part) or ``"areas"`` (a part for each separate area).
         Returns the path of the layer of light.
         """
         return self.do("part", "shape", layer=layer, preset=preset, flats=flats)["layer"]

@@ -67,7 +67,7 @@ impl Document {
         Some(if self.parts.is_empty() {
             next
         } else {
-            next.with_outlines_renamed(self, id).with_places_carried(self)
+            next.with_outlines_renamed(self, id).with_areas_carried(self)
         })
     }
 

@@ -35,8 +35,8 @@ pub struct ShapeArgs {
     #[arg(long, value_name = "FILE")]
     flats: Option<PathBuf>,
     /// A part for each separate area of a color, such as two eyes
-    #[arg(long, requires = "flats")]
-    places: bool,
+    #[arg(long, requires = "flats", alias = "places")]
+    areas: bool,
     /// The folder to write the maps to; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
@@ -183,7 +183,7 @@ fn shape_drawing(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
                     format!("it has {other} pixels, the drawing {size}"),
                 ));
             }
-            let each = if args.places { PartFor::Place } else { PartFor::Color };
+            let each = if args.areas { PartFor::Area } else { PartFor::Color };
             let flats = match FigureBackground::of(&flats, size) {
                 // Flats may fill their picture.
                 FigureBackground::Painted => flats,

@@ -29,7 +29,7 @@ pub struct Edit {
     pub label: &'static str,
     /// The document after it.
     pub document: Document,
-    /// Chosen from now on, the primary one last; none: unchanged.
+    /// Chosen from now on, the active one last; none: unchanged.
     pub select: Vec<LayerId>,
 }
 
@@ -41,8 +41,8 @@ pub struct OpenDocument {
     pub history: History<EditTarget>,
     /// The preview during a gesture: not a step yet.
     preview: Option<Preview>,
-    /// The primary one of the selected layers: what the brush paints on.
-    pub primary: Option<LayerId>,
+    /// The active one of the selected layers: what the brush paints on.
+    pub active_layer: Option<LayerId>,
     pub(super) selected_layers: SelectedLayers,
     /// The part of the shape that is selected, by its id.
     pub part: Option<String>,
@@ -109,13 +109,13 @@ impl OpenDocument {
         // What follows from it is there before anything is done with it, wherever it comes from.
         let document = document.reshaped();
         let part = nearest_part(&document);
-        let primary = document.layers.last().map(|layer| layer.id);
+        let active_layer = document.layers.last().map(|layer| layer.id);
         Self {
             key: NEXT.fetch_add(1, Ordering::Relaxed),
             saved: document.clone(),
             history: History::new(document, STEPS),
             preview: None,
-            primary,
+            active_layer,
             selected_layers: SelectedLayers::default(),
             part,
             file,
@@ -285,10 +285,10 @@ impl OpenDocument {
         self.shown_document().parts.part(self.part.as_deref()?)
     }
 
-    /// The selected strokes of the primary layer that exist, in rising order.
+    /// The selected strokes of the active layer that exist, in rising order.
     pub fn selected_strokes(&self) -> Vec<usize> {
         let Some((layer, selected_strokes)) =
-            self.selected_strokes.as_ref().filter(|(layer, _)| Some(*layer) == self.primary)
+            self.selected_strokes.as_ref().filter(|(layer, _)| Some(*layer) == self.active_layer)
         else {
             return Vec::new();
         };
@@ -334,11 +334,12 @@ impl OpenDocument {
         let has_mask = |layer: &Arc<crate::document::Layer>| {
             layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }))
         };
-        self.on_mask &= self.primary.and_then(|id| self.document().layer(id)).is_some_and(has_mask);
+        self.on_mask &=
+            self.active_layer.and_then(|id| self.document().layer(id)).is_some_and(has_mask);
         let document = self.history.present();
         let is_there = |id: LayerId| document.layer(id).is_some();
-        if !self.primary.is_some_and(is_there) {
-            self.primary = document.layers.last().map(|layer| layer.id);
+        if !self.active_layer.is_some_and(is_there) {
+            self.active_layer = document.layers.last().map(|layer| layer.id);
         }
         if !self.solo.is_some_and(is_there) {
             self.solo = None;

@@ -15,9 +15,14 @@ pub trait ReplayValue: Sized {
     fn read(value: &Value) -> std::result::Result<Self, String>;
 }
 
+/// Fields with the names that they had before, which are still read.
+const FORMER_FIELDS: [(&str, &str); 1] = [("active_layer", "primary")];
+
 /// A field of an object; absent counts as `null`.
 pub fn field<T: ReplayValue>(object: &Value, name: &str) -> std::result::Result<T, String> {
-    T::read(object.get(name).unwrap_or(&Value::Null)).map_err(|reason| format!("“{name}” {reason}"))
+    let former = || FORMER_FIELDS.iter().find(|(now, _)| *now == name);
+    let value = object.get(name).or_else(|| object.get(former()?.1)).unwrap_or(&Value::Null);
+    T::read(value).map_err(|reason| format!("“{name}” {reason}"))
 }
 
 impl ReplayValue for bool {

@@ -314,6 +314,6 @@ fn a_line_begins_where_the_last_stroke_ended_whatever_other_tool_was_used_since(
     let shifted = r#"[40,20,1,0,0,0,{"shift":true,"ctrl":false,"alt":false}]"#;
     let session = replay(&format!("{PAPER}{}", line.replace("PEN", shifted)));
     let document = session.active().unwrap().document();
-    let strokes = document.strokes(session.active().unwrap().primary.unwrap());
+    let strokes = document.strokes(session.active().unwrap().active_layer.unwrap());
     assert_eq!(strokes[1].samples()[0].at, crate::math::vec2(20.0, 20.0));
 }

@@ -26,7 +26,7 @@ use placed::{DragMap, LayerPlacement, to_storable};
 pub struct TransformSettings {
     /// What it moves.
     pub target: TransformTarget,
-    /// The selected points of the primary layer's mesh.
+    /// The selected points of the active layer's mesh.
     pub mesh_points: Vec<usize>,
 }
 

@@ -26,7 +26,7 @@ fn with_selected(
 }
 
 /// Does something with the selected layer.
-fn with_primary(
+fn with_active_layer(
     session: &Session,
     requests: &mut UiRequests,
     action: impl FnOnce(LayerPath) -> LayerAction,
@@ -49,11 +49,12 @@ fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
 
 /// Moves to the next layer, or adds it.
 fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
-    let Some((open, primary)) = session.active().and_then(|open| Some((open, open.primary?)))
+    let Some((open, active_layer)) =
+        session.active().and_then(|open| Some((open, open.active_layer?)))
     else {
         return;
     };
-    let to = neighbor(open.document(), primary, by);
+    let to = neighbor(open.document(), active_layer, by);
     let anchor = open.range_start().filter(|_| extends);
     let listed: Vec<_> = open.document().walk().iter().map(|(_, layer)| layer.id).collect();
     let ids = anchor.map_or_else(|| vec![to], |anchor| range(&listed, anchor, to));
@@ -92,7 +93,7 @@ fn is_locked(session: &Session, lock: LayerLock) -> bool {
 }
 
 fn is_alone(session: &Session) -> bool {
-    session.active().is_some_and(|open| open.solo.is_some() && open.solo == open.primary)
+    session.active().is_some_and(|open| open.solo.is_some() && open.solo == open.active_layer)
 }
 
 fn has_mask(session: &Session) -> bool {
@@ -256,7 +257,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[],
         "Hides all other layers, or shows them again",
         has_layer,
-        |session, requests| with_primary(session, requests, |layer| LayerAction::Solo { layer }),
+        |session, requests| with_active_layer(session, requests, |layer| LayerAction::Solo { layer }),
     )
     .ticked(|session, _| is_alone(session)),
 ];
@@ -305,7 +306,7 @@ const LIVE: &[MenuCommand] = &[
 
 const DRAWING: &[MenuCommand] = &[
     row(
-        "Split part by place",
+        "Split part by area",
         &[],
         "Separate areas of the selected part's color, such as two eyes, become separate parts",
         |session| {
@@ -422,7 +423,7 @@ const MASK: &[MenuCommand] = &[
         |session, requests| {
             let mask = session.layer().and_then(|layer| layer.mask.clone());
             let is_on = is_on_mask(session);
-            with_primary(session, requests, |layer| match mask {
+            with_active_layer(session, requests, |layer| match mask {
                 Some(mask) if matches!(mask.kind, MaskKind::File { .. }) => LayerAction::OnMask { layer, on: !is_on },
                 _ => LayerAction::PaintMask { layer, hides: false },
             });

@@ -108,7 +108,7 @@ pub fn has_layer(session: &Session) -> bool {
     session.layer().is_some()
 }
 
-/// Whether the primary layer is painted on.
+/// Whether the active layer is painted on.
 pub fn has_paint(session: &Session) -> bool {
     session.layer().is_some_and(|layer| matches!(layer.content, Content::Pixels(_)))
 }

@@ -106,7 +106,7 @@ impl ShapeDialog {
         });
         ui.add_enabled_ui(self.traits.colors > 0, |ui| {
             let hint = "Separate areas of one color, such as two eyes, become separate parts";
-            radio(ui, &mut self.each, PartFor::Place, "A part for each place").on_hover_text(hint);
+            radio(ui, &mut self.each, PartFor::Area, "A part for each area").on_hover_text(hint);
         });
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
         if matches!(self.traits.background, FigureBackground::Flat(_)) {

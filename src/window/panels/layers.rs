@@ -91,7 +91,7 @@ pub fn show(
         });
 }
 
-/// Blend mode and opacity of the selected layers, showing those of the primary one; locks, clipping,
+/// Blend mode and opacity of the selected layers, showing those of the active one; locks, clipping,
 /// and the field that finds layers.
 fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {

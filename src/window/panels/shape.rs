@@ -84,7 +84,7 @@ fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequest
     let buttons = [
         (
             split,
-            "Split by place",
+            "Split by area",
             "Separate areas of its color, such as two eyes, become separate parts",
         ),
         (

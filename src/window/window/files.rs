@@ -140,7 +140,7 @@ impl MainWindow {
     /// Reads a picture for the selected layer.
     fn read_part(&mut self, part: PicturePart, file: PathBuf) {
         let Some((key, layer)) =
-            self.session.active().and_then(|open| Some((open.key, open.primary?)))
+            self.session.active().and_then(|open| Some((open.key, open.active_layer?)))
         else {
             return;
         };

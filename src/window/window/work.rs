@@ -311,9 +311,9 @@ impl MainWindow {
     /// Looks for the drawing that will get a shape; then a dialog asks which.
     pub(super) fn look_for_drawing(&mut self) {
         let Some(open) = self.session.active() else { return };
-        let (key, document, primary) = (open.key, open.document().clone(), open.primary);
+        let (key, document, active_layer) = (open.key, open.document().clone(), open.active_layer);
         let look = move |_: &Progress| {
-            let found = shape::find_drawing(&document, primary);
+            let found = shape::find_drawing(&document, active_layer);
             JobResult::then(move |window: &mut Self, _| {
                 let all = &window.session.open_documents;
                 if let Some(open) = all.iter().find(|other| other.key == key) {

@@ -147,9 +147,7 @@ impl OutlineSource {
             }
             OutlineSource::Layer { layer, color } => {
                 at_most("letters of the layer's name", layer.chars().count(), Part::LONGEST_NAME)?;
-                color
-                    .and_then(|flat| flat.at)
-                    .map_or(Ok(()), |at| place("the place of a color", at))
+                color.and_then(|flat| flat.at).map_or(Ok(()), |at| place("the area of a color", at))
             }
             OutlineSource::Selection(name) => at_most(
                 "letters of the selection's name",

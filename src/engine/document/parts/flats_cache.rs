@@ -4,12 +4,12 @@
 use super::Parts;
 use crate::math::srgb::Color;
 use crate::raster::TileGrid;
+use crate::shape::flats::color_areas::ColorAreas;
 use crate::shape::flats::picture::FlatReading;
-use crate::shape::flats::places::ColorPlaces;
 use crate::shape::flats::shares::Flats;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Places of more pixels together than this are not kept.
+/// Areas of more pixels together than this are not kept.
 const MOST_KEPT_PX: usize = 1 << 25;
 
 /// The flats of one picture.
@@ -17,7 +17,7 @@ pub struct CachedFlats {
     pub flats: Flats,
     tiles: TileGrid,
     asked: Vec<Color>,
-    places: Mutex<Vec<(Color, Arc<ColorPlaces>)>>,
+    areas: Mutex<Vec<(Color, Arc<ColorAreas>)>>,
 }
 
 /// The last that were asked for.
@@ -33,22 +33,20 @@ fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl CachedFlats {
-    /// The places of a color.
-    pub fn places_of(&self, color: Color) -> Arc<ColorPlaces> {
-        let known = lock(&self.places)
-            .iter()
-            .find(|(of, _)| *of == color)
-            .map(|(_, places)| places.clone());
+    /// The areas of a color.
+    pub fn areas_of(&self, color: Color) -> Arc<ColorAreas> {
+        let known =
+            lock(&self.areas).iter().find(|(of, _)| *of == color).map(|(_, areas)| areas.clone());
         known.unwrap_or_else(|| {
-            let found = Arc::new(ColorPlaces::of(&self.flats, color));
-            let mut places = lock(&self.places);
-            if places.iter().map(|(_, places)| places.pixels_held()).sum::<usize>()
+            let found = Arc::new(ColorAreas::of(&self.flats, color));
+            let mut areas = lock(&self.areas);
+            if areas.iter().map(|(_, areas)| areas.pixels_held()).sum::<usize>()
                 + found.pixels_held()
                 > MOST_KEPT_PX
             {
-                places.clear();
+                areas.clear();
             }
-            places.push((color, found.clone()));
+            areas.push((color, found.clone()));
             found
         })
     }
@@ -69,7 +67,7 @@ impl Parts {
                 flats,
                 tiles: tiles.clone(),
                 asked: asked.to_vec(),
-                places: Mutex::default(),
+                areas: Mutex::default(),
             };
             Some(lock(last).insert(Arc::new(known)).clone())
         })

@@ -1,4 +1,4 @@
-//! Parts of a layer of flat colors: one for each color, or for each place of one, ordered by who
+//! Parts of a layer of flat colors: one for each color, or for each area of one, ordered by who
 //! interrupts whose outline. Floor 4. Not here: what the colors are (`palette`, `shares`), and
 //! their order (`order`).
 
@@ -9,8 +9,8 @@ use crate::math::{Rect, vec2};
 use crate::raster::{Plane, TileGrid};
 use crate::shape::flats::area_names::area_names;
 use crate::shape::flats::areas::{LEAST_SHARE, spread};
+use crate::shape::flats::color_areas::ColorAreas;
 use crate::shape::flats::palette::NOTHING;
-use crate::shape::flats::places::ColorPlaces;
 use crate::shape::flats::shares::Flats;
 
 pub use crate::shape::flats::shares::MOST_COLORS;
@@ -28,7 +28,7 @@ pub enum PartFor {
     /// Each flat color of it.
     Color,
     /// Each area of a flat color that is apart from the others of that color.
-    Place,
+    Area,
 }
 
 /// The parts of flats.
@@ -36,7 +36,7 @@ pub enum PartFor {
 pub struct FlatParts {
     /// The farthest first.
     pub parts: Vec<Part>,
-    /// Colors, or places of them, that are seen but too small or too many to be parts.
+    /// Colors, or areas of them, that are seen but too small or too many to be parts.
     pub left_out: usize,
     /// The share of what is painted that lies in flat areas, `[0, 1]`.
     pub flat_share: f32,
@@ -70,7 +70,7 @@ impl FlatParts {
     }
 }
 
-/// The parts of the flats in a layer called `layer`, a part for each color or each place.
+/// The parts of the flats in a layer called `layer`, a part for each color or each area.
 ///
 /// `tiles`: what the layer shows on the canvas. Nothing makes no parts.
 pub fn parts_of_flats(
@@ -82,7 +82,7 @@ pub fn parts_of_flats(
     let rect = tiles.bounds();
     let Some(flats) = Flats::of(tiles, rect, &[]) else { return FlatParts::default() };
     let FlatAreas { of, labels, left_out } = match each {
-        PartFor::Place => places(&flats, rect),
+        PartFor::Area => areas(&flats, rect),
         _ => {
             let of = flats.colors().into_iter().map(FlatColor::from).collect();
             FlatAreas { of, labels: flats.mostly(), left_out: flats.omitted_colors() }
@@ -91,9 +91,9 @@ pub fn parts_of_flats(
     let order = farthest_first(&labels, of.len());
     let colors: Vec<Color> = of.iter().map(|flat| flat.color).collect();
     let names = area_names(&colors, &labels);
-    let part = |(place, index): (usize, usize)| {
+    let part = |(position, index): (usize, usize)| {
         let outline = OutlineSource::Layer { layer: layer.into(), color: Some(of[index]) };
-        let id = format!("part-{}", place + 1);
+        let id = format!("part-{}", position + 1);
         Part {
             name: names[index].clone(),
             ..Part::new(id, PartKind::Inflate { outline, inflation })
@@ -111,23 +111,23 @@ struct FlatAreas {
     left_out: usize,
 }
 
-/// The places of all colors, a color that has only one without its point.
-fn places(flats: &Flats, rect: Rect) -> FlatAreas {
+/// The areas of all colors, a color that has only one without its point.
+fn areas(flats: &Flats, rect: Rect) -> FlatAreas {
     let corner = vec2(rect.x0 as f32, rect.y0 as f32);
     let mut left_out = flats.omitted_colors();
     let mut all = Vec::new();
     let mostly = flats.mostly();
     let mut labels = Plane::full(mostly.size(), 0u32);
     for color in flats.colors() {
-        let found = ColorPlaces::of(flats, color);
+        let found = ColorAreas::of(flats, color);
         let large = found.large();
         left_out += found.small();
-        for place in &large {
+        for area in &large {
             all.push((
-                found.pixels(*place),
-                FlatColor { color, at: Some(corner + found.middle(*place)) },
+                found.pixels(*area),
+                FlatColor { color, at: Some(corner + found.middle(*area)) },
             ));
-            found.mark(*place, &mut labels, all.len() as u32);
+            found.mark(*area, &mut labels, all.len() as u32);
         }
     }
     let mut largest: Vec<usize> = (0..all.len()).collect();

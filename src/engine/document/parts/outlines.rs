@@ -11,7 +11,7 @@ use crate::paint::{Scene, Selection};
 use crate::raster::{CoverageGrid, Plane, TileGrid};
 use crate::shape::Outline;
 use crate::shape::flats::beneath::fill_beneath;
-use crate::shape::flats::places::SplitPlaces;
+use crate::shape::flats::color_areas::SplitAreas;
 use crate::shape::flats::shares::Flats;
 use crate::surface::Surface;
 use crate::surface::region::SurfaceRegion;
@@ -54,17 +54,17 @@ impl FlatArea {
         all
     }
 
-    /// The share of each pixel that it takes, and whether its place has its color no longer, so
+    /// The share of each pixel that it takes, and whether its area has its color no longer, so
     /// that this is the nearest one; `corner`: of the flats. `None` where the color is nowhere.
     fn share(&self, known: &CachedFlats, corner: Vec2) -> Option<(Plane<u8>, bool)> {
         let flats = &known.flats;
         let mut share = flats.share_of(self.flat.color, &self.over);
         let mut is_lost = false;
         if let Some(at) = self.flat.at {
-            let places = known.places_of(self.flat.color);
-            let (place, is_beside) = places.nearest(at - corner)?;
+            let areas = known.areas_of(self.flat.color);
+            let (area, is_beside) = areas.nearest(at - corner)?;
             is_lost = is_beside;
-            share = places.shares(&[place], &share).pop()?;
+            share = areas.shares(&[area], &share).pop()?;
         }
         if !(self.nearer.is_empty() && self.farther.is_empty()) {
             fill_beneath(&mut share, flats, &self.nearer, &self.farther);
@@ -82,7 +82,7 @@ impl Document {
         else {
             return area;
         };
-        // Several parts may take one color in different places.
+        // Several parts may take one color in different areas.
         let add = |to: &mut Vec<Color>, color: Color| {
             if !to.contains(&color) {
                 to.push(color);
@@ -114,9 +114,9 @@ impl Document {
 }
 
 impl Document {
-    /// The places of the color that a part takes of a layer, wherever it is; `None` for any other
-    /// part, and for one that has a place already.
-    pub fn places_of(&self, part: &Part) -> Option<SplitPlaces> {
+    /// The areas of the color that a part takes of a layer, wherever it is; `None` for any other
+    /// part, and for one that has an area already.
+    pub fn areas_of(&self, part: &Part) -> Option<SplitAreas> {
         let OutlineSource::Layer { layer, color: Some(FlatColor { color, at: None }) } =
             part.outline()?
         else {
@@ -127,7 +127,7 @@ impl Document {
         let rect = tiles.bounds();
         let area = self.area_of(part, (*color).into());
         Flats::of(&tiles, rect, &area.part_colors())
-            .map(|flats| SplitPlaces::of(&flats, *color, rect))
+            .map(|flats| SplitAreas::of(&flats, *color, rect))
     }
 
     /// What the user is told when parts take another area than the one that was meant, which no
@@ -143,13 +143,13 @@ impl Document {
             "take the areas of their colors that are"
         };
         (!names.is_empty()).then(|| {
-            format!("{} {is} nearest: its former place has another color now.", names.join(", "))
+            format!("{} {is} nearest: its former area has another color now.", names.join(", "))
         })
     }
 
-    /// With the places of colors in layers that were moved since `before`, paint unchanged, moved
+    /// With the points of areas in layers that were moved since `before`, paint unchanged, moved
     /// as well.
-    pub(in crate::document) fn with_places_carried(self, before: &Document) -> Document {
+    pub(in crate::document) fn with_areas_carried(self, before: &Document) -> Document {
         let carried = |part: &Arc<Part>| {
             let Some(OutlineSource::Layer { layer, color: Some(FlatColor { at: Some(at), .. }) }) =
                 part.outline()
@@ -167,7 +167,7 @@ impl Document {
             next.outline_mut()?.points_mut().for_each(|p| *p = moved);
             Some(Arc::new(next))
         };
-        if self.parts.list.iter().all(|part| part.place().is_none()) {
+        if self.parts.list.iter().all(|part| part.area_point().is_none()) {
             return self;
         }
         let list = self
@@ -238,7 +238,7 @@ impl OutlineKey {
         self.placed_outline(document, most_px).map(|(outline, _)| outline)
     }
 
-    /// The same, and whether it is of another area because its place no longer has its color.
+    /// The same, and whether it is of another area because its point no longer has its color.
     pub fn placed_outline(&self, document: &Document, most_px: usize) -> Option<(Outline, bool)> {
         let mut is_lost = false;
         let outline = match self {

@@ -86,8 +86,8 @@ impl Part {
         }
     }
 
-    /// The one place of a color that it takes, if it takes one.
-    pub fn place(&self) -> Option<Vec2> {
+    /// A point of the one area of a color that it takes, if it takes one.
+    pub fn area_point(&self) -> Option<Vec2> {
         match self.outline() {
             Some(OutlineSource::Layer { color, .. }) => color.and_then(|flat| flat.at),
             _ => None,
@@ -95,7 +95,7 @@ impl Part {
     }
 
     /// Takes only the area of its color at a point of its frame, if it takes a color.
-    pub fn set_place(&mut self, at: Vec2) {
+    pub fn set_area_point(&mut self, at: Vec2) {
         if let Some(OutlineSource::Layer { color: Some(flat), .. }) = self.outline_mut() {
             flat.at = Some(at);
         }

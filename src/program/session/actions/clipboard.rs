@@ -247,7 +247,7 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
 /// is cut.
 fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
     let document = open.document();
-    let id = open.primary.ok_or(NO_LAYER)?;
+    let id = open.active_layer.ok_or(NO_LAYER)?;
     let old = document.layer(id).ok_or(NO_LAYER)?;
     if cut && old.lock != LayerLock::None {
         return Err(LOCKED);
@@ -270,7 +270,7 @@ fn layer_via(open: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
     let next =
         left.with_inserted(layer, LayerSlot { index: place.index + 1, ..place }).ok_or(NO_LAYER)?;
     if open.commit(if cut { "Layer via cut" } else { "Layer via copy" }, next) {
-        open.primary = Some(new);
+        open.active_layer = Some(new);
     }
     Ok(())
 }

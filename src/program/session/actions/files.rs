@@ -104,7 +104,7 @@ impl FileAction {
             FileAction::Use { part, file } => {
                 let read = pictures::read(*part, file)?;
                 if let Some(open) = session.active_mut()
-                    && let Some(layer) = open.primary
+                    && let Some(layer) = open.active_layer
                 {
                     pictures::put(open, layer, read);
                     open.reads.push(file.clone());

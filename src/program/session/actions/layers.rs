@@ -37,9 +37,9 @@ actions! {
     /// among them follow it.
     LayerAction {
         "select" Select { layer: LayerPath }
-        /// These are selected, the primary one too; `anchor`: where a range begins that is extended
+        /// These are selected, the active one too; `anchor`: where a range begins that is extended
         /// later.
-        "choose" Choose { layer: LayerPaths, primary: LayerPath, anchor: Option<LayerPath> }
+        "choose" Choose { layer: LayerPaths, active_layer: LayerPath, anchor: Option<LayerPath> }
         /// Above the selected layer; into it, if it is a group.
         "add" Add { kind: NewLayer }
         "delete" Delete { layer: LayerPaths }
@@ -124,18 +124,18 @@ actions! {
 }
 
 impl LayerAction {
-    /// The action that chooses some layers, the primary one last; `None` if there are none.
+    /// The action that chooses some layers, the active one last; `None` if there are none.
     pub fn select_layers(
         document: &Document,
         ids: &[LayerId],
         anchor: Option<LayerId>,
     ) -> Option<Self> {
-        let primary = LayerPath::of(document, *ids.last()?)?;
+        let active_layer = LayerPath::of(document, *ids.last()?)?;
         if ids.len() == 1 {
-            return Some(LayerAction::Select { layer: primary });
+            return Some(LayerAction::Select { layer: active_layer });
         }
         let anchor = anchor.and_then(|id| LayerPath::of(document, id));
-        Some(LayerAction::Choose { layer: LayerPaths::of(document, ids), primary, anchor })
+        Some(LayerAction::Choose { layer: LayerPaths::of(document, ids), active_layer, anchor })
     }
 
     /// Performs it.
@@ -189,13 +189,14 @@ impl LayerAction {
                 open.select_layers(id(layer).into_iter().collect());
                 open.on_mask = false;
             }
-            LayerAction::Choose { layer, primary, anchor } => {
-                let (Some(mut ids), Some(primary)) = (layer.find(open.document()), id(primary))
+            LayerAction::Choose { layer, active_layer, anchor } => {
+                let (Some(mut ids), Some(active_layer)) =
+                    (layer.find(open.document()), id(active_layer))
                 else {
                     return;
                 };
-                ids.retain(|id| *id != primary);
-                ids.push(primary);
+                ids.retain(|id| *id != active_layer);
+                ids.push(active_layer);
                 open.select_range(ids, anchor.as_ref().and_then(id));
                 open.on_mask = false;
             }
@@ -484,7 +485,7 @@ fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bo
 pub fn slot_above(open: &OpenDocument) -> LayerSlot {
     let document = open.document();
     let highest = document.layers_below_top_ink();
-    let Some(layer) = open.primary.and_then(|id| document.layer(id)) else {
+    let Some(layer) = open.active_layer.and_then(|id| document.layer(id)) else {
         return LayerSlot::top_level(highest);
     };
     if layer.content.group().is_some() {

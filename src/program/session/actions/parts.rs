@@ -33,26 +33,26 @@ record!(ShapeSettings { tool, size, hardness, height, share, normal, radius, rea
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InflationPreset(pub Inflation);
 
-/// Whether there is a part for each color was the question before places were known.
+/// Whether there is a part for each color was the question before areas were told apart.
 impl ReplayValue for PartFor {
     fn to_value(&self) -> Value {
         match self {
             PartFor::Layer => false.into(),
             PartFor::Color => true.into(),
-            PartFor::Place => PLACES.into(),
+            PartFor::Area => AREAS.into(),
         }
     }
 
     fn read(value: &Value) -> Result<Self, String> {
         match value {
             Value::Bool(is_color) => Ok(if *is_color { PartFor::Color } else { PartFor::Layer }),
-            Value::String(word) if word == PLACES => Ok(PartFor::Place),
-            _ => Err(format!("must be true, false or “{PLACES}”")),
+            Value::String(word) if [AREAS, "places"].contains(&word.as_str()) => Ok(PartFor::Area),
+            _ => Err(format!("must be true, false or “{AREAS}”")),
         }
     }
 }
 
-const PLACES: &str = "places";
+const AREAS: &str = "areas";
 
 impl ReplayValue for InflationPreset {
     fn to_value(&self) -> Value {
@@ -73,11 +73,11 @@ impl ReplayValue for InflationPreset {
 actions! {
     /// `part` is always an id.
     PartAction {
-        /// From the primary layer, the selection or the selected part, as its kind says; in front
+        /// From the active layer, the selection or the selected part, as its kind says; in front
         /// of all others.
         "add" Add { kind: NewPart }
         /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat
-        /// colors (`true`) or from each place of them (`"places"`), and a lit Base.
+        /// colors (`true`) or from each area of one (`"areas"`), and a lit Base.
         "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: PartFor }
         /// A part in a new version, as recipes write it; shown only, until it is `done`.
         "set" Set { part: Value, done: bool }
@@ -87,7 +87,7 @@ actions! {
         "order" Order { part: String, index: usize }
         "visible" Visible { part: String, on: bool }
         "duplicate" Duplicate { part: String }
-        /// A part of a color in several places becomes a part for each.
+        /// A part of a color in several areas becomes a part for each.
         "split" Split { part: String }
         /// A drawing becomes a layer for each part that has its outline from it, which goes with
         /// the part.
@@ -193,19 +193,19 @@ impl PartAction {
             }
             PartAction::Split { part } => {
                 let part = of(part)?;
-                ("Split by place", split::split_by_place(document, &part)?, Some(part.id.clone()))
+                ("Split by area", split::split_by_area(document, &part)?, Some(part.id.clone()))
             }
             PartAction::Ink { layer } => {
                 let (next, lines) = ink::on_top(document, layer)?;
                 if open.commit("Lines on top", next) {
-                    open.primary = Some(lines);
+                    open.active_layer = Some(lines);
                 }
                 return Ok(());
             }
             PartAction::Paper { layer } => {
                 let (next, lines) = ink::without_paper(document, layer)?;
                 if open.commit("Make paper transparent", next) {
-                    open.primary = Some(lines);
+                    open.active_layer = Some(lines);
                 }
                 return Ok(());
             }
@@ -214,7 +214,7 @@ impl PartAction {
                     layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
                 let (next, group) = document.cut_by_parts(layer)?;
                 if open.commit("Cut drawing by parts", next) {
-                    open.primary = Some(group);
+                    open.active_layer = Some(group);
                 }
                 return Ok(());
             }

@@ -72,7 +72,7 @@ pub(super) fn add_image(
     let next = document.with_inserted(layer, slot_above(open));
     let is_added = next.is_some_and(|next| open.commit(label, next));
     if is_added {
-        open.primary = Some(id);
+        open.active_layer = Some(id);
     }
     is_added
 }

@@ -141,7 +141,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         return begin(session, (gesture, outcome));
     }
     let context = ToolContext {
-        layer: open.primary,
+        layer: open.active_layer,
         layers: &layers,
         strokes: &strokes,
         part: open.part.as_deref(),
@@ -242,7 +242,7 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
     let is_moved_whole = tool == ToolKind::Move
         && (open.has_several()
             || open
-                .primary
+                .active_layer
                 .and_then(|id| document.layer(id))
                 .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
     let looks_only = is_moved_whole
@@ -258,7 +258,9 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
                 | ToolKind::Crop
                 | ToolKind::Assistants
         );
-    let Some(layer) = open.primary.filter(|_| !looks_only) else { return Ok(document.clone()) };
+    let Some(layer) = open.active_layer.filter(|_| !looks_only) else {
+        return Ok(document.clone());
+    };
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
     let is_group = applied.layer(layer).is_some_and(|layer| layer.content.group().is_some());
@@ -287,7 +289,7 @@ fn take(session: &mut Session, outcome: Outcome) {
         Outcome::Preview(document) => open.show("", document),
         Outcome::Commit { label, document, select } => {
             if open.commit(label, document) {
-                open.primary = select.or(open.primary);
+                open.active_layer = select.or(open.active_layer);
                 open.last_end = stroke_end.or(open.last_end);
             }
             session.tools.lasso.clear();
@@ -303,7 +305,7 @@ fn choose(session: &mut Session, choice: DocumentChoice) {
     let Some(open) = session.active_mut() else { return };
     match choice {
         DocumentChoice::Strokes(strokes) => {
-            if let Some(layer) = open.primary {
+            if let Some(layer) = open.active_layer {
                 open.select_strokes(layer, strokes);
             }
         }

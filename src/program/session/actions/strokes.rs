@@ -64,7 +64,7 @@ impl StrokeAction {
         match self {
             StrokeAction::Choose { layer, strokes } => {
                 if let Some(id) = id(layer) {
-                    open.primary = Some(id);
+                    open.active_layer = Some(id);
                     open.select_strokes(id, strokes.clone());
                 }
             }

@@ -183,7 +183,7 @@ fn what_was_selected_and_in_hand_comes_back_with_the_drawing() {
         .bring_back(find_lost(folder.path()).pop().unwrap(), &Progress::default())
         .unwrap()
         .unwrap();
-    let selected = open.document().layer(open.primary.unwrap()).unwrap();
+    let selected = open.document().layer(open.active_layer.unwrap()).unwrap();
     assert_eq!(
         (selected.name.as_str(), open.on_mask, tool),
         ("Background", true, Some(ToolKind::Eraser))

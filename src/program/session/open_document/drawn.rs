@@ -18,7 +18,7 @@ impl OpenDocument {
     /// Why paint on the selected layer would not be seen: another layer is shown alone.
     pub fn why_hidden_beside(&self) -> Option<String> {
         let document = self.document();
-        let (alone, selected) = (document.layer(self.solo?)?, document.layer(self.primary?)?);
+        let (alone, selected) = (document.layer(self.solo?)?, document.layer(self.active_layer?)?);
         let is_seen =
             alone.id == selected.id || document.outermost(&[alone.id, selected.id]) == [alone.id];
         let (beside, shown) = (&selected.name, &alone.name);

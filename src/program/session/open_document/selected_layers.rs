@@ -1,4 +1,4 @@
-//! Which layers are selected: one is the primary one, which the brush paints on; what is done to
+//! Which layers are selected: one is the active one, which the brush paints on; what is done to
 //! layers is done to all. Floor 6. The selection is not part of the document: selecting is no step.
 
 use super::OpenDocument;
@@ -6,7 +6,7 @@ use crate::document::{Document, LayerId};
 use crate::math::Vec2;
 use crate::tools::gizmo::{GizmoContent, GizmoMemory, TransformGizmo, TransformTarget};
 
-/// The selected layers. They count as long as the primary one is among them: whatever selects
+/// The selected layers. They count as long as the active one is among them: whatever selects
 /// another layer alone drops the others.
 #[derive(Clone, Debug, Default)]
 pub struct SelectedLayers {
@@ -18,7 +18,7 @@ pub struct SelectedLayers {
 }
 
 impl SelectedLayers {
-    /// These, the primary one last.
+    /// These, the active one last.
     pub(super) fn of(ids: Vec<LayerId>) -> Self {
         Self { anchor: ids.last().copied(), ids, gizmo: GizmoMemory::default() }
     }
@@ -35,14 +35,15 @@ impl SelectedLayers {
 }
 
 impl OpenDocument {
-    /// The selected layers in the order of the tree, bottom first, the primary one among them.
+    /// The selected layers in the order of the tree, bottom first, the active one among them.
     pub fn selected_layers(&self) -> Vec<LayerId> {
         let document = self.shown_document();
-        let Some(primary) = self.primary.filter(|id| document.layer(*id).is_some()) else {
+        let Some(active_layer) = self.active_layer.filter(|id| document.layer(*id).is_some())
+        else {
             return Vec::new();
         };
-        if !self.selected_layers.ids.contains(&primary) {
-            return vec![primary];
+        if !self.selected_layers.ids.contains(&active_layer) {
+            return vec![active_layer];
         }
         let all = document.walk();
         all.iter()
@@ -58,10 +59,11 @@ impl OpenDocument {
 
     /// Whether a layer is among the selected ones.
     pub fn is_selected(&self, layer: LayerId) -> bool {
-        let also = |primary| {
-            self.selected_layers.ids.contains(&primary) && self.selected_layers.ids.contains(&layer)
+        let also = |active_layer| {
+            self.selected_layers.ids.contains(&active_layer)
+                && self.selected_layers.ids.contains(&layer)
         };
-        self.primary == Some(layer) || self.primary.is_some_and(also)
+        self.active_layer == Some(layer) || self.active_layer.is_some_and(also)
     }
 
     /// The gizmo of the transform tool around them, or around the shape, as they are shown.
@@ -109,13 +111,13 @@ impl OpenDocument {
 
     /// The start of a range that Shift extends.
     pub fn range_start(&self) -> Option<LayerId> {
-        self.selected_layers.anchor.filter(|id| self.is_selected(*id)).or(self.primary)
+        self.selected_layers.anchor.filter(|id| self.is_selected(*id)).or(self.active_layer)
     }
 
-    /// Selects layers; the primary one is the last of them. If none are given, nothing changes.
+    /// Selects layers; the active one is the last of them. If none are given, nothing changes.
     pub fn select_layers(&mut self, ids: Vec<LayerId>) {
-        if let Some(primary) = ids.last().copied() {
-            self.primary = Some(primary);
+        if let Some(active_layer) = ids.last().copied() {
+            self.active_layer = Some(active_layer);
             self.selected_layers.select_as(SelectedLayers::of(ids));
         }
     }
@@ -126,7 +128,7 @@ impl OpenDocument {
         self.selected_layers.anchor = anchor.or(self.selected_layers.anchor);
     }
 
-    /// With a layer added to those selected, or removed from them, the primary one last. The last
+    /// With a layer added to those selected, or removed from them, the active one last. The last
     /// one stays.
     pub fn toggle_selected(&self, layer: LayerId) -> Vec<LayerId> {
         let mut ids = self.selected_layers();
@@ -134,10 +136,12 @@ impl OpenDocument {
             Some(_) if ids.len() == 1 => {}
             Some(at) => {
                 ids.remove(at);
-                // The primary one stays the same, if it is left.
-                if let Some(primary) = self.primary.filter(|primary| *primary != layer) {
-                    ids.retain(|id| *id != primary);
-                    ids.push(primary);
+                // The active one stays the same, if it is left.
+                if let Some(active_layer) =
+                    self.active_layer.filter(|active_layer| *active_layer != layer)
+                {
+                    ids.retain(|id| *id != active_layer);
+                    ids.push(active_layer);
                 }
             }
             None => ids.push(layer),
@@ -186,9 +190,12 @@ mod tests {
         let (mut open, ids) = open();
         open.select_layers(vec![ids[1]]);
         open.select_layers(open.toggle_selected(ids[3]));
-        assert_eq!((open.selected_layers(), open.primary), (vec![ids[1], ids[3]], Some(ids[3])));
+        assert_eq!(
+            (open.selected_layers(), open.active_layer),
+            (vec![ids[1], ids[3]], Some(ids[3]))
+        );
         open.select_layers(open.toggle_selected(ids[1]));
-        assert_eq!((open.selected_layers(), open.primary), (vec![ids[3]], Some(ids[3])));
+        assert_eq!((open.selected_layers(), open.active_layer), (vec![ids[3]], Some(ids[3])));
         open.select_layers(open.toggle_selected(ids[3]));
         assert_eq!(open.selected_layers(), [ids[3]], "one is always selected");
     }
@@ -201,7 +208,7 @@ mod tests {
             let start = open.range_start().unwrap();
             open.select_range(range(&ids, start, ids[end]), Some(start));
             assert_eq!(
-                (open.selected_layers(), open.primary),
+                (open.selected_layers(), open.active_layer),
                 (ids[selected].to_vec(), Some(ids[end]))
             );
         }
@@ -212,7 +219,7 @@ mod tests {
         let (mut open, ids) = open();
         open.select_layers(ids.clone());
         assert!(open.has_several() && open.is_selected(ids[0]));
-        open.primary = Some(LayerId::fresh());
+        open.active_layer = Some(LayerId::fresh());
         open.repair();
         open.select_layers(vec![ids[1]]);
         assert!(!open.has_several() && !open.is_selected(ids[0]));

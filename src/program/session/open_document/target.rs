@@ -13,7 +13,7 @@ use serde_json::Value;
 /// What is selected, and what the brush paints on.
 #[derive(Clone, Debug, Default)]
 pub struct EditTarget {
-    primary: Option<LayerId>,
+    active_layer: Option<LayerId>,
     layers: SelectedLayers,
     part: Option<String>,
     strokes: Option<(LayerId, Vec<usize>)>,
@@ -22,22 +22,22 @@ pub struct EditTarget {
 }
 
 /// The same by paths, which are valid in another run of the program. Strokes are those of the
-/// primary layer.
+/// active layer.
 struct StoredTarget {
-    primary: Option<LayerPath>,
+    active_layer: Option<LayerPath>,
     layers: LayerPaths,
     part: Option<String>,
     strokes: Vec<usize>,
     on_mask: bool,
     quick_mask: bool,
 }
-record!(StoredTarget { primary, layers, part, strokes, on_mask, quick_mask });
+record!(StoredTarget { active_layer, layers, part, strokes, on_mask, quick_mask });
 
 impl OpenDocument {
     /// What the next edit applies to.
     pub(super) fn target(&self) -> EditTarget {
         EditTarget {
-            primary: self.primary,
+            active_layer: self.active_layer,
             layers: self.selected_layers.without_gizmo(),
             part: self.part.clone(),
             strokes: self.selected_strokes.clone(),
@@ -48,9 +48,9 @@ impl OpenDocument {
 
     /// Goes back to a target; where something of it is gone, another takes its place.
     pub(super) fn aim(&mut self, target: EditTarget) {
-        let EditTarget { primary, layers, part, strokes, on_mask, quick_mask } = target;
+        let EditTarget { active_layer, layers, part, strokes, on_mask, quick_mask } = target;
         self.selected_layers.select_as(layers);
-        (self.primary, self.part, self.selected_strokes) = (primary, part, strokes);
+        (self.active_layer, self.part, self.selected_strokes) = (active_layer, part, strokes);
         (self.on_mask, self.quick_mask) = (on_mask, quick_mask);
         self.repair();
     }
@@ -68,7 +68,7 @@ impl OpenDocument {
     pub(in crate::session) fn stored_target(&self) -> Value {
         let document = self.document();
         let stored = StoredTarget {
-            primary: self.primary.and_then(|id| LayerPath::of(document, id)),
+            active_layer: self.active_layer.and_then(|id| LayerPath::of(document, id)),
             layers: LayerPaths::of(document, &self.selected_layers()),
             part: self.part.clone(),
             strokes: self.selected_strokes(),
@@ -90,14 +90,15 @@ impl OpenDocument {
 
 impl StoredTarget {
     fn find(self, document: &Document) -> EditTarget {
-        let primary = self.primary.and_then(|path| path.find(document)).map(|layer| layer.id);
+        let active_layer =
+            self.active_layer.and_then(|path| path.find(document)).map(|layer| layer.id);
         let mut layers = self.layers.find(document).unwrap_or_default();
-        layers.extend(primary);
+        layers.extend(active_layer);
         EditTarget {
-            primary,
+            active_layer,
             layers: SelectedLayers::of(layers),
             part: self.part,
-            strokes: primary.map(|layer| (layer, self.strokes)),
+            strokes: active_layer.map(|layer| (layer, self.strokes)),
             on_mask: self.on_mask,
             quick_mask: self.quick_mask,
         }

@@ -11,7 +11,7 @@ fn five() -> Session {
         {{"in":"layer","do":"add","kind":"paint"}}
         {{"in":"layer","do":"add","kind":"strokes"}}
         {{"in":"layer","do":"group","layer":"4"}}
-        {{"in":"layer","do":"choose","layer":["1","3"],"primary":"3","anchor":null}}"#
+        {{"in":"layer","do":"choose","layer":["1","3"],"active_layer":"3","anchor":null}}"#
     ))
 }
 
@@ -25,6 +25,15 @@ fn selected_names(session: &Session) -> Vec<String> {
         .iter()
         .map(|id| open.document().layer(*id).unwrap().name.clone())
         .collect()
+}
+
+#[test]
+fn scripts_name_the_active_layer_as_before_too() {
+    let mut session = five();
+    let line = r#"{"in":"layer","do":"choose","layer":["1","2"],"primary":"1"}"#;
+    story(&mut session, line);
+    let open = session.active().unwrap();
+    assert_eq!(open.active_layer, Some(open.document().layers[1].id));
 }
 
 fn last_edit(session: &Session) -> &str {
@@ -131,7 +140,7 @@ fn several_layers_are_moved_by_the_tool_and_cut_and_pasted_together() {
         r#"{PAPER}
         {{"in":"layer","do":"add","kind":"paint"}}{STROKE}
         {{"in":"layer","do":"add","kind":"strokes"}}{STROKE}
-        {{"in":"layer","do":"choose","layer":["1","2"],"primary":"2","anchor":null}}"#
+        {{"in":"layer","do":"choose","layer":["1","2"],"active_layer":"2","anchor":null}}"#
     ));
     let red = |session: &Session, y: i32| pixel(session, 100, y) == [0xc0, 0x20, 0x10, 255];
     let drag =

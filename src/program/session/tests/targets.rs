@@ -33,11 +33,11 @@ pub(super) fn stroke_with(tool: &str) -> String {
     )
 }
 
-/// The names of the selected layers, the primary one last.
+/// The names of the selected layers, the active one last.
 fn selected_names(session: &Session) -> Vec<String> {
     let open = session.active().unwrap();
     let mut ids = open.selected_layers();
-    ids.sort_by_key(|id| open.primary == Some(*id));
+    ids.sort_by_key(|id| open.active_layer == Some(*id));
     ids.iter().map(|id| open.document().layer(*id).unwrap().name.clone()).collect()
 }
 
@@ -81,7 +81,7 @@ fn several_deleted_layers_come_back_selected_and_a_click_in_the_history_selects_
     let mut session = two_layers();
     act(
         &mut session,
-        r#"{"in":"layer","do":"choose","layer":["1","2"],"primary":"1","anchor":"2"}"#,
+        r#"{"in":"layer","do":"choose","layer":["1","2"],"active_layer":"1","anchor":"2"}"#,
     );
     act(&mut session, r#"{"in":"layer","do":"delete","layer":["1","2"]}"#);
     act(&mut session, &stroke_with("brush"));

@@ -73,7 +73,7 @@ impl LayerRow<'_> {
         if let Some(color) = color_of(layer.label) {
             ui.painter().rect_filled(rect.with_max_x(rect.left() + LABEL_PT), 2.0, color);
         }
-        if open.has_several() && open.primary == Some(layer.id) {
+        if open.has_several() && open.active_layer == Some(layer.id) {
             // The brush paints on this one.
             ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.4, ACCENT), StrokeKind::Inside);
         }
@@ -182,7 +182,7 @@ impl LayerRow<'_> {
         let is_on = self
             .session
             .active()
-            .is_some_and(|open| open.on_mask && open.primary == Some(self.layer.id));
+            .is_some_and(|open| open.on_mask && open.active_layer == Some(self.layer.id));
         let (rect, response) = ui.allocate_exact_size(vec2(MASK_PT, MASK_PT), Sense::click());
         let label = format!("Mask of {}", self.layer.name);
         response

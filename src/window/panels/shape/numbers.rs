@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     let source = part.outline().map(|outline| match outline {
         OutlineSource::Layer { layer, color: None } => format!("Follows the layer “{layer}”"),
         OutlineSource::Layer { layer, color: Some(flat) } => {
-            let one = if flat.at.is_some() { "one place of " } else { "" };
+            let one = if flat.at.is_some() { "one area of " } else { "" };
             format!("Follows {one}the color {} of “{layer}”", flat.color)
         }
         OutlineSource::Object(object) => format!("Follows object {object} of the maps"),

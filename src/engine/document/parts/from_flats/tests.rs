@@ -1,8 +1,8 @@
 //! Drawings as people make them: with ink, shading, specks of compression, and marks too small for
 //! parts.
 
+mod areas;
 mod beneath;
-mod places;
 pub mod shares;
 
 use super::*;
@@ -100,7 +100,7 @@ fn ink_belongs_to_what_it_runs_along() {
 fn a_line_keeps_two_places_of_one_color_apart() {
     let tiles = draw_inked(&[([230.0, 220.0], 120.0, HEAD), ([360.0, 200.0], 90.0, HEAD)]);
     assert_eq!(parts(&tiles, PartFor::Color).parts.len(), 1);
-    let made = parts(&tiles, PartFor::Place);
+    let made = parts(&tiles, PartFor::Area);
     assert_eq!(made.parts.len(), 2);
     let surface = surface(&tiles, made);
     assert_eq!(surface.objects().count(), 2);
@@ -158,7 +158,7 @@ fn specks_of_compression_change_no_part() {
     }
     let noisy =
         TileGrid::from_straight_rgba(&rgba, SIZE.width as usize, SIZE.height as usize, 0, 0);
-    let made = parts(&noisy, PartFor::Place);
+    let made = parts(&noisy, PartFor::Area);
     assert_eq!((made.parts.len(), made.note()), (2, None));
     let surface = surface(&noisy, made);
     assert!(open(&noisy, &surface) <= 4, "{} pixels", open(&noisy, &surface));

@@ -13,7 +13,7 @@ pub(super) fn moves(ids: &[LayerId]) -> &'static str {
     if ids.len() > 1 { "Move layers" } else { "Move layer" }
 }
 
-/// What was moved is selected; if it was already, the primary one stays the same.
+/// What was moved is selected; if it was already, the active one stays the same.
 pub(super) fn selection_after_move(open: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
     if open.outermost_selected() == ids { Vec::new() } else { ids }
 }

@@ -35,7 +35,7 @@ pub(in crate::session::actions) fn press(session: &mut Session, at: Vec2) {
         session.writing = Some(Writing { layer, byte, turn });
         return;
     }
-    let selected = open.primary.and_then(|id| open.document().layer(id)).and_then(text_of);
+    let selected = open.active_layer.and_then(|id| open.document().layer(id)).and_then(text_of);
     let style = selected.map_or_else(
         || {
             let size = FIRST_SIZE * open.document().size.height as f32;
@@ -46,7 +46,7 @@ pub(in crate::session::actions) fn press(session: &mut Session, at: Vec2) {
     );
     match write(open, &Text::new(PLACEHOLDER, style), at) {
         Ok(()) => {
-            let layer = open.primary;
+            let layer = open.active_layer;
             session.writing = layer.map(|layer| Writing { layer, byte: None, turn });
         }
         Err(error) => session.say(&error.to_string()),
@@ -103,7 +103,7 @@ pub(super) fn write(open: &mut OpenDocument, text: &Text, at: Vec2) -> Result<()
     if let Some(next) = document.with_inserted(layer, slot_above(open))
         && open.commit("Write", next)
     {
-        open.primary = Some(id);
+        open.active_layer = Some(id);
     }
     Ok(())
 }

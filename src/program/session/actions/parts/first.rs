@@ -33,7 +33,7 @@ impl FirstShape {
     /// Into an open document, as one step.
     pub fn put(self, open: &mut OpenDocument) {
         if open.commit("Give it a shape", self.document) {
-            (open.part, open.primary) = (Some(self.part), Some(self.base));
+            (open.part, open.active_layer) = (Some(self.part), Some(self.base));
             open.noted = self.note.or(open.noted.take());
         }
     }
@@ -70,7 +70,7 @@ pub fn shape_layer(
     let document = with_unique_name(&document, layer).ok_or("There is no such layer.")?;
     let name = document.layer(layer).map(|layer| layer.name.clone()).unwrap_or_default();
     let made = match each {
-        PartFor::Color | PartFor::Place => parts_of_flats(&tiles, &name, inflation, each),
+        PartFor::Color | PartFor::Area => parts_of_flats(&tiles, &name, inflation, each),
         PartFor::Layer => {
             let part = Part {
                 name: new::free_name(&document, &name),
@@ -107,7 +107,7 @@ pub fn shape_layer(
     // it.
     let next = match each {
         PartFor::Layer => next.with_layer_on(layer, Some(&part)).unwrap_or(next),
-        PartFor::Color | PartFor::Place => next,
+        PartFor::Color | PartFor::Area => next,
     };
     match next.surface {
         Some(_) => Ok(FirstShape { document: next, part, base: id, note }),

@@ -1,4 +1,4 @@
-//! New parts: from the primary layer, the selection or the selected stroke, or bodies in the middle
+//! New parts: from the active layer, the selection or the selected stroke, or bodies in the middle
 //! of the canvas. Floor 6.
 
 use super::{PartRefusal, free_id, grays};
@@ -108,12 +108,12 @@ pub fn make_part(kind: NewPart, open: &OpenDocument) -> Result<Part, PartRefusal
             lines: Lines::default(),
         },
         NewPart::Relief => {
-            let picture = grays::detail(document, primary_layer(open)?)?;
+            let picture = grays::detail(document, active_layer(open)?)?;
             PartKind::Relief { on: form_of_selected(open)?, picture, detail: Detail::default() }
         }
         NewPart::Profiles => PartKind::Profiles { outline: None, shadings: grays::shadings(open)? },
     };
-    let name = match (kind, open.primary.and_then(|id| document.layer(id))) {
+    let name = match (kind, open.active_layer.and_then(|id| document.layer(id))) {
         (
             NewPart::InflateLayer | NewPart::Lathe | NewPart::Lines | NewPart::Relief,
             Some(layer),
@@ -152,13 +152,13 @@ fn form_of_selected(open: &OpenDocument) -> Result<String, PartRefusal> {
 
 const NO_LAYER: PartRefusal = "No layer is selected.";
 
-fn primary_layer(open: &OpenDocument) -> Result<LayerId, PartRefusal> {
-    open.primary.ok_or(NO_LAYER)
+fn active_layer(open: &OpenDocument) -> Result<LayerId, PartRefusal> {
+    open.active_layer.ok_or(NO_LAYER)
 }
 
 fn of_layer(open: &OpenDocument) -> Result<OutlineSource, PartRefusal> {
     let document = open.document();
-    let layer = document.layer(primary_layer(open)?).ok_or(NO_LAYER)?;
+    let layer = document.layer(active_layer(open)?).ok_or(NO_LAYER)?;
     if !layer.content.has_pixels() {
         return Err("This layer has no paint of its own, so it has no outline. Select another.");
     }
@@ -179,9 +179,9 @@ fn of_selection(document: &Document) -> Option<OutlineSource> {
     }))
 }
 
-/// Balls along the selected or last stroke of the primary layer.
+/// Balls along the selected or last stroke of the active layer.
 fn of_stroke(open: &OpenDocument) -> Option<Vec<Ball>> {
-    let strokes = open.document().strokes(open.primary?);
+    let strokes = open.document().strokes(open.active_layer?);
     let stroke = match open.selected_strokes().last() {
         Some(&index) => strokes.get(index)?,
         None => strokes.last()?,

@@ -272,7 +272,7 @@ fn layers_become_lines_reliefs_and_lighting_profiles() {
     assert!(session.notes.remove(0).contains("two to five layers"));
     tell(
         &mut session,
-        r#"{"in":"layer","do":"choose","layer":["0","1"],"primary":"1","anchor":null}"#,
+        r#"{"in":"layer","do":"choose","layer":["0","1"],"active_layer":"1","anchor":null}"#,
     );
     tell(&mut session, r#"{"in":"part","do":"add","kind":"profiles"}"#);
     assert_eq!((session.notes.clone(), kinds(&session).len()), (Vec::new(), 4));

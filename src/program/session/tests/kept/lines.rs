@@ -191,8 +191,7 @@ pub fn line(dice: &mut Dice, document: &Document, maps: &[PathBuf; 3]) -> String
         "delete" => json!({ "in": "layer", "do": "delete", "layer": layer }),
         "inflate" | "bevel" | "lathe" | "sweep" | "lines" | "relief" | "profiles" => {
             let select = json!({ "in": "layer", "do": "select", "layer": layer });
-            let both =
-                json!({ "in": "layer", "do": "choose", "layer": [layer, other], "primary": layer });
+            let both = json!({ "in": "layer", "do": "choose", "layer": [layer, other], "active_layer": layer });
             let first = if what == "profiles" { both } else { select };
             return format!("{first}\n{}", add(what));
         }

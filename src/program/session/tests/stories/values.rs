@@ -465,8 +465,8 @@ impl Roll for Symmetry {
 
 impl Roll for PartFor {
     fn roll(dice: &mut Dice) -> Self {
-        match dice.one_of(&[PartFor::Layer, PartFor::Color, PartFor::Place]) {
-            each @ (PartFor::Layer | PartFor::Color | PartFor::Place) => each,
+        match dice.one_of(&[PartFor::Layer, PartFor::Color, PartFor::Area]) {
+            each @ (PartFor::Layer | PartFor::Color | PartFor::Area) => each,
         }
     }
 }

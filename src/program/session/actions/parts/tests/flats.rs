@@ -42,11 +42,11 @@ fn each_place_of_a_color_becomes_a_part_at_once() {
     let mut session = open(pair());
     tell(
         &mut session,
-        r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#,
+        r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"areas"}"#,
     );
     assert_eq!(session.notes, Vec::<String>::new());
     assert_eq!(ids(&session), ["part-1", "part-2"]);
-    assert!(shown_document(&session).parts.list.iter().all(|part| part.place().is_some()));
+    assert!(shown_document(&session).parts.list.iter().all(|part| part.area_point().is_some()));
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     assert!(session.notes.pop().unwrap().contains("was made from"), "it has no part yet");
     tell(
         &mut session,
-        r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"places"}"#,
+        r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":"areas"}"#,
     );
     let before = shown_document(&session).clone();
     tell(&mut session, r#"{"in":"part","do":"cut","layer":"0"}"#);
@@ -67,7 +67,7 @@ fn a_drawing_that_is_cut_goes_with_its_parts_and_comes_back_by_undo() {
     let group = shown_document(&session).layers[1].content.group().unwrap();
     let on = |layer: &std::sync::Arc<Layer>| layer.on.as_ref().map(|on| on.part.to_string());
     assert_eq!(group.layers.iter().filter_map(on).collect::<Vec<_>>(), ids(&session));
-    assert_eq!(session.active().unwrap().primary, Some(shown_document(&session).layers[1].id));
+    assert_eq!(session.active().unwrap().active_layer, Some(shown_document(&session).layers[1].id));
     assert!(
         !shown_document(&session).layers[0].visible
             && shown_document(&session).parts.list == before.parts.list
@@ -104,7 +104,7 @@ fn a_part_is_split_by_place_with_its_touches_and_the_user_is_told_of_a_place_tha
     assert_eq!(session.notes, Vec::<String>::new());
     assert_eq!(ids(&session), ["part-1", "t", "part-2", "part-3"]);
     let list = &shown_document(&session).parts.list;
-    let (of_large, of_small) = (list[0].place().unwrap(), list[2].place().unwrap());
+    let (of_large, of_small) = (list[0].area_point().unwrap(), list[2].area_point().unwrap());
     assert!(of_large.x > 80.0 && of_small.x < 40.0, "{of_large} {of_small}");
     for (index, body, x) in [(1, "part-1", 85.0), (3, "part-2", 30.0)] {
         let PartKind::Touches { on, touches } = &list[index].kind else {

@@ -6,7 +6,7 @@ use crate::document::{CanvasChange, Content, Document, Layer, LayerTransform, Pi
 use crate::math::srgb::Color;
 use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::{Resampling, TileGrid};
-use crate::shape::flats::places::*;
+use crate::shape::flats::color_areas::*;
 use crate::shape::flats::shares::Flats;
 use std::sync::Arc;
 
@@ -77,14 +77,14 @@ fn with_paint(document: &Document, tiles: TileGrid) -> Document {
 #[test]
 fn two_eyes_become_two_parts_and_the_body_has_no_place() {
     let tiles = face(&EYES);
-    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Place).parts;
-    let places: Vec<Option<Vec2>> = parts.iter().map(Part::place).collect();
-    assert_eq!(places.len(), 3);
-    assert_eq!(places[0], None, "the body lies behind");
+    let parts = parts_of_flats(&tiles, "Flats", Inflation::default(), PartFor::Area).parts;
+    let areas: Vec<Option<Vec2>> = parts.iter().map(Part::area_point).collect();
+    assert_eq!(areas.len(), 3);
+    assert_eq!(areas[0], None, "the body lies behind");
     for (eye, _) in EYES {
         assert!(
-            places.iter().flatten().any(|at| at.distance(eye.into()) < 1.5),
-            "{eye:?}: {places:?}"
+            areas.iter().flatten().any(|at| at.distance(eye.into()) < 1.5),
+            "{eye:?}: {areas:?}"
         );
     }
     assert_eq!(
@@ -121,11 +121,11 @@ fn a_glint_does_not_bring_the_eye_before_its_pupil() {
     };
     assert_eq!(colors(PartFor::Color, (5.0, 2.0), 0.0), [BODY, EYE, PUPIL]);
     assert_eq!(
-        colors(PartFor::Place, (5.0, 2.0), 100.0),
+        colors(PartFor::Area, (5.0, 2.0), 100.0),
         [BODY, EYE, PUPIL],
         "the glint makes no part"
     );
-    assert_eq!(colors(PartFor::Place, (9.0, 3.0), 100.0), [BODY, EYE, PUPIL, EYE], "it does");
+    assert_eq!(colors(PartFor::Area, (9.0, 3.0), 100.0), [BODY, EYE, PUPIL, EYE], "it does");
 }
 
 #[test]
@@ -144,8 +144,8 @@ fn shares_of_all_places_add_up_to_that_of_the_color() {
     let tiles = face(&EYES);
     let flats = Flats::of(&tiles, tiles.bounds(), &[]).unwrap();
     let color = Color::parse("#fafafa").unwrap();
-    let (places, share) = (ColorPlaces::of(&flats, color), flats.share_of(color, &[]));
-    let both = places.shares(&places.large(), &share);
+    let (areas, share) = (ColorAreas::of(&flats, color), flats.share_of(color, &[]));
+    let both = areas.shares(&areas.large(), &share);
     assert_eq!(both.len(), 2);
     for (x, y) in (0..share.height()).flat_map(|y| (0..share.width()).map(move |x| (x, y))) {
         assert_eq!(both.iter().map(|own| own.at(x, y)).sum::<u8>(), share.at(x, y), "({x}, {y})");
@@ -165,11 +165,11 @@ fn a_narrow_passage_separates_places_and_a_wide_one_joins_them() {
             }
         }
         let tiles = TileGrid::from_straight_rgba(&rgba, width, 120, 0, 0);
-        let places = ColorPlaces::of(
+        let areas = ColorAreas::of(
             &Flats::of(&tiles, Rect::new(0, 0, width as i32, 120), &[]).unwrap(),
             Color::parse("#fafafa").unwrap(),
         );
-        places.large().len()
+        areas.large().len()
     };
     assert_eq!([0, 1, 2, 8].map(|height| bridge(height, 300)), [2, 2, 2, 1]);
     assert_eq!(
@@ -211,14 +211,14 @@ fn a_layer_that_is_moved_takes_the_places_along() {
     };
     let next = document.with_layer(document.layers[0].id, change).unwrap().reshaped();
     // Without that it would be the left eye, which stands where the right one was.
-    assert_eq!(next.parts.list[0].place(), Some(vec2(122.0, 50.0)));
+    assert_eq!(next.parts.list[0].area_point(), Some(vec2(122.0, 50.0)));
     assert!(
         is_covered(&next, 122, 50) && !is_covered(&next, 164, 50) && next.parts.lost.is_empty()
     );
 }
 
 #[test]
-fn places_go_with_the_canvas() {
+fn areas_go_with_the_canvas() {
     let document = one_eye([80.0, 50.0]);
     let change = CanvasChange::crop(SIZE, Rect::new(30, 10, 180, 110)).unwrap();
     let cropped = document.on_other_canvas(&change).unwrap();
@@ -257,7 +257,7 @@ fn what_is_too_small_for_a_part_is_told() {
         let made = parts_of_flats(&large(eyes), "Flats", Inflation::default(), each);
         (made.parts.len(), made.note())
     };
-    let (parts, told) = note(PartFor::Place, &specks);
+    let (parts, told) = note(PartFor::Area, &specks);
     assert_eq!(parts, 2);
     assert!(told.unwrap().starts_with("2 areas are left without a part"));
     assert_eq!(note(PartFor::Color, &specks), (2, None), "they are of the eye's part");
@@ -267,21 +267,21 @@ fn what_is_too_small_for_a_part_is_told() {
             .unwrap()
             .starts_with("One area is left without a part")
     );
-    assert_eq!(note(PartFor::Place, &EYES).1, None);
+    assert_eq!(note(PartFor::Area, &EYES).1, None);
 }
 
 #[test]
 fn any_point_finds_a_place_or_none() {
     let tiles = face(&EYES);
     let flats = Flats::of(&tiles, tiles.bounds(), &[]).unwrap();
-    let places = ColorPlaces::of(&flats, Color::parse("#fafafa").unwrap());
+    let areas = ColorAreas::of(&flats, Color::parse("#fafafa").unwrap());
     for at in [Vec2::NAN, Vec2::INFINITY, vec2(-1e9, 1e9), vec2(1e30, 0.0)] {
-        let found = places.nearest(at);
+        let found = areas.nearest(at);
         assert!(
-            found.is_none_or(|(place, is_beside)| is_beside && places.pixels(place) > 0),
+            found.is_none_or(|(area, is_beside)| is_beside && areas.pixels(area) > 0),
             "{at}: {found:?}"
         );
     }
-    let none = ColorPlaces::of(&flats, Color::parse("#010203").unwrap());
+    let none = ColorAreas::of(&flats, Color::parse("#010203").unwrap());
     assert!(none.large().is_empty() && none.nearest(vec2(3.0, 3.0)).is_none());
 }
