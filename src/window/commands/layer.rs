@@ -257,7 +257,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[],
         "Hides all other layers, or shows them again",
         has_layer,
-        |session, requests| with_active_layer(session, requests, |layer| LayerAction::Solo { layer }),
+        |session, requests| {
+            with_active_layer(session, requests, |layer| LayerAction::Solo { layer })
+        },
     )
     .ticked(|session, _| is_alone(session)),
 ];
