@@ -81,13 +81,18 @@ fn series(first: &Document, next: impl Fn(&Document, usize) -> Document) -> Vec<
     (1..=FRAMES).map_while(step).collect()
 }
 
-/// Moves every slider by a share of its range.
-struct Nudge(f32);
+/// Moves the first slider by a share of its range.
+struct Nudge {
+    by: f32,
+    is_moved: bool,
+}
 
 impl ParameterVisitor for Nudge {
     fn number(&mut self, parameter: NumberParameter, value: &mut f32) {
-        let by = self.0 * (parameter.most - parameter.least);
-        *value = (*value + by).max(parameter.least).min(parameter.most);
+        if !std::mem::replace(&mut self.is_moved, true) {
+            let by = self.by * (parameter.most - parameter.least);
+            *value = (*value + by).max(parameter.least).min(parameter.most);
+        }
     }
 
     fn flag(&mut self, _: ParameterName, _: bool, _: &mut bool) {}
@@ -113,7 +118,7 @@ fn dragged(filter: &PictureFilter) {
     let next = |document: &Document, i: usize| {
         let set = |layer: &mut Layer| {
             let mut next = filter.clone();
-            next.visit(&mut Nudge(i as f32 * 1e-3));
+            next.visit(&mut Nudge { by: i as f32 * 1e-3, is_moved: false });
             layer.content = Content::from(next);
         };
         document.with_layer(id, set).unwrap_or_else(|| document.clone())

@@ -10,12 +10,13 @@
 //! | `window` | what a filter reads |
 //! | `blur`, `radial` | blurs: everywhere alike, around a point |
 //! | `sharpen`, `glow` | those that compare a picture with its blur |
-//! | `surface`, `lens` | blurs over the surface, and by its depth |
+//! | `surface`, `flow`, `lens` | blurs over the surface, along its lines, and by its depth |
 //! | `noise` | noise and grain |
 //! | `cells` | median, squares, edges, shift |
 
 mod blur;
 mod cells;
+mod flow;
 mod glow;
 mod lens;
 mod noise;
@@ -26,12 +27,13 @@ mod window;
 
 pub use blur::{BoxBlur, GaussianBlur, MotionBlur};
 pub use cells::{EdgeFilter, MedianFilter, Pixelate, WrappedOffset};
+pub use flow::FlowBlur;
 pub use glow::BrightGlow;
 pub use lens::LensBlur;
 pub use noise::{FilmGrain, PixelNoise};
 pub use radial::{BlurCenter, SpinBlur, ZoomBlur};
 pub use sharpen::{HighPass, Sharpen, UnsharpMask};
-pub use surface::{FlowBlur, SurfaceBlur};
+pub use surface::SurfaceBlur;
 pub use window::{FilterSource, FilterWindow};
 
 use crate::math::Rect;
@@ -95,14 +97,6 @@ pub struct FilterPlace<'a> {
 }
 
 impl FilterPlace<'_> {
-    /// A value for each pixel, row by row.
-    fn map(&self, value: impl Fn(i32, i32) -> [f32; 4]) -> Vec<[f32; 4]> {
-        let Rect { x0, y0, x1, y1 } = self.out;
-        let mut all = Vec::with_capacity(self.out.width() * self.out.height());
-        (y0..y1).for_each(|y| all.extend((x0..x1).map(|x| value(x, y))));
-        all
-    }
-
     /// The pixel of the surface that is seen at a pixel, if any.
     fn on_surface(&self, x: i32, y: i32) -> Option<(usize, usize)> {
         let surface = self.scene.surface.as_ref()?;
@@ -145,7 +139,7 @@ impl LiveFilter {
     /// farther it reads, so that what is read around them is not much more than they are.
     fn block_px(&self, bounds: Rect) -> i32 {
         match self.params.kernel().reach(bounds, bounds) {
-            reach if reach <= 24.0 => 128,
+            reach if reach <= 8.0 => 128,
             reach if reach <= 96.0 => 256,
             _ => 512,
         }

@@ -231,19 +231,28 @@ pub fn half_kernel(sigma_px: f32) -> Vec<f32> {
 crate::widest! {
     /// Σ_k w_k (strip[y − k] + strip[y + k]).
     fn apply_taps(strip: &[[f32; LANES]], taps: &[f32], beyond: BlurBorder, out: &mut [[f32; LANES]]) {
-        let n = strip.len();
+        let (n, reach) = (strip.len(), taps.len() - 1);
         let nothing = [0.0; LANES];
         for y in 0..n {
             let mut sum = strip[y];
             for v in &mut sum {
                 *v *= taps[0];
             }
-            for (k, &w) in taps.iter().enumerate().skip(1) {
+            if reach <= y && y + reach < n {
+                let (before, behind) = (&strip[y - reach..y], &strip[y + 1..=y + reach]);
+                for ((a, b), w) in before.iter().rev().zip(behind).zip(&taps[1..]) {
+                    for l in 0..LANES {
+                        sum[l] += w * (a[l] + b[l]);
+                    }
+                }
+            } else {
                 let is_read = |inside: bool| inside || beyond == BlurBorder::Border;
-                let clip = |inside: bool, at: usize| if is_read(inside) { &strip[at] } else { &nothing };
-                let (a, b) = (clip(y >= k, y.saturating_sub(k)), clip(y + k < n, (y + k).min(n - 1)));
-                for l in 0..LANES {
-                    sum[l] += w * (a[l] + b[l]);
+                for (k, &w) in taps.iter().enumerate().skip(1) {
+                    let above = if is_read(y >= k) { &strip[y.saturating_sub(k)] } else { &nothing };
+                    let beneath = if is_read(y + k < n) { &strip[(y + k).min(n - 1)] } else { &nothing };
+                    for l in 0..LANES {
+                        sum[l] += w * (above[l] + beneath[l]);
+                    }
                 }
             }
             out[y] = sum;

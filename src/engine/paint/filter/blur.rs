@@ -464,5 +464,9 @@ fn columns_met(out: Rect, slope: f64, t: i32) -> Option<(i32, i32)> {
 /// A share of the way from one pixel to another.
 #[inline(always)]
 pub(super) fn mix(a: [f32; 4], b: [f32; 4], share: f32) -> [f32; 4] {
-    std::array::from_fn(|k| a[k] + share * (b[k] - a[k]))
+    let mut mixed = a;
+    for k in 0..4 {
+        mixed[k] += share * (b[k] - a[k]);
+    }
+    mixed
 }

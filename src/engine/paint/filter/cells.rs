@@ -45,29 +45,94 @@ impl FilterKernel for MedianFilter {
         let window = source.window(out.grown(reach));
         let mut all = window.cropped(out);
         if reach > 0 {
-            (0..4).for_each(|channel| medians(&window, channel, reach as usize, out, &mut all));
+            let mut bytes = vec![0; window.pixels().len() * 4];
+            quantize_all(window.pixels().as_flattened(), &mut bytes);
+            let widths = (window.rect().width(), out.width(), out.height());
+            let side = 2 * reach as usize + 1;
+            let mut medians = vec![0; all.len() * 4];
+            match reach {
+                ..=FEW => few_medians(&bytes, widths, side, &mut medians),
+                _ => (0..4).for_each(|k| many_medians(&bytes, k, widths, side, &mut medians)),
+            }
+            take_medians(&medians, all.as_flattened_mut());
         }
         all
     }
 }
 
-/// Replaces a channel by its medians, to 8 bits: a histogram moves along each row, and only the
-/// columns that enter and leave it are counted (Huang et al. 1979). What is the median already
-/// stays as it is.
-fn medians(window: &FilterWindow, channel: usize, reach: usize, out: Rect, all: &mut [[f32; 4]]) {
-    let width = window.rect().width();
-    let bytes: Vec<u8> = window.pixels().iter().map(|p| quantize(p[channel])).collect();
-    let side = 2 * reach + 1;
+/// From here on a histogram costs less than comparing.
+const FEW: i32 = 6;
+
+/// The medians of squares of pixels of four bytes: bit by bit, the largest value that more than half
+/// of a square reaches. At most 15 pixels to a side.
+///
+/// * `widths`: of a row of pixels, of a row of medians, and how many rows of these there are.
+fn few_medians(bytes: &[u8], widths: (usize, usize, usize), side: usize, all: &mut [u8]) {
+    let (width, across, _) = widths;
+    let (mut tried, mut counts) = (vec![0u8; across * 4], vec![0u8; across * 4]);
+    for (y, medians) in all.chunks_exact_mut((across * 4).max(1)).enumerate() {
+        for bit in (0..8).rev() {
+            tried.iter_mut().zip(&*medians).for_each(|(tried, known)| *tried = known | 1 << bit);
+            counts.fill(0);
+            for row in bytes[y * width * 4..].chunks(width * 4).take(side) {
+                (0..side).for_each(|x| count_reaching(&row[x * 4..], &tried, &mut counts));
+            }
+            keep_bit(&counts, ((side * side / 2) as u8, 1 << bit), medians);
+        }
+    }
+}
+
+crate::widest! {
+    fn quantize_all(values: &[f32], bytes: &mut [u8]) {
+        for (byte, value) in bytes.iter_mut().zip(values) {
+            *byte = quantize(*value);
+        }
+    }
+
+    /// What is the median already stays as it is.
+    fn take_medians(medians: &[u8], values: &mut [f32]) {
+        for (value, median) in values.iter_mut().zip(medians) {
+            let is_median = quantize(*value) == *median;
+            *value = if is_median { *value } else { f32::from(*median) / 255.0 };
+        }
+    }
+
+    fn count_reaching(values: &[u8], least: &[u8], counts: &mut [u8]) {
+        for ((count, value), least) in counts.iter_mut().zip(values).zip(least) {
+            *count += u8::from(value >= least);
+        }
+    }
+
+    /// `known`: half of the pixels, and the bit that was tried.
+    fn keep_bit(counts: &[u8], known: (u8, u8), medians: &mut [u8]) {
+        let (half, bit) = known;
+        for (median, count) in medians.iter_mut().zip(counts) {
+            *median |= if *count > half { bit } else { 0 };
+        }
+    }
+}
+
+/// The same for large squares: a histogram moves along each row, and only the columns that enter
+/// and leave it are counted (Huang et al. 1979).
+fn many_medians(
+    bytes: &[u8],
+    channel: usize,
+    widths: (usize, usize, usize),
+    side: usize,
+    all: &mut [u8],
+) {
+    let (width, across, _) = widths;
     let half = (side * side / 2) as u32;
-    let column = |row: usize, x: usize| (row..row + side).map(move |y| y * width + x);
-    for (row, means) in all.chunks_exact_mut(out.width().max(1)).enumerate() {
+    let column =
+        |row: usize, x: usize| (row..row + side).map(move |y| (y * width + x) * 4 + channel);
+    for (row, medians) in all.chunks_exact_mut((across * 4).max(1)).enumerate() {
         let mut counts = [0u32; 256];
         for x in 0..side {
             column(row, x).for_each(|i| counts[usize::from(bytes[i])] += 1);
         }
         // How many are below the median.
         let (mut median, mut below) = (0usize, 0u32);
-        for (x, pixel) in means.iter_mut().enumerate() {
+        for (x, found) in medians.iter_mut().skip(channel).step_by(4).enumerate() {
             if x > 0 {
                 for (left, entered) in column(row, x - 1).zip(column(row, x + side - 1)) {
                     let (left, entered) = (usize::from(bytes[left]), usize::from(bytes[entered]));
@@ -85,9 +150,7 @@ fn medians(window: &FilterWindow, channel: usize, reach: usize, out: Rect, all: 
                 below += counts[median];
                 median += 1;
             }
-            if usize::from(quantize(pixel[channel])) != median {
-                pixel[channel] = median as f32 / 255.0;
-            }
+            *found = median as u8;
         }
     }
 }
@@ -212,17 +275,30 @@ impl FilterKernel for EdgeFilter {
             *pixel = [color[0], color[1], color[2], pixel[3]];
         }
         let share = 0.25 * self.amount / 100.0;
-        place.map(|x, y| {
-            let rows = [-1, 0, 1].map(|dy| [-1, 0, 1].map(|dx| window.at(x + dx, y + dy)));
-            let edge = |k: usize| {
-                let [a, b, c] = rows.map(|row| row.map(|p| p[k]));
-                let across = a[2] - a[0] + 2.0 * (b[2] - b[0]) + c[2] - c[0];
-                let down = c[0] - a[0] + 2.0 * (c[1] - a[1]) + c[2] - a[2];
+        let out = place.out;
+        let mut all = Vec::with_capacity(out.width() * out.height());
+        for y in out.y0..out.y1 {
+            let rows = [-1, 0, 1].map(|dy| window.row(y + dy));
+            put_edges(rows, share, self.inverted, &mut all);
+        }
+        all
+    }
+}
+
+crate::widest! {
+    /// `rows`: the one above, its own and the one beneath, a pixel longer at both ends.
+    fn put_edges(rows: [&[[f32; 4]]; 3], share: f32, is_inverted: bool, out: &mut Vec<[f32; 4]>) {
+        let [above, own, beneath] = rows.map(|row| row.windows(3));
+        for ((a, b), c) in above.zip(own).zip(beneath) {
+            let mut edges = [0.0; 4];
+            for k in 0..4 {
+                let across = a[2][k] - a[0][k] + 2.0 * (b[2][k] - b[0][k]) + c[2][k] - c[0][k];
+                let down = c[0][k] - a[0][k] + 2.0 * (c[1][k] - a[1][k]) + c[2][k] - a[2][k];
                 let found = ((across * across + down * down).sqrt() * share).min(1.0);
-                if self.inverted { 1.0 - found } else { found }
-            };
-            color_under_alpha([edge(0), edge(1), edge(2)], rows[1][1][3])
-        })
+                edges[k] = if is_inverted { 1.0 - found } else { found };
+            }
+            out.push(color_under_alpha([edges[0], edges[1], edges[2]], b[1][3]));
+        }
     }
 }
 

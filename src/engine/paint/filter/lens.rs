@@ -84,21 +84,38 @@ impl LensBlur {
     }
 
     /// A pixel in linear light, lights brighter.
+    #[inline(always)]
     fn brighten(&self, pixel: [f32; 4]) -> [f32; 4] {
         let color = straight(pixel);
         let luma = 0.3 * color[0] + 0.59 * color[1] + 0.11 * color[2];
         let dark = (self.threshold / 255.0).min(0.999);
         let t = ((luma - dark) / (1.0 - dark)).max(0.0).min(1.0);
         let share = pixel[3] * (1.0 + self.highlights / 100.0 * t * t * (3.0 - 2.0 * t));
-        let [r, g, b] = color.map(|v| srgb::decode_fast(v.max(0.0)) * share);
-        [r, g, b, pixel[3]]
+        let decode = |v: f32| srgb::decode_fast(v.max(0.0)) * share;
+        [decode(color[0]), decode(color[1]), decode(color[2]), pixel[3]]
+    }
+}
+
+crate::widest! {
+    fn brighten_all(lens: &LensBlur, pixels: &mut [[f32; 4]]) {
+        for pixel in pixels {
+            *pixel = lens.brighten(*pixel);
+        }
+    }
+
+    fn encode_all(pixels: &mut [[f32; 4]]) {
+        for pixel in pixels {
+            *pixel = encode_pixel(*pixel);
+        }
     }
 }
 
 /// Encoded again; light beyond white stays.
+#[inline(always)]
 fn encode_pixel(pixel: [f32; 4]) -> [f32; 4] {
-    let [r, g, b] = straight(pixel).map(|v| srgb::encode(v.max(0.0)) * pixel[3]);
-    [r, g, b, pixel[3]]
+    let encode = |v: f32| if v <= 1.0 { srgb::encode_fast(v.max(0.0)) } else { srgb::encode(v) };
+    let [r, g, b] = straight(pixel);
+    [encode(r) * pixel[3], encode(g) * pixel[3], encode(b) * pixel[3], pixel[3]]
 }
 
 impl FilterKernel for LensBlur {
@@ -114,22 +131,25 @@ impl FilterKernel for LensBlur {
         }
         let reach = self.reach(out, out).ceil() as i32;
         let mut window = source.window(out.grown(reach));
-        window.pixels_mut().iter_mut().for_each(|pixel| *pixel = self.brighten(*pixel));
+        brighten_all(self, window.pixels_mut());
         let is_flat = !self.by_depth || place.scene.surface.is_none();
         if is_flat {
-            let blurred = blurred(&window, out, self.radius);
-            return blurred.into_iter().map(encode_pixel).collect();
+            let mut blurred = blurred(&window, out, self.radius);
+            encode_all(&mut blurred);
+            return blurred;
         }
         let bounds = source.bounds();
-        let disks: Vec<f32> = (window.rect().y0..window.rect().y1)
-            .flat_map(|y| (window.rect().x0..window.rect().x1).map(move |x| (x, y)))
-            .map(|(x, y)| {
-                let inside =
-                    (x.max(bounds.x0).min(bounds.x1 - 1), y.max(bounds.y0).min(bounds.y1 - 1));
-                self.disk(self.depth_of(place, inside.0, inside.1))
-            })
-            .collect();
-        blur_layers(&window, &disks, self.radius, out).into_iter().map(encode_pixel).collect()
+        let mut disks = Vec::with_capacity(window.pixels().len());
+        for y in window.rect().y0..window.rect().y1 {
+            let y = y.max(bounds.y0).min(bounds.y1 - 1);
+            disks.extend((window.rect().x0..window.rect().x1).map(|x| {
+                let x = x.max(bounds.x0).min(bounds.x1 - 1);
+                self.disk(self.depth_of(place, x, y))
+            }));
+        }
+        let mut blurred = blur_layers(&window, &disks, self.radius, out);
+        encode_all(&mut blurred);
+        blurred
     }
 }
 
@@ -149,51 +169,63 @@ fn radii(most: f32) -> Vec<f32> {
 /// Layers blurred by their own disks, over each other.
 fn blur_layers(window: &FilterWindow, disks: &[f32], most: f32, out: Rect) -> Vec<[f32; 4]> {
     let radii = radii(most);
+    // Of an opaque picture a layer's alpha is its share.
+    let is_opaque = window.pixels().iter().all(|pixel| pixel[3] == 1.0);
     let mut sums = vec![[0.0f32; 4]; out.width() * out.height()];
     let mut covered = vec![0.0f32; sums.len()];
     for (i, &radius) in radii.iter().enumerate() {
         let (farther, nearer) = (i.checked_sub(1).map(|i| radii[i]), radii.get(i + 1).copied());
-        let Some((colors, shares)) = layer(window, disks, [farther, Some(radius), nearer]) else {
-            continue;
+        let Some(shares) = layer_shares(disks, [farther, Some(radius), nearer]) else { continue };
+        let of_layer = |value: fn([f32; 4]) -> [f32; 4]| {
+            let pixels = window.pixels().iter().zip(&shares);
+            let weighed = pixels.map(|(pixel, share)| value(*pixel).map(|v| v * share)).collect();
+            blurred(&FilterWindow::new(window.rect(), weighed), out, radius.abs())
         };
-        let colors = blurred(&colors, out, radius.abs());
-        let shares = blurred(&shares, out, radius.abs());
-        let both = colors.into_iter().zip(shares);
-        for ((sum, covered), (color, share)) in sums.iter_mut().zip(&mut covered).zip(both) {
-            // Of what is farther, this layer covers its share.
-            let left = 1.0 - share[0].max(0.0).min(1.0);
-            (0..4).for_each(|k| sum[k] = color[k] + left * sum[k]);
-            *covered = share[0] + left * *covered;
+        let colors = of_layer(|pixel| pixel);
+        match is_opaque {
+            true => lay_over(&colors, &colors, (&mut sums, &mut covered)),
+            false => lay_over(&colors, &of_layer(|_| [1.0; 4]), (&mut sums, &mut covered)),
         }
     }
     let whole = |(sum, covered): ([f32; 4], f32)| sum.map(|v| v / covered.max(1e-4));
     sums.into_iter().zip(covered).map(whole).collect()
 }
 
-/// The pixels of a layer, and how much each belongs to it: those between two layers to both. `None`
-/// if there are none.
-fn layer(
-    window: &FilterWindow,
-    disks: &[f32],
-    [farther, own, nearer]: [Option<f32>; 3],
-) -> Option<(FilterWindow, FilterWindow)> {
+crate::widest! {
+    /// Lays a layer over those that are farther: of these it covers its share.
+    ///
+    /// * `shares`: in the last channel.
+    /// * `beneath`: their colors, and how much they cover.
+    fn lay_over(
+        colors: &[[f32; 4]],
+        shares: &[[f32; 4]],
+        beneath: (&mut [[f32; 4]], &mut [f32])
+    ) {
+        let (sums, covered) = beneath;
+        let layer = colors.iter().zip(shares);
+        for ((sum, covered), (color, share)) in sums.iter_mut().zip(covered).zip(layer) {
+            let left = 1.0 - share[3].max(0.0).min(1.0);
+            for k in 0..4 {
+                sum[k] = color[k] + left * sum[k];
+            }
+            *covered = share[3] + left * *covered;
+        }
+    }
+}
+
+/// How much of each pixel belongs to a layer: those between two layers to both. `None` if nothing
+/// does.
+fn layer_shares(disks: &[f32], [farther, own, nearer]: [Option<f32>; 3]) -> Option<Vec<f32>> {
     let own = own?;
+    let per = |next: Option<f32>| next.map_or(0.0, |next| 1.0 / (next - own));
+    let (toward_farther, toward_nearer) = (per(farther), per(nearer));
     let share = |disk: f32| {
-        let between = |next: f32| 1.0 - (disk - own) / (next - own);
-        let share = match disk >= own {
-            true => farther.map_or(1.0, between),
-            false => nearer.map_or(1.0, between),
-        };
-        share.max(0.0).min(1.0)
+        let away = disk - own;
+        let away = if away >= 0.0 { away * toward_farther } else { away * toward_nearer };
+        (1.0 - away).max(0.0).min(1.0)
     };
     let shares: Vec<f32> = disks.iter().map(|disk| share(*disk)).collect();
-    if shares.iter().all(|share| *share == 0.0) {
-        return None;
-    }
-    let colors = window.pixels().iter().zip(&shares).map(|(p, share)| p.map(|v| v * share));
-    let colors = FilterWindow::new(window.rect(), colors.collect());
-    let shares = shares.into_iter().map(|share| [share, 0.0, 0.0, 0.0]).collect();
-    Some((colors, FilterWindow::new(window.rect(), shares)))
+    shares.iter().any(|share| *share > 0.0).then_some(shares)
 }
 
 /// How often a picture is halved before a disk is laid on it: so that it is 3 to 6 coarse pixels.

@@ -4,12 +4,14 @@
 use super::sharpen::{amount, color_under_alpha, straight};
 use super::window::FilterSource;
 use super::{FilterKernel, FilterPlace};
-use crate::math::{Rect, Vec2, hash, noise, vec2};
+use crate::math::noise::{self, GradientRows};
+use crate::math::{Rect, Vec2, hash};
 use crate::paint::adjustment::parameters::{
     NumberParameter, ParameterName, ParameterVisitor, Parameters, parameter_name,
 };
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::{Scene, unwrap::Unwrapping};
+use std::ops::Range;
 use std::sync::Arc;
 
 const SEED: NumberParameter = NumberParameter::whole(
@@ -57,6 +59,7 @@ impl Parameters for PixelNoise {
 
 impl PixelNoise {
     /// A step, of mean 0: even in `[−1, 1]`, or a Gaussian of standard deviation 1.
+    #[inline(always)]
     fn step(&self, channel: u32, i: i32, j: i32) -> f32 {
         let seed = hash::mix(self.seed as u32 ^ hash::mix(channel));
         let even = |seed: u32| hash::unit(seed, i as u32, j as u32);
@@ -77,23 +80,33 @@ impl FilterKernel for PixelNoise {
     fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
         let window = source.window(place.out);
         let (share, size) = (self.amount / 100.0, self.size.max(0.01));
-        place.map(|x, y| {
-            let cell = |v: i32| (v as f32 / size).floor() as i32;
-            let (i, j) = (cell(x), cell(y));
-            let steps = match self.monochrome {
-                true => [self.step(0, i, j); 3],
-                false => [0, 1, 2].map(|channel| self.step(channel, i, j)),
-            };
-            shift_color(window.at(x, y), steps.map(|step| share * step))
-        })
+        let cell = |v: i32| (v as f32 / size).floor() as i32;
+        let columns: Vec<i32> = (place.out.x0..place.out.x1).map(cell).collect();
+        let mut all = Vec::with_capacity(window.pixels().len());
+        for y in place.out.y0..place.out.y1 {
+            let row = cell(y);
+            all.extend(window.row(y).iter().zip(&columns).map(|(pixel, column)| {
+                let steps = match self.monochrome {
+                    true => [self.step(0, *column, row); 3],
+                    false => [0, 1, 2].map(|channel| self.step(channel, *column, row)),
+                };
+                shift_color(*pixel, steps.map(|step| share * step))
+            }));
+        }
+        all
     }
 }
 
 /// A pixel whose straight color is moved, within black and white.
+#[inline(always)]
 fn shift_color(pixel: [f32; 4], by: [f32; 3]) -> [f32; 4] {
     let color = straight(pixel);
-    // Light beyond white stays beyond it.
-    color_under_alpha(std::array::from_fn(|k| (color[k] + by[k]).min(color[k].max(1.0))), pixel[3])
+    let mut shifted = color;
+    for k in 0..3 {
+        // Light beyond white stays beyond it.
+        shifted[k] = (color[k] + by[k]).min(color[k].max(1.0));
+    }
+    color_under_alpha(shifted, pixel[3])
 }
 
 /// The grain of film or paper: soft, strongest in mid-tones.
@@ -148,15 +161,49 @@ const PERIOD: u32 = 1 << 15;
 impl FilmGrain {
     /// Of mean 0, around `[−1, 1]`.
     fn grain(&self, channel: u32, at: Vec2) -> f32 {
+        let (mut sum, mut cell) = (0.0, at / self.size.max(0.01));
+        for (seed, share) in self.octaves(channel) {
+            sum += share * noise::gradient(cell, PERIOD, seed);
+            cell *= 2.0;
+        }
+        sum * self.gain()
+    }
+
+    /// The octaves of a channel along rows of the canvas, each with its share.
+    fn rows(&self, channel: u32, x: Range<i32>) -> Vec<(GradientRows, f32)> {
+        let size = self.size.max(0.01);
+        let mut across: Vec<f32> = x.map(|x| (x as f32 + 0.5) / size).collect();
+        let mut rows = Vec::new();
+        for (seed, share) in self.octaves(channel) {
+            rows.push((GradientRows::new(across.clone(), PERIOD, seed), share));
+            across.iter_mut().for_each(|v| *v *= 2.0);
+        }
+        rows
+    }
+
+    /// The same as [`Self::grain`] along a row.
+    fn grain_along(&self, rows: &mut [(GradientRows, f32)], y: i32, grain: &mut [f32]) {
+        let mut down = (y as f32 + 0.5) / self.size.max(0.01);
+        grain.fill(0.0);
+        for (rows, share) in rows {
+            rows.add(down, *share, grain);
+            down *= 2.0;
+        }
+        let gain = self.gain();
+        grain.iter_mut().for_each(|v| *v *= gain);
+    }
+
+    /// The seed and the share of each octave, the coarsest first.
+    fn octaves(&self, channel: u32) -> impl Iterator<Item = (u32, f32)> {
         let seed = hash::mix(self.seed as u32 ^ hash::mix(channel ^ 0x6772_6169));
         let rough = self.roughness / 100.0;
-        let (mut sum, mut share, mut cell) = (0.0, 1.0, at / self.size.max(0.01));
-        for octave in 0..OCTAVES {
-            sum += share * noise::gradient(cell, PERIOD, hash::mix(seed ^ octave));
-            (share, cell) = (share * rough, cell * 2.0);
-        }
-        // The standard deviation of gradient noise is about 0.35.
-        sum * 1.4 / (1.0 + rough * rough).sqrt()
+        (0..OCTAVES).map(move |octave| (hash::mix(seed ^ octave), rough.powi(octave as i32)))
+    }
+
+    /// The standard deviation of gradient noise is about 0.35.
+    fn gain(&self) -> f32 {
+        let rough = self.roughness / 100.0;
+        1.4 / (1.0 + rough * rough).sqrt()
     }
 
     fn unwrapping(&self, scene: &Scene) -> Option<Arc<Unwrapping>> {
@@ -176,23 +223,36 @@ impl FilterKernel for FilmGrain {
 
     fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
         let window = source.window(place.out);
-        let (share, unwrapped) = (self.amount / 100.0, self.unwrapping(place.scene));
-        place.map(|x, y| {
-            let on_surface = || {
-                let (column, row) = place.on_surface(x, y)?;
-                unwrapped.as_ref().map(|unwrapped| unwrapped.at(column, row))
-            };
-            let at = on_surface().unwrap_or(vec2(x as f32 + 0.5, y as f32 + 0.5));
-            let grain = match self.monochrome {
-                true => [self.grain(0, at); 3],
-                false => [0, 1, 2].map(|channel| self.grain(channel, at)),
-            };
-            let pixel = window.at(x, y);
-            let [r, g, b] = straight(pixel);
+        let (out, unwrapped) = (place.out, self.unwrapping(place.scene));
+        let channels = if self.monochrome { 0..1 } else { 0..3 };
+        let mut rows: Vec<_> = channels.map(|channel| self.rows(channel, out.x0..out.x1)).collect();
+        let mut grain = vec![vec![0.0; out.width()]; rows.len()];
+        let mut all = window.cropped(out);
+        for (y, pixels) in (out.y0..out.y1).zip(all.chunks_exact_mut(out.width().max(1))) {
+            for (channel, (rows, grain)) in (0..).zip(rows.iter_mut().zip(&mut grain)) {
+                self.grain_along(rows, y, grain);
+                let Some(unwrapped) = &unwrapped else { continue };
+                for (x, grain) in (out.x0..out.x1).zip(grain) {
+                    let Some((column, row)) = place.on_surface(x, y) else { continue };
+                    *grain = self.grain(channel, unwrapped.at(column, row));
+                }
+            }
+            let of = |channel: usize| grain[channel.min(grain.len() - 1)].as_slice();
+            shift_by_grain(pixels, [of(0), of(1), of(2)], self.amount / 100.0);
+        }
+        all
+    }
+}
+
+crate::widest! {
+    /// Half as strong in black and white as in mid-gray.
+    fn shift_by_grain(pixels: &mut [[f32; 4]], grain: [&[f32]; 3], share: f32) {
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let [r, g, b] = straight(*pixel);
             let luma = (0.3 * r + 0.59 * g + 0.11 * b).max(0.0).min(1.0);
-            // Half as strong in black and white as in mid-gray.
             let strength = share * (0.5 + 2.0 * luma * (1.0 - luma));
-            shift_color(pixel, grain.map(|v| v * strength))
-        })
+            let by = [grain[0][i] * strength, grain[1][i] * strength, grain[2][i] * strength];
+            *pixel = shift_color(*pixel, by);
+        }
     }
 }

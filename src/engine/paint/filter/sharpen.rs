@@ -26,8 +26,8 @@ pub(super) fn straight(p: [f32; 4]) -> [f32; 3] {
 /// A straight color under an alpha; not below black.
 #[inline(always)]
 pub(super) fn color_under_alpha(color: [f32; 3], a: f32) -> [f32; 4] {
-    let [r, g, b] = color.map(|v| v.max(0.0) * a);
-    [r, g, b, a]
+    let [r, g, b] = color;
+    [r.max(0.0) * a, g.max(0.0) * a, b.max(0.0) * a, a]
 }
 
 /// Each pixel farther from those around it.
@@ -56,19 +56,35 @@ impl FilterKernel for Sharpen {
 
     /// x + a (x − m), m the mean with weights 1 2 1 both ways.
     fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
-        let window = source.window(place.out.grown(1));
-        let share = self.amount / 100.0;
-        place.map(|x, y| {
+        let (out, share) = (place.out, self.amount / 100.0);
+        let window = source.window(out.grown(1));
+        let mut all = Vec::with_capacity(out.width() * out.height());
+        for y in out.y0..out.y1 {
+            put_sharpened([-1, 0, 1].map(|dy| window.row(y + dy)), share, &mut all);
+        }
+        all
+    }
+}
+
+crate::widest! {
+    /// `rows`: the one above, its own and the one beneath, a pixel longer at both ends.
+    fn put_sharpened(rows: [&[[f32; 4]]; 3], share: f32, out: &mut Vec<[f32; 4]>) {
+        let [above, own, beneath] = rows.map(|row| row.windows(3));
+        for ((a, b), c) in above.zip(own).zip(beneath) {
             let mut sum = [0.0; 4];
-            for dy in -1..=1 {
-                for dx in -1..=1 {
-                    let weight = ((2 - i32::abs(dx)) * (2 - i32::abs(dy))) as f32;
-                    let near = window.at(x + dx, y + dy);
-                    (0..4).for_each(|k| sum[k] += weight * near[k]);
-                }
+            for k in 0..4 {
+                let row = |row: &[[f32; 4]]| row[0][k] + 2.0 * row[1][k] + row[2][k];
+                sum[k] = row(a) + 2.0 * row(b) + row(c);
             }
-            sharpen(window.at(x, y), sum, share, 0.0)
-        })
+            out.push(sharpen(b[1], sum, share, 0.0));
+        }
+    }
+
+    /// Sharpens each pixel against its mean.
+    fn sharpen_all(pixels: &mut [[f32; 4]], means: &[[f32; 4]], share: f32, threshold: f32) {
+        for (pixel, mean) in pixels.iter_mut().zip(means) {
+            *pixel = sharpen(*pixel, *mean, share, threshold);
+        }
     }
 }
 
@@ -76,10 +92,11 @@ impl FilterKernel for Sharpen {
 #[inline(always)]
 fn sharpen(pixel: [f32; 4], mean: [f32; 4], share: f32, threshold: f32) -> [f32; 4] {
     let (own, mean) = (straight(pixel), straight(mean));
-    let color = std::array::from_fn(|k| {
+    let mut color = own;
+    for k in 0..3 {
         let more = own[k] - mean[k];
-        own[k] + if more.abs() < threshold { 0.0 } else { share * more }
-    });
+        color[k] += if more.abs() < threshold { 0.0 } else { share * more };
+    }
     color_under_alpha(color, pixel[3])
 }
 
@@ -121,13 +138,13 @@ impl FilterKernel for UnsharpMask {
     }
 
     fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
-        let (own, mut blurred) = read_and_blur(place, source, self.radius);
-        if self.stop_at_contours && place.scene.surface.is_some() {
-            blurred = blurred_on_surface(place, source, self.radius);
-        }
-        let (share, threshold) = (self.amount / 100.0, self.threshold / 255.0);
-        let pairs = own.into_iter().zip(blurred);
-        pairs.map(|(own, mean)| sharpen(own, mean, share, threshold)).collect()
+        let mut pixels = source.window(place.out).cropped(place.out);
+        let means = match self.stop_at_contours && place.scene.surface.is_some() {
+            true => blurred_on_surface(place, source, self.radius),
+            false => gaussian(source, place.out, self.radius),
+        };
+        sharpen_all(&mut pixels, &means, self.amount / 100.0, self.threshold / 255.0);
+        pixels
     }
 }
 

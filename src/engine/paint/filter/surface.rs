@@ -1,14 +1,13 @@
-//! Blurs that the surface leads: over it, by the distance on it, and along its lines. Floor 3. Both
-//! stop at contours. On premultiplied encoded pixels. Without a surface the canvas is one, flat.
+//! A blur over the surface, by the distance on it, which stops at contours. Floor 3. On premultiplied
+//! encoded pixels. Without a surface the canvas is one, flat. Not here: along its lines (`flow`).
 
 use super::blur::{gaussian, gaussian_reach, radius};
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
-use crate::math::{Rect, Vec2, fast, vec2};
-use crate::paint::adjustment::parameters::{
-    NumberParameter, ParameterVisitor, Parameters, parameter_name,
-};
-use crate::surface::{Curvature, Scene, Surface, links};
+use crate::math::{Rect, fast};
+use crate::paint::adjustment::parameters::{ParameterVisitor, Parameters};
+use crate::surface::{Surface, links};
+use std::ops::Range;
 
 /// Soft by the distance on the surface: what is seen steeply is blurred less, as if the paint itself
 /// were soft.
@@ -51,12 +50,16 @@ pub(super) fn blurred_on_surface(
     };
     let reads = place.out.grown(gaussian_reach(sigma).ceil() as i32).intersect(source.bounds());
     let mut window = source.window(reads.union(place.out));
-    let steps = SurfaceSteps::of(surface, window.rect());
-    // Gastal and Oliveira 2011, eq. 14: each pass of a row and a column is half as wide.
+    // Gastal and Oliveira 2011, eq. 14: each pass of rows and columns is half as wide as the one
+    // before, so that its weights are the squares of those.
+    let widest = sigma * 3f32.sqrt() * ((PASSES - 1) as f32).exp2();
+    let rate = 2f32.sqrt() * (4f32.powi(PASSES) - 1.0).sqrt() / widest;
+    let mut weights = StepWeights::of(surface, window.rect(), rate);
     for pass in 1..=PASSES {
-        let wide = 3f32.sqrt() * ((PASSES - pass) as f32).exp2();
-        let own = sigma * wide / (4f32.powi(PASSES) - 1.0).sqrt();
-        steps.pass(&mut window, 2f32.sqrt() / own);
+        weights.blend(&mut window);
+        if pass < PASSES {
+            weights.square();
+        }
     }
     window.cropped(place.out)
 }
@@ -64,64 +67,112 @@ pub(super) fn blurred_on_surface(
 /// So many times rows and columns are filtered: the fewest after which squares look round.
 const PASSES: i32 = 3;
 
-/// How far each pixel is on the surface from the one before it, px; infinite across a contour.
-struct SurfaceSteps {
+/// How much of the pixel before it each pixel takes: aᵈ, with d how far it is on the surface, px;
+/// nothing across a contour.
+struct StepWeights {
     rect: Rect,
     /// From the pixel to the left, and from the one above.
     across: Vec<f32>,
     down: Vec<f32>,
 }
 
-impl SurfaceSteps {
-    fn of(surface: &Surface, rect: Rect) -> Self {
-        let range = surface.depth_range_px();
-        let (size, linked) = (surface.size().rect(), surface.links_plane());
-        let (depth, coverage) = (surface.depth_plane(), surface.coverage_plane());
-        let step = |x: i32, y: i32, (dx, dy): (i32, i32), bit: u8| {
-            let (i, j) = (x - dx, y - dy);
-            if !size.contains(x, y) || !size.contains(i, j) {
-                return 1.0;
-            }
-            if coverage.at_clamped(x, y) == 0 && coverage.at_clamped(i, j) == 0 {
-                return 1.0;
-            }
-            if linked.at_clamped(x, y) & bit == 0 {
-                return f32::INFINITY;
-            }
-            let deeper = (depth.at_clamped(x, y) - depth.at_clamped(i, j)) * range;
-            (1.0 + deeper * deeper).sqrt()
+impl StepWeights {
+    /// a = e^−`rate`.
+    fn of(surface: &Surface, rect: Rect, rate: f32) -> Self {
+        let known = rect.intersect(surface.size().rect());
+        let (plain, width) = (fast::exp(-rate), rect.width());
+        // Off the surface's canvas all is flat.
+        let [mut across, mut down] = [0, 1].map(|_| vec![plain; width * rect.height()]);
+        let step = SurfaceStep { range: surface.depth_range_px(), rate, plain };
+        let row = |y: i32, columns: Range<usize>| SurfaceRow {
+            depth: &surface.depth_plane().row(y as usize)[columns.clone()],
+            coverage: &surface.coverage_plane().row(y as usize)[columns.clone()],
+            links: &surface.links_plane().row(y as usize)[columns],
         };
-        let places = || (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
-        let across = places().map(|(x, y)| step(x, y, (1, 0), links::LEFT)).collect();
-        let down = places().map(|(x, y)| step(x, y, (0, 1), links::UP)).collect();
+        for y in known.y0..known.y1 {
+            let first = (y - rect.y0) as usize * width + (known.x0 - rect.x0) as usize;
+            let columns = known.x0 as usize..known.x1 as usize;
+            if y > 0 {
+                let rows = [row(y - 1, columns.clone()), row(y, columns.clone())];
+                put_weights(rows, links::UP, step, &mut down[first..first + columns.len()]);
+            }
+            // The first column of the canvas has none to its left.
+            let beside = columns.start.max(1)..columns.end.max(1);
+            let first = first + beside.start - columns.start;
+            let rows = [row(y, beside.start - 1..beside.end - 1), row(y, beside.clone())];
+            put_weights(rows, links::LEFT, step, &mut across[first..first + beside.len()]);
+        }
         Self { rect, across, down }
     }
 
-    /// J ← I + aᵈ (J before − I) along rows, both ways, then along columns, with a = e^−`rate`.
-    fn pass(&self, window: &mut FilterWindow, rate: f32) {
+    /// Those of a blur half as wide.
+    fn square(&mut self) {
+        self.across.iter_mut().chain(&mut self.down).for_each(|weight| *weight *= *weight);
+    }
+
+    /// J ← I + aᵈ (J before − I) along rows, both ways, then along columns.
+    fn blend(&self, window: &mut FilterWindow) {
         let width = self.rect.width().max(1);
-        let weights = |steps: &[f32]| -> Vec<f32> {
-            steps.iter().map(|d| if d.is_finite() { fast::exp(-rate * d) } else { 0.0 }).collect()
-        };
-        let (across, down) = (weights(&self.across), weights(&self.down));
-        let rows = window.pixels_mut().chunks_exact_mut(width).zip(across.chunks_exact(width));
-        rows.for_each(|(row, weights)| blend_along(row, weights));
+        let rows = window.pixels_mut().chunks_mut(SIDE_BY_SIDE * width);
+        for (rows, weights) in rows.zip(self.across.chunks(SIDE_BY_SIDE * width)) {
+            match rows.len() == SIDE_BY_SIDE * width {
+                true => blend_rows_along(rows, weights, width),
+                false => {
+                    let rows = rows.chunks_exact_mut(width).zip(weights.chunks_exact(width));
+                    rows.for_each(|(row, weights)| blend_along(row, weights));
+                }
+            }
+        }
         let height = self.rect.height();
         let pixels = window.pixels_mut();
         for y in 1..height {
             let (before, from) = pixels.split_at_mut(y * width);
-            let weights = &down[y * width..(y + 1) * width];
+            let weights = &self.down[y * width..(y + 1) * width];
             blend_rows(&before[(y - 1) * width..], weights, &mut from[..width]);
         }
         for y in (1..height).rev() {
             let (before, from) = pixels.split_at_mut(y * width);
-            let weights = &down[y * width..(y + 1) * width];
+            let weights = &self.down[y * width..(y + 1) * width];
             blend_rows(&from[..width], weights, &mut before[(y - 1) * width..]);
         }
     }
 }
 
+/// How a step on the surface is weighed.
+#[derive(Clone, Copy)]
+struct SurfaceStep {
+    /// Of the depth, px.
+    range: f32,
+    rate: f32,
+    /// The weight of a step on flat ground.
+    plain: f32,
+}
+
+/// Part of a row of a surface.
+struct SurfaceRow<'a> {
+    depth: &'a [f32],
+    coverage: &'a [u8],
+    links: &'a [u8],
+}
+
+/// Rows that are blended at once: each pixel waits for the one before it, and other rows do not.
+const SIDE_BY_SIDE: usize = 4;
+
 crate::widest! {
+    /// The weights of steps from one row of pixels to another, which has the bit `link`.
+    fn put_weights(rows: [SurfaceRow; 2], link: u8, step: SurfaceStep, weights: &mut [f32]) {
+        let [from, to] = rows;
+        let depths = from.depth.iter().zip(to.depth);
+        let covered = from.coverage.iter().zip(to.coverage);
+        let places = depths.zip(covered).zip(to.links);
+        for (weight, ((depths, covered), links)) in weights.iter_mut().zip(places) {
+            let deeper = (depths.1 - depths.0) * step.range;
+            let on_surface = fast::exp(-step.rate * (1.0 + deeper * deeper).sqrt());
+            let linked = if links & link == 0 { 0.0 } else { on_surface };
+            *weight = if covered.0 | covered.1 == 0 { step.plain } else { linked };
+        }
+    }
+
     /// Along a row, both ways.
     fn blend_along(row: &mut [[f32; 4]], weights: &[f32]) {
         for x in 1..row.len() {
@@ -138,6 +189,33 @@ crate::widest! {
         }
     }
 
+    /// The same for several rows.
+    fn blend_rows_along(rows: &mut [[f32; 4]], weights: &[f32], width: usize) {
+        let (rows, weights) = (&mut rows[..SIDE_BY_SIDE * width], &weights[..SIDE_BY_SIDE * width]);
+        let mut before = [[0.0; 4]; SIDE_BY_SIDE];
+        for (j, before) in before.iter_mut().enumerate() {
+            *before = rows[j * width];
+        }
+        for x in 1..width {
+            for (j, before) in before.iter_mut().enumerate() {
+                let (pixel, weight) = (&mut rows[j * width + x], weights[j * width + x]);
+                for k in 0..4 {
+                    pixel[k] += weight * (before[k] - pixel[k]);
+                }
+                *before = *pixel;
+            }
+        }
+        for x in (1..width).rev() {
+            for (j, behind) in before.iter_mut().enumerate() {
+                let (pixel, weight) = (&mut rows[j * width + x - 1], weights[j * width + x]);
+                for k in 0..4 {
+                    pixel[k] += weight * (behind[k] - pixel[k]);
+                }
+                *behind = *pixel;
+            }
+        }
+    }
+
     /// From one row to the next.
     fn blend_rows(before: &[[f32; 4]], weights: &[f32], row: &mut [[f32; 4]]) {
         for ((pixel, before), weight) in row.iter_mut().zip(before).zip(weights) {
@@ -145,184 +223,5 @@ crate::widest! {
                 pixel[k] += weight * (before[k] - pixel[k]);
             }
         }
-    }
-}
-
-/// Smeared along the lines in which the surface bends least, or across them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlowBlur {
-    /// Of the way, px.
-    pub length: f32,
-    /// How smooth the lines are: the standard deviation of a blur of the normals, px.
-    pub smooth: f32,
-    /// Along the lines in which it bends most.
-    pub across: bool,
-}
-
-impl Default for FlowBlur {
-    fn default() -> Self {
-        Self { length: 24.0, smooth: 4.0, across: false }
-    }
-}
-
-impl Parameters for FlowBlur {
-    fn visit(&mut self, v: &mut dyn ParameterVisitor) {
-        let length = parameter_name("length", "Length", "How far paint is smeared");
-        let length = NumberParameter::whole(length, 0.0, 200.0, 24.0).decimals(1).px();
-        v.number(length, &mut self.length);
-        let smooth =
-            parameter_name("smooth", "Smoothness", "How much small bumps are left out of the flow");
-        let smooth = NumberParameter::whole(smooth, 0.0, 100.0, 4.0).decimals(1).px();
-        v.number(smooth, &mut self.smooth);
-        let across = parameter_name("across", "Across", "Around the form and not along it");
-        v.flag(across, false, &mut self.across);
-    }
-}
-
-impl FilterKernel for FlowBlur {
-    fn reach(&self, _: Rect, _: Rect) -> f32 {
-        self.length.max(0.0) * 0.5 + 4.0
-    }
-
-    fn warm(&self, scene: &Scene) {
-        let _ = scene.surface.as_deref().map(|surface| surface.curvature(self.smooth));
-    }
-
-    fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
-        let out = place.out;
-        let Some(surface) = place.scene.surface.as_deref().filter(|_| self.length > 1.0) else {
-            return source.window(out).cropped(out);
-        };
-        let curvature = surface.curvature(self.smooth);
-        // Two means, of steps of one pixel and of as many as those were, read few pixels: n + L/n.
-        let near = self.length.sqrt().ceil().max(1.0);
-        let far_steps = (self.length / near).ceil().max(1.0);
-        let around = out.grown((0.5 * self.length).ceil() as i32 + 2).intersect(source.bounds());
-        let reads = around.grown((0.5 * near).ceil() as i32 + 2).intersect(source.bounds());
-        let reads = reads.intersect(out.grown(self.reach(out, out).ceil() as i32));
-        let window = source.window(reads.union(out));
-        let lines = FlowLines::of(surface, &curvature, self.across, window.rect());
-        let around = around.intersect(window.rect());
-        let first = lines.means(&window, around, 1, near);
-        lines.means(&first, out, near as usize, far_steps).cropped(out)
-    }
-}
-
-/// The directions that paint is smeared in.
-struct FlowLines<'a> {
-    surface: &'a Surface,
-    rect: Rect,
-    /// Unit, image axes (y down), sign arbitrary; zero off the surface.
-    directions: Vec<Vec2>,
-}
-
-impl<'a> FlowLines<'a> {
-    fn of(surface: &'a Surface, curvature: &Curvature, across: bool, rect: Rect) -> Self {
-        let (size, coverage) = (surface.size().rect(), surface.coverage_plane());
-        let direction = |(x, y): (i32, i32)| {
-            if !size.contains(x, y) || coverage.at_clamped(x, y) == 0 {
-                return Vec2::ZERO;
-            }
-            let (most, least, along) = curvature.principal(x as usize, y as usize);
-            // The one that is larger in size, y down.
-            let bent = match most.abs() >= least.abs() {
-                true => vec2(along.x, -along.y),
-                false => vec2(along.y, along.x),
-            };
-            if across { bent } else { bent.perp() }
-        };
-        let places = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
-        Self { surface, rect, directions: places.map(direction).collect() }
-    }
-
-    fn at(&self, x: i32, y: i32) -> Vec2 {
-        if !self.rect.contains(x, y) {
-            return Vec2::ZERO;
-        }
-        let (column, row) = ((x - self.rect.x0) as usize, (y - self.rect.y0) as usize);
-        self.directions.get(row * self.rect.width() + column).copied().unwrap_or_default()
-    }
-
-    /// Means of readings along the lines through some pixels.
-    ///
-    /// * `apart`: steps of a pixel from one reading to the next.
-    /// * `count`: readings; the outermost count in part.
-    fn means(&self, window: &FilterWindow, out: Rect, apart: usize, count: f32) -> FilterWindow {
-        let half = 0.5 * (count - 1.0);
-        let places = (out.y0..out.y1).flat_map(|y| (out.x0..out.x1).map(move |x| (x, y)));
-        let mean = |(x, y): (i32, i32)| {
-            let mut sum = window.at(x, y);
-            let along = self.at(x, y);
-            if along == Vec2::ZERO || half <= 0.0 {
-                return sum;
-            }
-            let mut weight = 1.0;
-            for heading in [along, -along] {
-                self.trace((x, y), heading, apart, half, |share, at| {
-                    let reading = window.sample(at.x, at.y);
-                    (0..4).for_each(|k| sum[k] += share * reading[k]);
-                    weight += share;
-                });
-            }
-            sum.map(|v| v / weight)
-        };
-        FilterWindow::new(out, places.map(mean).collect())
-    }
-
-    /// Follows a line until it leaves the piece of surface.
-    fn trace(
-        &self,
-        from: (i32, i32),
-        heading: Vec2,
-        apart: usize,
-        half: f32,
-        mut read: impl FnMut(f32, Vec2),
-    ) {
-        let (mut here, mut heading) = (from, heading);
-        let mut at = vec2(from.0 as f32 + 0.5, from.1 as f32 + 0.5);
-        let mut left = half;
-        while left > 0.0 {
-            for _ in 0..apart {
-                at += heading;
-                let next = (at.x.floor() as i32, at.y.floor() as i32);
-                if !self.is_linked(here, next) {
-                    return;
-                }
-                let along = self.at(next.0, next.1);
-                here = next;
-                heading = if along.dot(heading) < 0.0 { -along } else { along };
-                if heading == Vec2::ZERO {
-                    return;
-                }
-            }
-            read(left.min(1.0), at);
-            left -= 1.0;
-        }
-    }
-
-    /// Whether two pixels that touch belong to the same piece of surface, by one way at least.
-    fn is_linked(&self, from: (i32, i32), to: (i32, i32)) -> bool {
-        let linked = self.surface.links_plane();
-        let passes = |x: i32, y: i32, dx: i32, dy: i32| {
-            let bits = linked.get(x, y).unwrap_or(0);
-            let across = match dx {
-                0 => true,
-                1 => bits & links::RIGHT != 0,
-                _ => bits & links::LEFT != 0,
-            };
-            across
-                && match dy {
-                    0 => true,
-                    1 => bits & links::DOWN != 0,
-                    _ => bits & links::UP != 0,
-                }
-        };
-        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        if dx == 0 || dy == 0 {
-            return passes(from.0, from.1, dx.signum(), dy.signum());
-        }
-        let (dx, dy) = (dx.signum(), dy.signum());
-        passes(from.0, from.1, dx, 0) && passes(from.0 + dx, from.1, 0, dy)
-            || passes(from.0, from.1, 0, dy) && passes(from.0, from.1 + dy, dx, 0)
     }
 }

@@ -119,10 +119,12 @@ impl FilterWindow {
             let (right, below) = (i.saturating_add(1), j.saturating_add(1));
             [self.at(i, j), self.at(right, j), self.at(i, below), self.at(right, below)]
         };
-        std::array::from_fn(|k| {
+        let mut value = [0.0; 4];
+        for k in 0..4 {
             let (up, down) = (a[k] + fx * (b[k] - a[k]), c[k] + fx * (d[k] - c[k]));
-            up + fy * (down - up)
-        })
+            value[k] = up + fy * (down - up);
+        }
+        value
     }
 
     /// The pixels of a rectangle within it.
