@@ -1,10 +1,16 @@
-//! How much memory this machine has left for the program, according to the system: free memory, the
-//! limits of the control groups around the process, its address space. Floor 5. Only this file
-//! asks the system; floors beneath are passed figures.
+//! How much memory this machine has left for the program, according to the system. Floor 5. Only the
+//! files here ask the system; floors beneath are passed figures.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+#[cfg(not(windows))]
+mod linux;
+#[cfg(windows)]
+mod windows;
+
+#[cfg(not(windows))]
+use linux as system;
 use std::sync::atomic::{AtomicU64, Ordering};
+#[cfg(windows)]
+use windows as system;
 
 /// What is assumed to be free if the system gives no figure.
 pub const UNKNOWN_BYTES: u64 = 4 << 30;
@@ -20,8 +26,13 @@ pub fn set_limit(bytes: u64) {
 /// Bytes that may be allocated now without evicting anything, minus an eighth that is left to other
 /// programs.
 pub fn free_bytes() -> u64 {
-    let free = least_available(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
+    let free = system::available_bytes().unwrap_or(UNKNOWN_BYTES);
     (free - free / 8).min(remaining_below(CEILING.load(Ordering::Relaxed)))
+}
+
+/// Bytes of memory that the program takes now; `None` where the system does not say.
+pub fn resident_bytes() -> Option<u64> {
+    system::resident_bytes()
 }
 
 /// What is left of a limit for the whole program; all of it where the system does not say what
@@ -30,173 +41,25 @@ fn remaining_below(limit: u64) -> u64 {
     if limit == u64::MAX {
         return limit;
     }
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    limit.saturating_sub(field(&status, "VmRSS:").map_or(0, |kib| kib * 1024))
+    limit.saturating_sub(resident_bytes().unwrap_or(0))
 }
 
 /// Bytes that may be kept for speed alone (`memory::DABS`): a small share, so that old machines
 /// keep less.
 pub fn kept_bytes() -> u64 {
     const MOST: u64 = 64 << 20;
-    MOST.min(least_available(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)
+    MOST.min(system::available_bytes().unwrap_or(UNKNOWN_BYTES) / 32)
 }
 
 /// Bytes that the machine has for the program at most: its memory, or the lowest limit around the
 /// process.
 pub fn whole_bytes() -> u64 {
-    whole(Path::new("/")).unwrap_or(UNKNOWN_BYTES)
-}
-
-fn whole(root: &Path) -> Option<u64> {
-    let read = |name: &str| fs::read_to_string(root.join(name)).ok();
-    let memory = field(&read("proc/meminfo")?, "MemTotal:")? * 1024;
-    let groups = read("proc/self/cgroup").unwrap_or_default();
-    let limit = |group: &ControlGroup| {
-        fs::read_to_string(group.folder.join(group.names[0])).ok()?.trim().parse().ok()
-    };
-    Some(groups_around(root, &groups).iter().filter_map(limit).fold(memory, u64::min))
-}
-
-/// The least of what each of Linux's accounts leaves; `None` on other systems. `root`: where its
-/// folders hang.
-fn least_available(root: &Path) -> Option<u64> {
-    let read = |name: &str| fs::read_to_string(root.join(name)).ok();
-    let free = field(&read("proc/meminfo")?, "MemAvailable:")? * 1024;
-    let groups = read("proc/self/cgroup").unwrap_or_default();
-    let left = [remaining_in_groups(root, &groups), remaining_addresses(&read)];
-    Some(left.into_iter().flatten().fold(free, u64::min))
-}
-
-/// The number behind a name at the start of a line.
-fn field(text: &str, name: &str) -> Option<u64> {
-    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
-    line.split_whitespace().next()?.parse().ok()
-}
-
-/// A control group that reports memory.
-struct ControlGroup {
-    folder: PathBuf,
-    /// The files of its limit and of what is used.
-    names: [&'static str; 2],
-    /// The line of `memory.stat` for files held in memory.
-    cache: &'static str,
-}
-
-/// What is left under the limits of the process's groups, and of all groups around them.
-fn remaining_in_groups(root: &Path, groups: &str) -> Option<u64> {
-    groups_around(root, groups).iter().filter_map(remaining_in_group).min()
-}
-
-/// The process's groups, of version 2 and 1, and all groups around them.
-fn groups_around(root: &Path, groups: &str) -> Vec<ControlGroup> {
-    let line = |is: &dyn Fn(&str) -> bool| {
-        groups.lines().find_map(|line| {
-            let (controllers, path) = line.split_once(':')?.1.split_once(':')?;
-            is(controllers).then(|| path.trim_start_matches('/').to_owned())
-        })
-    };
-    let second = line(&|controllers| controllers.is_empty());
-    let first = line(&|controllers| controllers.split(',').any(|c| c == "memory"));
-    let second = second
-        .map(|path| ("sys/fs/cgroup", path, ["memory.max", "memory.current"], "inactive_file"));
-    let first = first.map(|path| {
-        (
-            "sys/fs/cgroup/memory",
-            path,
-            ["memory.limit_in_bytes", "memory.usage_in_bytes"],
-            "total_inactive_file",
-        )
-    });
-    let all = second.into_iter().chain(first).flat_map(|(mount, path, names, cache)| {
-        let top = root.join(mount);
-        let inner = top.join(path);
-        // Within a container the path may be one of the world outside; its own group is then the
-        // top.
-        let around =
-            inner.ancestors().take_while(|folder| folder.starts_with(&top)).map(Path::to_owned);
-        around.map(|folder| ControlGroup { folder, names, cache }).collect::<Vec<_>>()
-    });
-    all.collect()
-}
-
-/// What is left in one group; files that it holds in memory count as free, since the system drops
-/// them when needed.
-fn remaining_in_group(group: &ControlGroup) -> Option<u64> {
-    let ControlGroup { folder, names: [limit, used], cache } = group;
-    let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
-    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
-    let cache =
-        read("memory.stat").and_then(|stat| field(&stat, &format!("{cache} "))).unwrap_or(0);
-    Some(number(limit)?.saturating_sub(number(used)?.saturating_sub(cache)))
-}
-
-/// What is left of the process's address space (`ulimit -v`).
-fn remaining_addresses(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
-    let limit = field(&read("proc/self/limits")?, "Max address space")?;
-    Some(limit.saturating_sub(field(&read("proc/self/status")?, "VmSize:")? * 1024))
+    system::whole_bytes().unwrap_or(UNKNOWN_BYTES)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A machine of 8 GB, 6 of them free, with more files of the system.
-    fn machine(files: &[(&str, &str)]) -> Option<u64> {
-        let root = tempfile::tempdir().unwrap();
-        let meminfo = (
-            "proc/meminfo",
-            "MemTotal:  8000000 kB\nMemFree:  1000000 kB\nMemAvailable:  6000000 kB\n",
-        );
-        for (name, text) in files.iter().chain([&meminfo]) {
-            let file = root.path().join(name);
-            fs::create_dir_all(file.parent().unwrap()).unwrap();
-            fs::write(file, text).unwrap();
-        }
-        least_available(root.path())
-    }
-
-    #[test]
-    fn the_least_of_all_limits_counts() {
-        assert_eq!(machine(&[]), Some(6_144_000_000));
-        let unlimited =
-            "Max address space         unlimited            unlimited            bytes\n";
-        let limited = "Max address space         2000000000           unlimited            bytes\n";
-        let status = ("proc/self/status", "VmSize:\t  500000 kB\n");
-        assert_eq!(machine(&[("proc/self/limits", unlimited), status]), Some(6_144_000_000));
-        assert_eq!(machine(&[("proc/self/limits", limited), status]), Some(1_488_000_000));
-    }
-
-    #[test]
-    fn groups_count_with_all_around_them_and_their_cached_files_are_free() {
-        let groups = ("proc/self/cgroup", "0::/user/app\n");
-        let open = ("sys/fs/cgroup/user/app/memory.max", "max\n");
-        let limit = ("sys/fs/cgroup/user/memory.max", "1000000000\n");
-        let used = ("sys/fs/cgroup/user/memory.current", "700000000\n");
-        let stat = ("sys/fs/cgroup/user/memory.stat", "anon 1\ninactive_file 200000000\n");
-        assert_eq!(machine(&[groups, open, limit, used, stat]), Some(500_000_000));
-        let old = [
-            ("proc/self/cgroup", "3:cpu:/a\n2:memory:/elsewhere\n"),
-            ("sys/fs/cgroup/memory/memory.limit_in_bytes", "900000000"),
-            ("sys/fs/cgroup/memory/memory.usage_in_bytes", "400000000"),
-        ];
-        assert_eq!(machine(&old), Some(500_000_000));
-    }
-
-    #[test]
-    fn the_machine_is_as_large_as_its_lowest_limit() {
-        let root = tempfile::tempdir().unwrap();
-        let write = |name: &str, text: &str| {
-            let file = root.path().join(name);
-            fs::create_dir_all(file.parent().unwrap()).unwrap();
-            fs::write(file, text).unwrap();
-        };
-        write("proc/meminfo", "MemTotal:  8000000 kB\nMemAvailable:  6000000 kB\n");
-        assert_eq!(whole(root.path()), Some(8_192_000_000));
-        write("proc/self/cgroup", "0::/user/app\n");
-        write("sys/fs/cgroup/user/app/memory.max", "max\n");
-        write("sys/fs/cgroup/user/memory.max", "1000000000\n");
-        assert_eq!(whole(root.path()), Some(1_000_000_000));
-    }
 
     #[test]
     fn what_the_program_takes_counts_below_its_own_limit() {
@@ -207,8 +70,13 @@ mod tests {
     }
 
     #[test]
-    fn a_system_that_tells_nothing_is_taken_for_a_small_one() {
-        assert_eq!(least_available(Path::new("no such folder")), None);
+    fn the_system_says_what_is_free_and_what_is_taken() {
         assert!(free_bytes() > 0 && kept_bytes() > 0);
+        if cfg!(any(windows, target_os = "linux")) {
+            let (free, whole) = (system::available_bytes(), system::whole_bytes());
+            assert!(free > Some(0) && free <= whole, "{free:?} of {whole:?}");
+            let taken = resident_bytes();
+            assert!(taken > Some(100_000) && taken < whole, "{taken:?} of {whole:?}");
+        }
     }
 }

@@ -47,9 +47,7 @@ impl MemoryMeter {
         match self.sampled {
             Some((since, bytes)) if since.elapsed() < PAUSE => bytes,
             _ => {
-                let bytes = std::fs::read_to_string("/proc/self/status")
-                    .ok()
-                    .and_then(|text| resident(&text));
+                let bytes = machine::resident_bytes();
                 self.sampled = Some((Instant::now(), bytes));
                 bytes
             }
@@ -93,22 +91,9 @@ impl MemoryMeter {
     }
 }
 
-/// The resident set in a Linux status file.
-fn resident(status: &str) -> Option<u64> {
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    kib.checked_mul(1024)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn memory_is_read() {
-        assert_eq!(resident("Name:\tx\nVmRSS:\t    2048 kB\n"), Some(2 << 20));
-        assert_eq!(resident("VmRSS: many kB"), None);
-    }
 
     #[test]
     fn the_limit_is_a_share_of_the_machine() {

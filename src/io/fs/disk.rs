@@ -1,8 +1,11 @@
 //! The computer's own disk.
 //! Floor 5.
 
+#[cfg(windows)]
+mod windows;
+
 use super::{EntryKind, FileHandle, FileLock, Fs, Identity};
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions};
 use std::hash::{BuildHasher, RandomState};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,12 +20,19 @@ impl FileHandle for File {
         self.sync_all()
     }
 
+    #[cfg(not(windows))]
     fn hold(&mut self) -> io::Result<bool> {
+        use std::fs::TryLockError;
         match self.try_lock() {
             Ok(()) => Ok(true),
             Err(TryLockError::WouldBlock) => Ok(false),
             Err(TryLockError::Error(e)) => Err(e),
         }
+    }
+
+    #[cfg(windows)]
+    fn hold(&mut self) -> io::Result<bool> {
+        windows::hold(self)
     }
 }
 
@@ -172,7 +182,13 @@ mod ownership {
         Ok(true)
     }
 
+    #[cfg(windows)]
+    pub fn identity(path: &Path) -> io::Result<Option<Identity>> {
+        super::windows::identity(path).map(Some)
+    }
+
     /// Only the resolved paths can be compared.
+    #[cfg(not(windows))]
     pub fn identity(_: &Path) -> io::Result<Option<Identity>> {
         Ok(None)
     }

@@ -364,5 +364,4 @@ fn a_save_leaves_alone_what_an_export_beside_it_is_writing() {
 }
 
 mod corrupting;
-#[cfg(unix)]
 mod on_the_disk;
