@@ -11,6 +11,7 @@
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `adjustments` | what adjustment layers do |
 //! | `effects` | shadows, glows and other effects of layers |
+//! | `ramp` | how colors mix between those of a gradient |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
 //! | `alpha_channels` | selections, the channels besides the colors |
 //! | `marks` | guides, and the colors of layers in the list |
@@ -45,6 +46,7 @@ mod merged;
 mod outline;
 mod parse;
 pub(super) mod pattern;
+mod ramp;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -111,6 +113,8 @@ pub struct LayerRecord {
     pub adjustment: Option<ColorAdjustment>,
     /// It is an artboard.
     pub ground: Option<ArtboardBackground>,
+    /// The point that patterns of its effects begin at, on the canvas.
+    pub reference: Option<(f64, f64)>,
     /// Its effects, and what is left out of them.
     pub effects: Option<RecordEffects>,
     /// Its mask hides its effects, too.
@@ -136,6 +140,15 @@ impl LayerRecord {
     pub fn leave_out(&mut self, what: &'static str) {
         if !self.lost.contains(&what) {
             self.lost.push(what);
+        }
+    }
+
+    /// A shape of one color that is thin or soft at its outline also paints beyond that, where its
+    /// pixels end: its color and its mask tell more.
+    pub fn show_beyond_shape(&mut self) {
+        let is_plain = !self.stroked && !self.unfilled;
+        if is_plain && matches!(self.fill, Some(LayerFill::Solid(_))) {
+            (self.rgba, self.rgba16) = (Vec::new(), Vec::new());
         }
     }
 
@@ -167,6 +180,7 @@ impl Default for LayerRecord {
             fill: None,
             adjustment: None,
             ground: None,
+            reference: None,
             effects: None,
             masks_effects: false,
             is_shape: false,

@@ -10,6 +10,7 @@ use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::descriptor;
 use super::fill::{self, Mark};
+use super::ramp::{self, RampMixing};
 use crate::cube;
 use crate::document::Content;
 use crate::math::srgb::{self, Color};
@@ -206,7 +207,7 @@ fn black_white(data: &mut ByteCursor, colors: &Colors) -> Option<BlackWhite> {
 }
 
 /// A color in one of the ways of older blocks: what its numbers mean, then four of them.
-fn color(data: &mut ByteCursor, colors: &Colors) -> Option<Color> {
+pub fn color(data: &mut ByteCursor, colors: &Colors) -> Option<Color> {
     let space = data.u16()?;
     let [a, b, c, _] = [data.u16()?, data.u16()?, data.u16()?, data.u16()?];
     let signed = |v: u16| f32::from(v as i16) / 100.0;
@@ -287,10 +288,7 @@ fn gradient_map(data: &mut ByteCursor, colors: &Colors) -> Option<GradientMap> {
     let version = data.u16().filter(|version| matches!(version, 1 | 3))?;
     let reverse = data.u8()? != 0;
     data.u8()?;
-    if version == 3 {
-        // How colors between stops are found: here always straight.
-        data.key()?;
-    }
+    let mixing = if version == 3 { RampMixing::of(&data.key()?) } else { RampMixing::Classic };
     data.unicode()?;
     let place = |data: &mut ByteCursor| {
         let t = data.u32()? as f32 / 4096.0;
@@ -309,7 +307,9 @@ fn gradient_map(data: &mut ByteCursor, colors: &Colors) -> Option<GradientMap> {
         let (t, middle) = place(data)?;
         opacities.push(Mark { t, middle, value: [f32::from(data.u16()?) / 255.0] });
     }
-    Some(GradientMap { stops: fill::ramp(inks, opacities)?, reverse })
+    // How many numbers follow, and the first of them.
+    let smoothness = data.u16().and_then(|_| data.u16()).map_or(0.0, f32::from);
+    Some(GradientMap { stops: ramp::stops(inks, opacities, smoothness, mixing)?, reverse })
 }
 
 #[cfg(test)]

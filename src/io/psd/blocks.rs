@@ -4,8 +4,9 @@
 use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::descriptor;
+use super::fill::LayerFill;
 use super::outline::VectorPaths;
-use super::{LayerRecord, RecordSection, adjustments, effects, fill, marks};
+use super::{LayerRecord, RecordSection, adjustments, effects, fill, marks, ramp};
 use crate::math::Rect;
 use crate::math::srgb::Color;
 use crate::paint::ColorAdjustment;
@@ -53,7 +54,13 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         }
         b"lclr" => record.label = marks::label(data),
         b"iOpa" => record.fill_opacity = data.u8().unwrap_or(255),
-        b"SoCo" | b"GdFl" | b"PtFl" => record.fill = fill::read(key, data, colors),
+        b"GdFl" => {
+            let said = descriptor::read(&mut data);
+            let read = said.and_then(|said| ramp::gradient(&said, colors));
+            record.fill = read.map(LayerFill::Gradient);
+        }
+        b"SoCo" | b"PtFl" => record.fill = fill::read(key, data, colors),
+        b"fxrp" => record.reference = data.f64().zip(data.f64()).filter(|(x, y)| is_near(*x, *y)),
         b"vmsk" | b"vsms" => {
             record.outline = VectorPaths::read(data);
             if record.outline.is_none() {
@@ -65,7 +72,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => {
             record.note_conversion("its smart object became pixels")
         }
-        key if effects::KEYS.contains(key) || *key == effects::OLD => {
+        key if effects::KEYS.contains(key) || [effects::OF_GROUPS, effects::OLD].contains(key) => {
             effects::take(&mut record.effects, *key, data, colors);
         }
         b"vstk" => read_stroke(record, &mut data),
@@ -89,6 +96,11 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         }
         _ => blending(record, key, data),
     }
+}
+
+/// Whether a point may be one of a canvas.
+fn is_near(x: f64, y: f64) -> bool {
+    x.abs() <= 1e5 && y.abs() <= 1e5
 }
 
 /// Where groups begin and end.

@@ -199,6 +199,11 @@ impl Colors<'_> {
         }
     }
 
+    /// Whether RGB or gray goes through a profile.
+    pub fn has_profile(&self) -> bool {
+        matches!(self.mode, Mode::Rgb | Mode::Gray) && self.profile().is_some()
+    }
+
     /// The profile that RGB and gray go through.
     fn profile(&self) -> Option<&[u8]> {
         self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc))

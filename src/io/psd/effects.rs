@@ -2,8 +2,9 @@
 //! (`document`), the pictures of patterns (`pattern`).
 //!
 //! The block `lfx2` has one effect of each kind; the newer `lmfx` may have lists of one kind, and
-//! counts where both are there. The old block `lrFX` repeats them.
+//! counts where both are there; groups have `lfxs`. The old block `lrFX` repeats them.
 
+mod old;
 mod write;
 
 pub use write::{as_read, blocks};
@@ -12,6 +13,7 @@ use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use super::fill::{self, share};
+use super::ramp;
 use crate::math::{Vec2, vec2};
 use crate::paint::adjustment::ToneCurve;
 use crate::paint::effect::{
@@ -23,6 +25,8 @@ use crate::raster::BlendMode;
 
 /// The blocks that hold effects, the one that counts most last.
 pub const KEYS: [[u8; 4]; 2] = [*b"lfx2", *b"lmfx"];
+/// The block of groups, which counts as much as the first.
+pub const OF_GROUPS: [u8; 4] = *b"lfxs";
 /// The old block.
 pub const OLD: [u8; 4] = *b"lrFX";
 
@@ -37,6 +41,21 @@ pub struct RecordEffects {
     pub lost: Vec<&'static str>,
     /// Which block they came from.
     rank: usize,
+}
+
+impl RecordEffects {
+    /// Patterns that go with their layer begin at a point of the canvas.
+    pub fn begin_patterns_at(&mut self, (x, y): (f64, f64)) {
+        for (number, _) in &self.patterns {
+            let Some(effect) = self.list.get_mut(*number).filter(|e| e.settings.aligned) else {
+                continue;
+            };
+            effect.settings.aligned = false;
+            effect.settings.phase_x += x as f32;
+            effect.settings.phase_y += y as f32;
+            *effect = effect.clone().clamp_to_ranges();
+        }
+    }
 }
 
 /// Each kind with its name where there is one effect of it, and where there is a list.
@@ -86,16 +105,14 @@ const BLENDS: [(BlendMode, &str); 27] = [
 
 /// Reads a block into the effects of a record, unless they came from one that counts more.
 pub fn take(effects: &mut Option<RecordEffects>, key: [u8; 4], data: ByteCursor, colors: &Colors) {
-    let rank = KEYS.iter().position(|known| *known == key).map_or(0, |place| place + 1);
+    let of_layers = if key == OF_GROUPS { KEYS[0] } else { key };
+    let rank = KEYS.iter().position(|known| *known == of_layers).map_or(0, |place| place + 1);
     if effects.as_ref().is_some_and(|known| known.rank > rank) {
         return;
     }
     let unread = || RecordEffects { lost: vec![LEFT_OUT], rank, ..RecordEffects::default() };
-    *effects = Some(match key {
-        // Newer blocks repeat it, and count.
-        OLD => unread(),
-        _ => read(data, colors).map_or_else(unread, |read| RecordEffects { rank, ..read }),
-    });
+    let read = if key == OLD { old::read(data, colors) } else { read(data, colors) };
+    *effects = Some(read.map_or_else(unread, |read| RecordEffects { rank, ..read }));
 }
 
 /// What is noted where effects are not understood.
@@ -154,7 +171,7 @@ fn effect(
         EffectKind::OuterGlow | EffectKind::InnerGlow => glow(found, &mut effect, said, colors),
         EffectKind::Bevel => bevel(found, &mut effect.settings, said, colors),
         EffectKind::Satin => effect.settings.invert = said.is_set("Invr"),
-        EffectKind::GradientOverlay => ramp(found, &mut effect, said, colors),
+        EffectKind::GradientOverlay => read_ramp(found, &mut effect, said, colors),
         EffectKind::PatternOverlay => pattern(found, &mut effect.settings, said),
         EffectKind::Stroke => line(found, &mut effect, said, colors),
     }
@@ -185,7 +202,7 @@ fn contour(said: &DescriptorObject) -> Option<ToneCurve> {
     (curve.points().len() > 1).then_some(curve)
 }
 
-fn ramp(
+fn read_ramp(
     found: &mut RecordEffects,
     effect: &mut LayerEffect,
     said: &DescriptorObject,
@@ -194,7 +211,7 @@ fn ramp(
     if said.word("Type") == Some(b"ShpB") {
         lose(found, "a ramp along the layer's edge is straight here");
     }
-    let Some(read) = fill::gradient(said, colors) else {
+    let Some(read) = ramp::gradient(said, colors) else {
         return lose(found, "a ramp made of noise is left out");
     };
     let s = &mut effect.settings;
@@ -209,7 +226,7 @@ fn glow(
     said: &DescriptorObject,
     colors: &Colors,
 ) {
-    if let Some(read) = said.object("Grad").map(|_| fill::gradient(said, colors)) {
+    if let Some(read) = said.object("Grad").map(|_| ramp::gradient(said, colors)) {
         effect.settings.fill = EffectFill::Gradient;
         match read {
             Some(read) => effect.stops = read.stops,
@@ -294,7 +311,7 @@ fn line(
     match said.word("PntT") {
         Some(b"GrFl") => {
             s.fill = EffectFill::Gradient;
-            ramp(found, effect, said, colors);
+            read_ramp(found, effect, said, colors);
         }
         Some(b"Ptrn") => {
             s.fill = EffectFill::Pattern;

@@ -116,6 +116,9 @@ impl<'a> RecordReader<'a> {
         while let Some((key, data)) = block(&mut extra, large) {
             blocks::take(&mut record, key, data, self.colors);
         }
+        if let (Some(effects), Some(reference)) = (&mut record.effects, record.reference) {
+            effects.begin_patterns_at(reference);
+        }
         for what in record.effects.as_ref().map_or(Vec::new(), |effects| effects.lost.clone()) {
             record.leave_out(what);
         }
@@ -186,23 +189,31 @@ impl<'a> RecordReader<'a> {
     ) -> Result<()> {
         let size = self.header.size;
         let [shown, painted] = drawn;
+        let softness = masks.map_or([Softness::HARD; 2], |masks| masks.softness);
+        let [of_painted, of_outline] = softness;
+        if of_outline != Softness::HARD {
+            record.show_beyond_shape();
+        }
         // A shape's pixels show its outline already.
         let is_shape =
             (record.fill.is_some() || record.stroked || record.is_shape) && !record.rgba.is_empty();
-        let softness = masks.map(|masks| masks.softness);
         let is_drawn = masks.is_some_and(|masks| masks.shown.is_drawn);
         let has_both = painted.is_some();
+        // What the file holds of both together is as sharp and as dense as they were drawn.
+        let is_drawn_anew = has_both && softness != [Softness::HARD; 2] && record.outline.is_some();
         record.mask = match (shown, painted) {
-            (_, Some(painted)) if is_shape => Some(painted),
+            (_, Some(painted)) if is_shape || is_drawn_anew => {
+                Some(self.soften_mask(painted, of_painted)?)
+            }
             (Some(_), None) if is_shape && is_drawn => None,
-            (shown, _) if has_both || is_drawn => shown,
-            (Some(shown), _) => Some(self.soften_mask(shown, softness.map(|[soft, _]| soft))?),
-            (None, _) => None,
+            (shown, Some(_)) => shown,
+            (Some(shown), None) => {
+                Some(self.soften_mask(shown, if is_drawn { of_outline } else { of_painted })?)
+            }
+            (None, None) => None,
         };
-        let Some(outline) = record.outline.take().filter(|_| !is_shape && !has_both && !is_drawn)
-        else {
-            return Ok(());
-        };
+        let is_needed = !is_shape && (is_drawn_anew || !has_both && !is_drawn);
+        let Some(outline) = record.outline.take().filter(|_| is_needed) else { return Ok(()) };
         if outline.disabled {
             record.note_conversion("its vector mask, which is switched off, is left out");
             return Ok(());
@@ -214,7 +225,7 @@ impl<'a> RecordReader<'a> {
             return Ok(());
         }
         let drawn = RecordMask::of_canvas(size, outline.coverage(size));
-        let drawn = self.soften_mask(drawn, softness.map(|[_, soft]| soft))?;
+        let drawn = self.soften_mask(drawn, of_outline)?;
         record.mask = Some(match record.mask.take().filter(|mask| !mask.disabled) {
             Some(mask) => mask.times(size, &drawn),
             None => drawn,
@@ -222,8 +233,7 @@ impl<'a> RecordReader<'a> {
         Ok(())
     }
 
-    fn soften_mask(&mut self, mask: RecordMask, softness: Option<Softness>) -> Result<RecordMask> {
-        let Some(softness) = softness else { return Ok(mask) };
+    fn soften_mask(&mut self, mask: RecordMask, softness: Softness) -> Result<RecordMask> {
         if softness.feather_px > 0.0 {
             // The blur works in floats, on two planes of the canvas.
             self.spend(self.header.size.area() as u64 * 2)?;

@@ -36,7 +36,11 @@ pub struct MaskData {
     pub softness: [Softness; 2],
 }
 
-const HARD: Softness = Softness { density: 255, feather_px: 0.0 };
+impl Softness {
+    /// All of a mask counts, as it was drawn.
+    pub const HARD: Self = Self { density: 255, feather_px: 0.0 };
+}
+
 /// Photoshop's feather is the reach of its blur; this share of it is our standard deviation.
 const SIGMA_OF_FEATHER: f32 = 0.5;
 /// No real drawing has more.
@@ -54,7 +58,7 @@ impl MaskData {
         } else {
             None
         };
-        let mut softness = [HARD; 2];
+        let mut softness = [Softness::HARD; 2];
         if flags & 16 != 0
             && let Some(given) = data.u8()
         {
@@ -192,7 +196,10 @@ mod tests {
         assert!(read.shown.is_drawn && read.painted.is_some_and(|painted| painted.outside == 255));
         assert_eq!(
             read.softness,
-            [Softness { density: 100, ..HARD }, Softness { feather_px: 3.5, ..HARD }]
+            [
+                Softness { density: 100, ..Softness::HARD },
+                Softness { feather_px: 3.5, ..Softness::HARD }
+            ]
         );
         assert_eq!(MaskData::read(ByteCursor::new(&[])), None);
     }

@@ -100,12 +100,11 @@ fn planes<T: ChannelValue>(
     (planes.len() >= own).then_some(planes)
 }
 
-/// No color is darker than it can be on white.
+/// No color is darker than it can be on white. Some programs leave what is wholly transparent black.
 fn is_on_white(rgba: &[u8]) -> bool {
-    rgba.as_chunks::<4>()
-        .0
-        .iter()
-        .all(|[r, g, b, a]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a))
+    let is_light =
+        |[r, g, b, a]: &[u8; 4]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a);
+    rgba.as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 0 || is_light(pixel))
 }
 
 /// Removes the white beneath colors as far as they are transparent; fully transparent pixels keep
@@ -144,7 +143,7 @@ mod tests {
             rgba16,
             [[65535, 0, 0, 32768], [65535, 5079, 5068, 6000], [65535, 65535, 65535, 0]]
         );
-        assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255]].concat()));
+        assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255], [0; 4]].concat()));
         assert!(!is_on_white(&[100, 100, 100, 20]));
     }
 }

@@ -28,6 +28,8 @@ pub struct ParsedPsd<'a> {
     /// The picture that the file holds of all its layers; absent where it is damaged.
     pub merged: Option<Merged>,
     pub patterns: Vec<PatternResource>,
+    /// Its values are those of a color profile.
+    pub has_profile: bool,
     /// The light of effects that have none of their own.
     pub effect_light: EffectLight,
     /// And how many were left out.
@@ -95,6 +97,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         records,
         merged,
         patterns,
+        has_profile: colors.has_profile(),
         effect_light,
         guides,
         damage,

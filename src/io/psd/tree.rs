@@ -82,6 +82,8 @@ pub(super) fn build_document(
         size,
         deepest,
         patterns: &parsed.patterns,
+        is_light: parsed.header.bits == 32,
+        has_profile: parsed.has_profile,
         open: vec![Vec::new()],
         is_less: false,
         notes: std::mem::take(notes),
@@ -201,6 +203,10 @@ struct TreeBuilder<'a> {
     /// The greatest depth of groups.
     deepest: usize,
     patterns: &'a [PatternResource],
+    /// Its values are light, which blends as light.
+    is_light: bool,
+    /// Its values have a profile of their own.
+    has_profile: bool,
     open: Vec<Vec<Arc<Layer>>>,
     /// Something was left out.
     is_less: bool,
@@ -228,7 +234,9 @@ impl TreeBuilder<'_> {
                 if let Some(ground) = record.ground {
                     self.lay_ground(&mut record, ground, &mut layers);
                 }
-                let group = Group { layers, pass_through: record.blend == PASS_THROUGH };
+                // With a fill that is not whole, a group no longer passes through.
+                let passes = record.blend == PASS_THROUGH && record.fill_opacity == 255;
+                let group = Group { layers, pass_through: passes };
                 self.layer(record, Content::Group(group))
             }
             RecordSection::Layer => {
@@ -268,7 +276,23 @@ impl TreeBuilder<'_> {
         });
     }
 
+    /// Whether what is clipped next lies on a group that passes through.
+    fn is_clipped_to_passing(&self) -> bool {
+        let below = self.open.last().and_then(|list| list.iter().rev().find(|l| !l.clip_below));
+        below.and_then(|base| base.content.group()).is_some_and(|group| group.pass_through)
+    }
+
     fn layer(&mut self, mut record: LayerRecord, content: Content) -> Layer {
+        if record.clipped && record.visible && self.is_clipped_to_passing() {
+            record.note_conversion(
+                "in other programs it is blended with all that its group lets through, too",
+            );
+        }
+        if self.has_profile && matches!(content, Content::Adjustment(_)) {
+            record.note_conversion(
+                "it adjusts sRGB values, and in other programs those of the file's color profile",
+            );
+        }
         let known = BlendMode::from_photoshop(record.blend);
         if known.is_none() && record.blend != PASS_THROUGH {
             let key = String::from_utf8_lossy(&record.blend).into_owned();
@@ -287,13 +311,20 @@ impl TreeBuilder<'_> {
         let found = record.effects.take().map(|effects| self.with_patterns(effects));
         let (effects, lost) = found.unwrap_or_default();
         lost.into_iter().for_each(|what| record.leave_out(what));
+        let [mut opacity, mut fill_opacity] =
+            [record.opacity, record.fill_opacity].map(|v| f32::from(v) / 255.0);
+        // Adjustments have no fill of their own.
+        if effects.is_empty() && matches!(content, Content::Adjustment(_)) {
+            opacity *= std::mem::replace(&mut fill_opacity, 1.0);
+        }
         self.is_less |= !record.lost.is_empty();
         for what in record.lost.iter().chain(&record.converted) {
             self.notes.push(format!("“{}”: {what}", record.name));
         }
         Layer {
             visible: record.visible,
-            opacity: f32::from(record.opacity) / 255.0,
+            opacity,
+            blend_linear: self.is_light,
             blend: known.unwrap_or(BlendMode::Normal),
             clip_below: record.clipped,
             lock: match (record.lock_all, record.lock_alpha) {
@@ -303,7 +334,7 @@ impl TreeBuilder<'_> {
             },
             label: record.label,
             effects: Arc::new(effects),
-            fill_opacity: f32::from(record.fill_opacity) / 255.0,
+            fill_opacity,
             mask: record.mask.as_ref().map(|mask| self.mask(mask)),
             clip_to_surface: false,
             ..Layer::new(record.name, content)

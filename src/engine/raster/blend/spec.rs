@@ -42,9 +42,8 @@ impl BlendFunction {
 
 /// Any number: a layer dissolves the same way on every run.
 const DISSOLVE_SEED: u32 = 0x0d15_5017;
-/// Where a sum counts as full: half a step of a byte lower than 1, so that rounding decides
-/// nothing.
-pub const FULL: f32 = 1.0 - 0.5 / 255.0;
+/// Half a step of a byte: sums that are as near to 1 count as 1, so that rounding decides nothing.
+const HALF_STEP: f32 = 0.5 / 255.0;
 
 /// What dissolving leaves of a premultiplied pixel at a point of the canvas: all of it, with its
 /// alpha as the probability, or nothing.
@@ -165,10 +164,19 @@ pub fn linear_light(cb: f32, cs: f32) -> f32 {
     (cb + 2.0 * cs - 1.0).max(0.0).min(1.0)
 }
 
-/// Burns or dodges, as the source is dark or light.
+/// Burns or dodges, as the source is dark or light. Unlike in the modes of those names, a black
+/// source is black on white too, and a white one is white on black.
 #[inline(always)]
 pub fn vivid_light(cb: f32, cs: f32) -> f32 {
-    if cs <= 0.5 { color_burn(cb, 2.0 * cs) } else { color_dodge(cb, 2.0 * cs - 1.0) }
+    if cs == 0.0 {
+        0.0
+    } else if cs == 1.0 {
+        1.0
+    } else if cs <= 0.5 {
+        color_burn(cb, 2.0 * cs)
+    } else {
+        color_dodge(cb, 2.0 * cs - 1.0)
+    }
 }
 
 /// Replaces what is darker, or lighter, than the source allows.
@@ -177,10 +185,11 @@ pub fn pin_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { darken(cb, 2.0 * cs) } else { lighten(cb, 2.0 * cs - 1.0) }
 }
 
-/// Each channel wholly black or white.
+/// Each channel wholly black or white; where both sum up to white, the backdrop decides.
 #[inline(always)]
 pub fn hard_mix(cb: f32, cs: f32) -> f32 {
-    if cb + cs > FULL { 1.0 } else { 0.0 }
+    let over = cb + cs - 1.0;
+    if over > HALF_STEP || (over > -HALF_STEP && cb > 0.5) { 1.0 } else { 0.0 }
 }
 
 /// The backdrop less the source.
@@ -189,10 +198,16 @@ pub fn subtract(cb: f32, cs: f32) -> f32 {
     (cb - cs).max(0.0)
 }
 
-/// The backdrop over the source.
+/// The backdrop over the source; black over black is black.
 #[inline(always)]
 pub fn divide(cb: f32, cs: f32) -> f32 {
-    if cs > 0.0 { (cb / cs).min(1.0) } else { 1.0 }
+    if cs > 0.0 {
+        (cb / cs).min(1.0)
+    } else if cb > 0.0 {
+        1.0
+    } else {
+        0.0
+    }
 }
 
 /// Of premultiplied values, and of the alphas.

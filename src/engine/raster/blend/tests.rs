@@ -65,16 +65,21 @@ fn separable_modes_give_the_values_computed_by_hand() {
         (BlendMode::LinearLight, 0.5, 0.8, 1.0),
         (BlendMode::VividLight, 0.8, 0.25, 0.6),
         (BlendMode::VividLight, 0.2, 0.75, 0.4),
+        (BlendMode::VividLight, 1.0, 0.0, 0.0),
+        (BlendMode::VividLight, 0.0, 1.0, 1.0),
         (BlendMode::PinLight, 0.8, 0.25, 0.5),
         (BlendMode::PinLight, 0.3, 0.25, 0.3),
         (BlendMode::PinLight, 0.3, 0.75, 0.5),
         (BlendMode::HardMix, 0.4, 0.5, 0.0),
-        (BlendMode::HardMix, 0.4, 0.6, 1.0),
+        (BlendMode::HardMix, 0.4, 0.7, 1.0),
+        (BlendMode::HardMix, 0.4, 0.6, 0.0),
+        (BlendMode::HardMix, 0.6, 0.4, 1.0),
         (BlendMode::Subtract, 0.6, 0.2, 0.4),
         (BlendMode::Subtract, 0.2, 0.6, 0.0),
         (BlendMode::Divide, 0.2, 0.5, 0.4),
         (BlendMode::Divide, 0.6, 0.5, 1.0),
         (BlendMode::Divide, 0.6, 0.0, 1.0),
+        (BlendMode::Divide, 0.0, 0.0, 0.0),
     ];
     for (mode, cb, cs, expected) in table {
         let got = separable(mode)(cb, cs);

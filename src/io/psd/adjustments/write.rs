@@ -209,7 +209,9 @@ fn gradient_map(own: &GradientMap) -> Vec<u8> {
         place(&mut out, stop);
         out.extend(u16::from(stop.color.a).to_be_bytes());
     }
-    for part in [2, WHOLE as u16, 32, 0] {
+    // Straight between stops, as here.
+    const SMOOTHNESS: u16 = 0;
+    for part in [2, SMOOTHNESS, 32, 0] {
         out.extend(u16::to_be_bytes(part));
     }
     // Of noise: a seed, no transparency, no restriction, roughness, RGB, from black to white.

@@ -195,7 +195,8 @@ fn stops(stops: &[GradientStop]) -> DescriptorWriter {
     let mut said = DescriptorWriter::default();
     said.text("Nm  ", "Custom");
     said.word("GrdF", "GrdF", "CstS");
-    said.double("Intr", f64::from(WHOLE));
+    // Straight between stops, as here.
+    said.double("Intr", 0.0);
     let place = |stop: &GradientStop| (stop.t * WHOLE).round();
     let color = |stop: &GradientStop| {
         let mut said = DescriptorWriter::default();

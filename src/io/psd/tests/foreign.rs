@@ -6,8 +6,9 @@ use crate::Budget;
 use crate::document::{Content, Document, MaskKind, Progress, flatten};
 use crate::math::hash::mix;
 use crate::math::srgb::Color;
-use crate::paint::RampStyle;
+use crate::paint::{EffectKind, RampStyle};
 use crate::project::ProjectContents;
+use crate::raster::BlendMode;
 use std::path::Path;
 
 fn open(made: &Made) -> ProjectContents {
@@ -181,9 +182,43 @@ fn effects_are_live_and_shown_where_they_are_switched_on() {
         assert_eq!(on, [master && shadow]);
     }
     let mut made = plain(4, 4, [100; 3]);
-    made.layers.as_mut().unwrap()[0].blocks = vec![(b"lrFX", vec![0; 4])];
+    // It says that there is one effect, and ends.
+    made.layers.as_mut().unwrap()[0].blocks = vec![(b"lrFX", vec![0, 0, 0, 1])];
     let notes = open(&made).notes.join("\n");
     assert!(notes.contains("its effects are left out"), "{notes}");
+}
+
+#[test]
+fn effects_of_the_old_block_are_live_where_it_is_alone() {
+    let fixed = |v: i32| (v << 16).to_be_bytes().to_vec();
+    let shadow = |on: u8| {
+        let numbers = [fixed(7), fixed(20), fixed(135), fixed(9)].concat();
+        // RGB, red; multiply; whether it is on, without the document's light, half opaque.
+        let color = [[0, 0, 0xff, 0xff], [0; 4]].concat();
+        let own = [0, 0, 0, 0].to_vec();
+        let body =
+            [own, numbers, color, vec![0; 2], b"8BIMmul ".to_vec(), vec![on, 0, 128], vec![0; 10]];
+        let body = body.concat();
+        let length = (body.len() as u32).to_be_bytes().to_vec();
+        [vec![0, 0, 0, 1], b"8BIMdsdw".to_vec(), length, body].concat()
+    };
+    let effects = |on: u8| {
+        let mut made = plain(4, 4, [100; 3]);
+        made.layers.as_mut().unwrap()[0].blocks = vec![(b"lrFX", shadow(on))];
+        let opened = open(&made);
+        let all = opened.document.walk();
+        let found = all.iter().flat_map(|(_, layer)| layer.effects.iter().cloned());
+        found.collect::<Vec<_>>()
+    };
+    let [shadow] = &effects(1)[..] else { panic!("not one effect") };
+    let s = &shadow.settings;
+    assert_eq!((shadow.kind, shadow.on), (EffectKind::DropShadow, true));
+    assert_eq!((s.size, s.spread, s.angle, s.distance), (7.0, 0.2, 135.0, 9.0));
+    assert_eq!(
+        (s.color, s.blend, s.opacity),
+        (Color::rgb(255, 0, 0), BlendMode::Multiply, 128.0 / 255.0)
+    );
+    assert_eq!(effects(0).len(), 0, "what is switched off there means nothing");
 }
 
 /// A rectangle's knots, as shares of the canvas: left, top, right, bottom.
@@ -364,4 +399,37 @@ fn kept_selections_open_by_their_names_and_inks_do_not() {
     let read = open(&made);
     let names: Vec<&str> = read.document.selections.iter().map(|kept| kept.name.as_str()).collect();
     assert_eq!(names, ["Auge – 目", "Alpha 2", "Alpha 3"]);
+}
+
+/// A ground, a group that passes through with a fill of `fill`, and a layer clipped to it.
+fn clipped_to_group(fill: u8) -> ProjectContents {
+    let divider = |kind: u32| [&kind.to_be_bytes()[..], b"8BIMpass"].concat();
+    let mut group = empty("group", vec![(b"lsct", divider(1)), (b"iOpa", vec![fill, 0, 0, 0])]);
+    group.blend = *b"pass";
+    let mut clipped = colored_layer("clipped", 4, 4, [9; 3]);
+    clipped.is_clipped = true;
+    let mut made = plain(4, 4, [100; 3]);
+    made.layers = Some(vec![
+        colored_layer("ground", 4, 4, [100; 3]),
+        empty("</Layer group>", vec![(b"lsct", divider(3))]),
+        colored_layer("inside", 4, 4, [40; 3]),
+        group,
+        clipped,
+    ]);
+    open(&made)
+}
+
+#[test]
+fn a_group_whose_fill_is_not_whole_does_not_pass_through() {
+    for (fill, passes) in [(255, true), (102, false)] {
+        let opened = clipped_to_group(fill);
+        let walk = opened.document.walk();
+        let found = walk
+            .iter()
+            .find(|(_, layer)| layer.name == "group")
+            .and_then(|(_, layer)| Some((layer.content.group()?.pass_through, layer.fill_opacity)));
+        assert_eq!(found, Some((passes, f32::from(fill) / 255.0)));
+        let notes = opened.notes.join("\n");
+        assert_eq!(notes.contains("all that its group lets through"), passes, "{notes}");
+    }
 }

@@ -23,6 +23,7 @@ pub struct Made {
 pub struct MadeLayer {
     pub name: &'static str,
     pub blend: [u8; 4],
+    pub is_clipped: bool,
     /// Top, left, bottom, right.
     pub rect: [i32; 4],
     pub channels: Vec<(i16, Vec<u8>)>,
@@ -83,7 +84,7 @@ impl MadeLayer {
         }
         out.extend(b"8BIM");
         out.extend(self.blend);
-        out.extend([255, 0, 0, 0]);
+        out.extend([255, u8::from(self.is_clipped), 0, 0]);
         let mut name = [&[self.name.len() as u8], self.name.as_bytes()].concat();
         name.resize(name.len().next_multiple_of(4), 0);
         let blocks: Vec<u8> = self.blocks.iter().flat_map(block).collect();

@@ -54,7 +54,9 @@ pub(super) fn vivid_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
     let tilt = 2.0 * s - as_;
     let burnt = color_burn(2.0 * s, d, as_, ab);
     let dodged = color_dodge(tilt, d, as_, ab);
-    if tilt <= 0.0 { burnt } else { dodged }
+    let lit = if tilt <= 0.0 { burnt } else { dodged };
+    let with_white = if s < as_ { lit } else { as_ * ab };
+    if s > 0.0 { with_white } else { 0.0 }
 }
 
 #[inline(always)]
