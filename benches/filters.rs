@@ -126,9 +126,10 @@ fn dragged(filter: &PictureFilter) {
     timing::row(&format!("{}, dragged, 1920 × 1080", filter.name()), series(&document, next));
 }
 
-/// A dab of 40 px beneath a filter.
-fn painted_beneath(filter: PictureFilter) {
-    let name = format!("{}, a dab beneath, 1920 × 1080", filter.name());
+/// A dab of 40 px beneath a Gaussian blur.
+fn painted_beneath(radius: f32) {
+    let filter = PictureFilter::GaussianBlur(GaussianBlur { radius });
+    let name = format!("{} of {radius} px, a dab beneath, 1920 × 1080", filter.name());
     let document = shaped(of(SCREEN, vec![paint(SCREEN), Layer::new("filter", filter)]));
     let id = document.layers[0].id;
     let next = |document: &Document, i: usize| {
@@ -173,8 +174,6 @@ fn twelve_adjustments() {
 fn main() {
     println!("{:56} {:>8} {:>8} {:>8}", "ms a frame", "least", "middle", "9 of 10");
     PictureFilter::all().iter().for_each(dragged);
-    for radius in [4.0, 20.0, 100.0] {
-        painted_beneath(PictureFilter::GaussianBlur(GaussianBlur { radius }));
-    }
+    [4.0, 20.0, 100.0].into_iter().for_each(painted_beneath);
     twelve_adjustments();
 }

@@ -51,6 +51,14 @@ impl Figures {
         Self { machine, rows: lines.filter_map(row).collect() }
     }
 
+    /// With the rows of another run; those of benches that it does not hold stay.
+    pub fn with_run(self, run: Figures) -> Self {
+        let is_measured = |row: &Row| run.rows.iter().any(|other| other.bench == row.bench);
+        let mut rows: Vec<Row> = self.rows.into_iter().filter(|row| !is_measured(row)).collect();
+        rows.extend(run.rows);
+        Self { machine: run.machine, rows }
+    }
+
     pub fn print(&self) -> String {
         let mut text = format!("{}\n", self.machine);
         for Row { bench, name, values } in &self.rows {

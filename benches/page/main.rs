@@ -6,8 +6,8 @@
 //! ```
 //!
 //! The figures of the run go to `benches/page/figures.txt`, and into the places of
-//! `benches/page/template.md` that name them. Without arguments the page is made again from the
-//! figures as they are.
+//! `benches/page/template.md` that name them; those of benches that did not run stay. Without
+//! arguments the page is made again from the figures as they are.
 
 mod figures;
 
@@ -18,9 +18,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let kept = root.join("benches/page/figures.txt");
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let before = Figures::parse(&std::fs::read_to_string(&kept)?);
     let figures = match &arguments[..] {
-        [] => Figures::parse(&std::fs::read_to_string(&kept)?),
-        [run, machine] => Figures::of_run(&std::fs::read_to_string(run)?, machine),
+        [] => before,
+        [run, machine] => before.with_run(Figures::of_run(&std::fs::read_to_string(run)?, machine)),
         _ => return Err("usage: performance_page [BENCH_OUTPUT MACHINE]".into()),
     };
     let page = figures.fill(&std::fs::read_to_string(root.join("benches/page/template.md"))?);

@@ -140,28 +140,28 @@ pub fn stops(
 
 /// From which side a place is seen.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
+enum RampSide {
     Before,
     Behind,
 }
 
 /// Both sides of a hard edge, one of any other place.
-fn sides(inks: &[Mark<[f32; 3]>], opacities: &[Mark<[f32; 1]>], t: f32) -> [Option<Side>; 2] {
+fn sides(inks: &[Mark<[f32; 3]>], opacities: &[Mark<[f32; 1]>], t: f32) -> [Option<RampSide>; 2] {
     let is_edge = inks.iter().filter(|mark| mark.t == t).count() > 1
         || opacities.iter().filter(|mark| mark.t == t).count() > 1;
-    [is_edge.then_some(Side::Before), Some(Side::Behind)]
+    [is_edge.then_some(RampSide::Before), Some(RampSide::Behind)]
 }
 
 /// The value at a place, `smooth` of it on the curve through the marks.
 fn value_at<const N: usize>(
     marks: &[Mark<[f32; N]>],
     t: f32,
-    side: Side,
+    side: RampSide,
     smooth: f32,
 ) -> Option<[f32; N]> {
     let next = match side {
-        Side::Before => marks.partition_point(|mark| mark.t < t),
-        Side::Behind => marks.partition_point(|mark| mark.t <= t),
+        RampSide::Before => marks.partition_point(|mark| mark.t < t),
+        RampSide::Behind => marks.partition_point(|mark| mark.t <= t),
     };
     let (Some(i), Some(to)) = (next.checked_sub(1), marks.get(next)) else {
         return if next == 0 { marks.first() } else { marks.last() }.map(|mark| mark.value);

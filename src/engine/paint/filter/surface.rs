@@ -84,7 +84,7 @@ impl StepWeights {
         // Off the surface's canvas all is flat.
         let [mut across, mut down] = [0, 1].map(|_| vec![plain; width * rect.height()]);
         let step = SurfaceStep { range: surface.depth_range_px(), rate, plain };
-        let row = |y: i32, columns: Range<usize>| SurfaceRow {
+        let row = |y: i32, columns: Range<usize>| StepRow {
             depth: &surface.depth_plane().row(y as usize)[columns.clone()],
             coverage: &surface.coverage_plane().row(y as usize)[columns.clone()],
             links: &surface.links_plane().row(y as usize)[columns],
@@ -149,7 +149,7 @@ struct SurfaceStep {
 }
 
 /// Part of a row of a surface.
-struct SurfaceRow<'a> {
+struct StepRow<'a> {
     depth: &'a [f32],
     coverage: &'a [u8],
     links: &'a [u8],
@@ -160,7 +160,7 @@ const SIDE_BY_SIDE: usize = 4;
 
 crate::widest! {
     /// The weights of steps from one row of pixels to another, which has the bit `link`.
-    fn put_weights(rows: [SurfaceRow; 2], link: u8, step: SurfaceStep, weights: &mut [f32]) {
+    fn put_weights(rows: [StepRow; 2], link: u8, step: SurfaceStep, weights: &mut [f32]) {
         let [from, to] = rows;
         let depths = from.depth.iter().zip(to.depth);
         let covered = from.coverage.iter().zip(to.coverage);

@@ -47,7 +47,7 @@ pub fn read(mut data: ByteCursor, colors: &Colors) -> Option<RecordEffects> {
 }
 
 /// A number with a fraction of 16 bits.
-fn fixed(data: &mut ByteCursor) -> Option<f32> {
+fn read_fixed(data: &mut ByteCursor) -> Option<f32> {
     Some(data.i32()? as f32 / 65536.0)
 }
 
@@ -67,7 +67,7 @@ fn opacity(data: &mut ByteCursor) -> Option<f32> {
     Some(f32::from(data.u8()?) / 255.0)
 }
 
-fn made(kind: EffectKind, on: bool, set: impl FnOnce(&mut EffectSettings)) -> LayerEffect {
+fn build_effect(kind: EffectKind, on: bool, set: impl FnOnce(&mut EffectSettings)) -> LayerEffect {
     let mut effect = LayerEffect { on, ..LayerEffect::new(kind) };
     set(&mut effect.settings);
     effect
@@ -75,27 +75,27 @@ fn made(kind: EffectKind, on: bool, set: impl FnOnce(&mut EffectSettings)) -> La
 
 fn shadow(kind: EffectKind, data: &mut ByteCursor, colors: &Colors) -> Option<LayerEffect> {
     let (size, intensity, angle, distance) =
-        (fixed(data)?, fixed(data)?, fixed(data)?, fixed(data)?);
+        (read_fixed(data)?, read_fixed(data)?, read_fixed(data)?, read_fixed(data)?);
     let (color, blend) = (color(data, colors)?, blend(data)?);
     let (on, document_light, opacity) = (data.u8()? != 0, data.u8()? != 0, opacity(data)?);
-    Some(made(kind, on, |s| {
+    Some(build_effect(kind, on, |s| {
         (s.size, s.spread, s.angle, s.distance) = (size, intensity / 100.0, angle, distance);
         (s.color, s.blend, s.opacity, s.document_light) = (color, blend, opacity, document_light);
     }))
 }
 
 fn glow(kind: EffectKind, data: &mut ByteCursor, colors: &Colors) -> Option<LayerEffect> {
-    let (size, intensity) = (fixed(data)?, fixed(data)?);
+    let (size, intensity) = (read_fixed(data)?, read_fixed(data)?);
     let (color, blend) = (color(data, colors)?, blend(data)?);
     let (on, opacity) = (data.u8()? != 0, opacity(data)?);
-    Some(made(kind, on, |s| {
+    Some(build_effect(kind, on, |s| {
         (s.size, s.spread) = (size, intensity / 100.0);
         (s.color, s.blend, s.opacity) = (color, blend, opacity);
     }))
 }
 
 fn bevel(data: &mut ByteCursor, colors: &Colors) -> Option<LayerEffect> {
-    let (angle, _strength, size) = (fixed(data)?, fixed(data)?, fixed(data)?);
+    let (angle, _strength, size) = (read_fixed(data)?, read_fixed(data)?, read_fixed(data)?);
     let blends = [blend(data)?, blend(data)?];
     let tones = [color(data, colors)?, color(data, colors)?];
     let style = match data.u8()? {
@@ -106,7 +106,7 @@ fn bevel(data: &mut ByteCursor, colors: &Colors) -> Option<LayerEffect> {
     };
     let opacities = [opacity(data)?, opacity(data)?];
     let (on, document_light, sunken) = (data.u8()? != 0, data.u8()? != 0, data.u8()? != 0);
-    Some(made(EffectKind::Bevel, on, |s| {
+    Some(build_effect(EffectKind::Bevel, on, |s| {
         (s.angle, s.size, s.bevel, s.sunken) = (angle, size, style, sunken);
         ([s.blend, s.shade_blend], [s.color, s.shade_color]) = (blends, tones);
         [s.opacity, s.shade_opacity] = opacities;
@@ -117,7 +117,7 @@ fn bevel(data: &mut ByteCursor, colors: &Colors) -> Option<LayerEffect> {
 fn overlay(data: &mut ByteCursor, colors: &Colors) -> Option<LayerEffect> {
     let (blend, color) = (blend(data)?, color(data, colors)?);
     let (opacity, on) = (opacity(data)?, data.u8()? != 0);
-    Some(made(EffectKind::ColorOverlay, on, |s| {
+    Some(build_effect(EffectKind::ColorOverlay, on, |s| {
         (s.blend, s.color, s.opacity) = (blend, color, opacity);
     }))
 }
