@@ -39,6 +39,9 @@ pub fn block<'a>(rest: &mut ByteCursor<'a>, large: bool) -> Option<([u8; 4], Byt
     Some((key, data))
 }
 
+/// What is noted of text.
+pub const TEXT_NOTE: &str = "its text became pixels";
+
 /// Takes a block's word into a record.
 pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors: &Colors) {
     match &key {
@@ -68,7 +71,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
             }
         }
         b"artb" | b"artd" | b"abdd" => record.ground = ground(data, colors),
-        b"TySh" | b"tySh" => record.note_conversion("its text became pixels"),
+        b"TySh" | b"tySh" => record.note_conversion(TEXT_NOTE),
         b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => {
             record.note_conversion("its smart object became pixels")
         }

@@ -6,11 +6,12 @@
 //!
 //! * alike, and nothing left out: the layers alone;
 //! * alike, though something was left out: the file's picture is hidden above them;
-//! * nearly alike, and nothing but adjustments and effects can be the reason: the same, with a note;
+//! * nearly alike, and nothing but adjustments, effects or the edges of text can be the reason: the
+//!   same, with a note;
 //! * unlike: the file's picture is shown, and the layers are hidden beneath it, in a group.
 
-use super::filled;
 use super::merged::Merged;
+use super::{blocks, filled};
 use crate::document::{Content, Document, Group, Layer, Progress, flatten};
 use crate::math::Size;
 use crate::raster::tile::TILE;
@@ -24,6 +25,8 @@ const ALIKE_P99: usize = 8;
 /// Those of pictures that are near enough for live adjustments and effects, whose formulas are fitted.
 const NEAR_MEAN: f64 = 3.0;
 const NEAR_P99: usize = 16;
+/// As far as edges of text differ, which Photoshop blends by a curve of its own.
+const MOST_OF_TEXT: usize = 40;
 /// Names of what is added.
 const PICTURE: &str = "The file's own picture";
 const LAYERS: &str = "Layers";
@@ -43,6 +46,10 @@ impl Difference {
 
     fn is_near(self) -> bool {
         self.mean <= NEAR_MEAN && self.p99 <= NEAR_P99
+    }
+
+    fn is_near_for_text(self) -> bool {
+        self.mean <= ALIKE_MEAN && self.most <= MOST_OF_TEXT
     }
 
     /// How many pixels differ by how much.
@@ -95,10 +102,9 @@ pub fn check_against_merged(
         return document;
     }
     let Difference { mean, most, .. } = difference;
-    if difference.is_near() && !is_less && has_fitted(&document) {
+    if let Some(what) = name_fitted_part(&document, difference, notes).filter(|_| !is_less) {
         notes.push(format!(
-            "its adjustments and effects differ from the file's own picture by {mean:.1} of 255 on average, \
-             {most} at most; \
+            "{what} differ from the file's own picture by {mean:.1} of 255 on average, {most} at most; \
              that is hidden above them as “{PICTURE}”"
         ));
         return with_picture(document, &merged, false);
@@ -119,6 +125,22 @@ pub fn check_against_merged(
         ..Layer::new(LAYERS, Content::Group(group))
     };
     with_picture(Document { layers: vec![Arc::new(layers)], ..document }, &merged, true)
+}
+
+/// What is known to be drawn a little differently here, where pictures are near enough for that.
+fn name_fitted_part(
+    document: &Document,
+    difference: Difference,
+    notes: &[String],
+) -> Option<&'static str> {
+    let has_text = || notes.iter().any(|note| note.ends_with(blocks::TEXT_NOTE));
+    if difference.is_near() && has_fitted(document) {
+        Some("its adjustments and effects")
+    } else if difference.is_near_for_text() && has_text() {
+        Some("the edges of its text")
+    } else {
+        None
+    }
 }
 
 /// Whether there are adjustments or effects, whose formulas are fitted.
@@ -230,6 +252,20 @@ mod tests {
         let (layers, notes) = check_as(picture(100), true);
         assert_eq!(layers, [("gray".to_owned(), true), (PICTURE.to_owned(), false)]);
         assert!(notes[0].contains("is hidden above"), "{notes:?}");
+    }
+
+    #[test]
+    fn edges_of_text_may_differ() {
+        let mut near = picture(100).unwrap();
+        near.pixels.rgba[..16].copy_from_slice(&[140, 140, 140, 255].repeat(4));
+        let shown = |said: &str| {
+            let mut notes = vec![format!("“Title”: {said}")];
+            let own = Merged { pixels: near.pixels.clone(), is_real: true, ..Merged::default() };
+            let document = check_against_merged(gray(100), Some(own), false, &mut notes);
+            assert!(notes[1].contains("differ from the file's own picture by 0.8 of 255"));
+            document.layers[0].visible
+        };
+        assert_eq!([blocks::TEXT_NOTE, "its fill became pixels"].map(shown), [true, false]);
     }
 
     #[test]

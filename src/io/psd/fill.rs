@@ -69,7 +69,7 @@ pub fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
     object.number(name).map_or(absent, |percent| percent / 100.0)
 }
 
-/// A color in any of the ways that descriptors say one.
+/// A color in any of the ways that descriptors say one. With 32 bits a channel, RGB is light there.
 pub fn color(said: &DescriptorObject, colors: &Colors) -> Option<Color> {
     let byte = |v: f32, full: f32| srgb::quantize(v / full);
     let all = |names: [&str; 3]| {
@@ -77,7 +77,10 @@ pub fn color(said: &DescriptorObject, colors: &Colors) -> Option<Color> {
     };
     let in_mode = |mode: Mode, values: [u8; 4]| in_mode(mode, values, colors);
     if let Some(rgb) = all(["Rd  ", "Grn ", "Bl  "]) {
-        let [r, g, b] = rgb.map(|v| byte(v, 255.0));
+        let [r, g, b] = rgb.map(|v| match colors.is_light {
+            true => srgb::quantize(srgb::encode((v / 255.0).max(0.0))),
+            false => byte(v, 255.0),
+        });
         return Some(in_mode(Mode::Rgb, [r, g, b, 0]));
     }
     if let Some([h, s, v]) = all(["H   ", "Strt", "Brgh"]) {

@@ -22,7 +22,15 @@ pub struct VectorPaths {
 #[derive(Clone, Debug, PartialEq)]
 struct FilledPaths {
     way: PathOperation,
-    paths: Vec<Vec<Knot>>,
+    paths: Vec<KnotPath>,
+}
+
+/// One path.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct KnotPath {
+    knots: Vec<Knot>,
+    /// It ends where it ends; what it fills is closed by a straight line.
+    is_open: bool,
 }
 
 /// How a shape meets those before it.
@@ -53,8 +61,10 @@ impl VectorPaths {
     }
 
     fn record(&mut self, mut record: ByteCursor) -> Option<()> {
-        match record.u16()? {
+        let kind = record.u16()?;
+        match kind {
             0 | 3 => {
+                let path = KnotPath { is_open: kind == 3, ..KnotPath::default() };
                 record.u16()?;
                 let way = match record.i16()? {
                     0 => Some(PathOperation::Exclude),
@@ -65,10 +75,10 @@ impl VectorPaths {
                     _ => None,
                 };
                 match (way, self.shapes.last_mut()) {
-                    (None, Some(shape)) => shape.paths.push(Vec::new()),
+                    (None, Some(shape)) => shape.paths.push(path),
                     (way, _) => self.shapes.push(FilledPaths {
                         way: way.unwrap_or(PathOperation::Add),
-                        paths: vec![Vec::new()],
+                        paths: vec![path],
                     }),
                 }
             }
@@ -76,7 +86,7 @@ impl VectorPaths {
                 // Fixed point, eight bits before it.
                 let mut share = || Some(record.i32()? as f32 / 16_777_216.0);
                 let knot = [[share()?, share()?], [share()?, share()?], [share()?, share()?]];
-                self.shapes.last_mut()?.paths.last_mut()?.push(knot);
+                self.shapes.last_mut()?.paths.last_mut()?.knots.push(knot);
             }
             8 => self.begins_full = record.u16()? == 1,
             _ => {}
@@ -91,7 +101,10 @@ impl VectorPaths {
 
     /// Coverage of every pixel of the canvas, row by row.
     pub fn coverage(&self, size: Size) -> Vec<u8> {
-        let mut coverage = vec![if self.begins_full { 255 } else { 0 }; size.area()];
+        // What is added first would add nothing to all of the canvas, so it begins.
+        let is_added = self.shapes.first().is_some_and(|shape| shape.way == PathOperation::Add);
+        let begins_full = self.begins_full && !is_added;
+        let mut coverage = vec![if begins_full { 255 } else { 0 }; size.area()];
         for shape in &self.shapes {
             let drawn = shape.fill_mask(size);
             for (i, c) in coverage.iter_mut().enumerate() {
@@ -117,11 +130,12 @@ impl FilledPaths {
     fn path(&self, size: Size) -> Option<Path> {
         let mut builder = PathBuilder::new();
         let place = |[y, x]: [f32; 2]| (x * size.width as f32, y * size.height as f32);
-        for knots in &self.paths {
+        for KnotPath { knots, is_open } in &self.paths {
             let Some(first) = knots.first() else { continue };
             let (x, y) = place(first[1]);
             builder.move_to(x, y);
-            for (from, to) in knots.iter().zip(knots.iter().cycle().skip(1)) {
+            let curves = knots.len() - usize::from(*is_open);
+            for (from, to) in knots.iter().zip(knots.iter().cycle().skip(1)).take(curves) {
                 let ((x1, y1), (x2, y2), (x, y)) = (place(from[2]), place(to[0]), place(to[1]));
                 builder.cubic_to(x1, y1, x2, y2, x, y);
             }
@@ -180,7 +194,24 @@ mod tests {
         assert_eq!(drawn(0, &[left(), right(-1)]), [255, 0, 0, 255], "one shape with a hole");
         let mut full = vec![0, 8, 0, 1];
         full.resize(26, 0);
-        assert_eq!(drawn(0, &[full, right(2)]), [255, 0, 0, 0], "begins with all");
+        assert_eq!(drawn(0, &[full.clone(), right(2)]), [255, 0, 0, 0], "begins with all");
+        assert_eq!(drawn(0, &[full, left()]), [255, 255, 255, 0], "begins with what is added");
+    }
+
+    #[test]
+    fn an_open_path_is_closed_by_a_straight_line() {
+        let mut path = rectangle(1, [0.0, 0.0, 1.0, 1.0]);
+        // The handle behind the last knot and that before the first bend the curve between them.
+        let far = ((0.9 * 16_777_216.0) as i32).to_be_bytes();
+        path[26 + 6..26 + 10].copy_from_slice(&far);
+        path[26 * 4 + 22..26 * 4 + 26].copy_from_slice(&far);
+        let closed = drawn(0, std::slice::from_ref(&path));
+        assert!(closed[0] < 128, "{closed:?}");
+        path[1] = 3;
+        for knot in path[26..].chunks_mut(26) {
+            knot[1] = 4;
+        }
+        assert_eq!(drawn(0, &[path]), [255; 4]);
     }
 
     #[test]

@@ -66,6 +66,11 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let mut damage = reader.damage;
     let is_there = rest.take(length).is_some();
     let count = info.and_then(|info| ByteCursor::new(info.rest()).i16());
+    // In files of 16 and 32 bits a block says what else a negative count does.
+    let has_transparency = global_blocks(section, header.large)
+        .any(|(key, _)| [*b"Mtrn", *b"Mt16", *b"Mt32"].contains(&key));
+    let count =
+        count.map(|count| if has_transparency { -count.saturating_abs().max(1) } else { count });
     let held_bytes = held_bytes.saturating_add(header.merged_bytes());
     budget.room(file, "reading its layers and the picture of them all", held_bytes)?;
     let channels = usize::from(header.channels).saturating_sub(header.colors());

@@ -63,6 +63,9 @@ pub fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill
     let read = fill::gradient(said, colors)?;
     let ramp = said.object("Grad")?;
     let mixing = RampMixing::of(said.word("gs99").unwrap_or_default());
+    // With 32 bits a channel, the document's values are light.
+    let is_of_light = colors.is_light && mixing == RampMixing::Classic;
+    let mixing = if is_of_light { RampMixing::Linear } else { mixing };
     let smoothness = ramp.number("Intr").unwrap_or(0.0);
     if smoothness == 0.0 && mixing == RampMixing::Classic {
         return Some(read);

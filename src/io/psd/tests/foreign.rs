@@ -267,6 +267,24 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
 }
 
 #[test]
+fn colors_of_fills_are_light_where_channels_have_32_bits() {
+    let fill = descriptor(&[("Clr ", rgb([55, 255, 0]))]);
+    let mask = rectangle([0.0, 0.0, 0.5, 1.0]);
+    let mut made = plain(4, 4, [0; 3]);
+    made.bits = 32;
+    made.layers = Some(vec![empty("shape", vec![(b"SoCo", fill), (b"vmsk", mask)])]);
+    let row = |v: f32| [v, v, 0.0, 0.0].map(f32::to_be_bytes).concat().repeat(4);
+    made.merged = vec![row(55.0 / 255.0), row(1.0), row(0.0), row(1.0)];
+    // The fourth channel is how opaque all layers are.
+    made.blocks = vec![(b"Mt32", Vec::new())];
+    let back = open(&made);
+    assert!(!back.notes.iter().any(|note| note.contains("differ")), "{:?}", back.notes);
+    let [layer] = &back.document.layers[..] else { panic!("not one layer") };
+    assert!(matches!(layer.content, Content::Fill(Color { r: 128, g: 255, b: 0, a: 255 })));
+    assert_eq!(pixel(&back.document, 3, 0), [0; 4]);
+}
+
+#[test]
 fn a_gradient_fill_is_a_gradient_of_its_style() {
     let stop = |at: i32, value: u8| {
         objc(&[("Clr ", rgb([value; 3])), ("Lctn", long(at)), ("Mdpn", long(50))])
