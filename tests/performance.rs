@@ -60,3 +60,14 @@ fn what_benches_print_becomes_figures() {
     let page = "{{machine}}: {{engine; copy}}, {{engine; D_n bilinear; 3}}, {{frame; nothing; 1}}, {{engine; copy; 2}}";
     assert_eq!(figures.fill(page), "a machine: 0.904, 1.02, –, –");
 }
+
+#[test]
+fn figures_of_benches_that_did_not_run_stay() {
+    let before = Figures::parse("a machine\nengine; copy; 0.9\nframe; a pan; 36.0 45.0\n");
+    let run = Figures::of_run(
+        "     Running benches/frame.rs (target/release/deps/frame-0)\na zoom    14.4    15.5\n",
+        "another",
+    );
+    let expected = "another\nengine; copy; 0.9\nframe; a zoom; 14.4 15.5\n";
+    assert_eq!(before.with_run(run).print(), expected);
+}
