@@ -133,7 +133,56 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
 }
 
 #[test]
-fn flats_become_a_part_for_each_place_or_a_part_is_split_by_place() {
+fn materials_are_shown_on_the_part_under_the_pointer_and_given_to_parts_that_are_clicked() {
+    let folder = TempDir::new().unwrap();
+    let mut harness = opening(&drawing(&folder));
+    asked(&mut harness);
+    give(&mut harness);
+    let before = layers(&harness);
+    let (head, body) = (seen(&harness, 130.0, 90.0), seen(&harness, 120.0, 300.0));
+    command(&mut harness, "Materials…");
+    // The balls get their pictures meanwhile.
+    super::act_until(
+        &mut harness,
+        |harness| press(harness, "Material: Gold"),
+        |harness| harness.query_by_label("Click a part of the drawing.").is_some(),
+    );
+    assert_eq!(layers(&harness), before, "nothing is given yet");
+
+    // The head is shown in it while the pointer is over it, and no step is made.
+    let middle = harness.get_by_label("Canvas").rect().center();
+    let count = |harness: &Story| {
+        let open = session(harness).active().unwrap();
+        (open.shown_document().layers.len(), open.document().layers.len())
+    };
+    harness.hover_at(middle + head);
+    steps(&mut harness);
+    assert_eq!(count(&harness), (before.len() + 1, before.len()));
+
+    // A click gives it, and the next part gets it by the next click.
+    drag(&mut harness, head, head);
+    drag(&mut harness, body, body);
+    let document = session(&harness).active().unwrap().document().clone();
+    let made = &document.layers[before.len()..];
+    let names: Vec<&str> = made.iter().map(|layer| layer.name.as_str()).collect();
+    assert_eq!(names.len(), 2, "{names:?}");
+    let selected: Vec<bool> = [(130, 90), (120, 300)]
+        .into_iter()
+        .zip(made)
+        .map(|(at, group)| {
+            let shown = flatten_layer(&document, group.id, &Progress::default()).unwrap();
+            let other = if at.1 == 90 { (120, 300) } else { (130, 90) };
+            let alpha = |(x, y): (i32, i32)| shown.pixel(x, y)[3];
+            alpha(at) > 0 && alpha(other) == 0
+        })
+        .collect();
+    assert_eq!(selected, [true, true], "each is on the part that was clicked");
+    press(&mut harness, "Close");
+    assert_eq!(layers(&harness).len(), before.len() + 2);
+}
+
+#[test]
+fn flats_become_a_part_for_each_area_or_a_part_is_split_by_area() {
     let folder = TempDir::new().unwrap();
     let picture = image::RgbaImage::from_fn(300, 200, |x, y| {
         let inside = |cx: f32, r: f32| (x as f32 + 0.5 - cx).hypot(y as f32 - 99.5) < r;
