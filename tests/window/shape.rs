@@ -141,7 +141,7 @@ fn materials_are_shown_on_the_part_under_the_pointer_and_given_to_parts_that_are
     let before = layers(&harness);
     let (head, body) = (seen(&harness, 130.0, 90.0), seen(&harness, 120.0, 300.0));
     command(&mut harness, "Materials…");
-    // The balls get their pictures meanwhile.
+    // The dialog finds its size meanwhile.
     super::act_until(
         &mut harness,
         |harness| press(harness, "Material: Gold"),

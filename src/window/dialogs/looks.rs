@@ -73,7 +73,11 @@ impl LooksDialog {
                     let shown = size * (SHOWN_PT / size.max_elem().max(1.0));
                     ui.add(egui::Button::image(egui::load::SizedTexture::new(texture, shown)))
                 }
-                None => ui.add_sized(vec2(SHOWN_PT, SHOWN_PT), egui::Button::new("…")),
+                // The same button to egui, as large: no click is lost while its picture arrives.
+                None => {
+                    let side = vec2(SHOWN_PT, SHOWN_PT) + 2.0 * ui.spacing().button_padding;
+                    ui.add(egui::Button::new("…").min_size(side))
+                }
             };
             let response = response.on_hover_text(&look.about);
             set_accessible_name(&response, &format!("Look: {}", look.name));

@@ -229,7 +229,11 @@ impl MaterialsDialog {
                     let picture = egui::load::SizedTexture::new(texture, size);
                     ui.add(egui::Button::image(picture).selected(self.held == Some(material.key)))
                 }
-                None => ui.add_sized(vec2(SHOWN_PT, SHOWN_PT), egui::Button::new("…")),
+                // The same button to egui, as large: no click is lost while its picture arrives.
+                None => {
+                    let side = vec2(SHOWN_PT, SHOWN_PT) + 2.0 * ui.spacing().button_padding;
+                    ui.add(egui::Button::new("…").min_size(side))
+                }
             };
             let response = response.on_hover_text(&material.about);
             set_accessible_name(&response, &format!("Material: {}", material.name));
