@@ -62,6 +62,7 @@ use crate::raster::Plane;
 use contours::{ContourMaps, FarSide, Found};
 use derived::DerivedCaches;
 use points::PointSource;
+use pyramid::MapPyramids;
 use rayon::prelude::*;
 use std::sync::Arc;
 use transformed::Origin;
@@ -111,6 +112,8 @@ pub struct Surface {
     /// The same without those across creases; absent where there are none.
     smooth_links: Option<Arc<Plane<u8>>>,
     depth_range_px: f32,
+    /// Ranges of the maps in blocks.
+    bounds: MapPyramids,
     derived: DerivedCaches,
     /// The surface that detail was combined onto, if any; what depends on depth alone is computed
     /// there.
@@ -214,6 +217,7 @@ impl Surface {
             links,
             smooth_links: None,
             depth_range_px,
+            bounds: MapPyramids::default(),
             derived: DerivedCaches::default(),
             base: None,
             parts: None,

@@ -112,7 +112,7 @@ impl Surface {
 
     /// Min–max pyramids of the maps, for `support`.
     pub(in crate::surface) fn bounds(&self) -> &MapPyramids {
-        &self.derived.bounds
+        &self.bounds
     }
 
     /// The surface without the detail that was combined onto it.

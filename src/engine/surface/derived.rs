@@ -9,7 +9,6 @@ use super::curvature::{Curvature, CurvatureRims, Kappa};
 use super::form_lines::{FormLines, LineKey, SmoothNormals};
 use super::hatching::{HatchKey, HatchLines};
 use super::objects::Objects;
-use super::pyramid::MapPyramids;
 use super::ray::RayMap;
 use super::region::SurfaceRegion;
 use super::shadow::{ContactShade, HeightMaps, ShadowKey, ShareMap};
@@ -81,8 +80,6 @@ caches! {
     plane_solver: RecentCache<([u32; 2], Rect), PlaneSolver>,
     /// The perspective near the surface; `None` where it was seen from afar.
     perspective_view: OnceLock<Option<PerspectiveView>>,
-    /// Ranges of the maps in blocks.
-    bounds: MapPyramids,
     /// The pieces of the surface.
     objects: RecentCache<(), Objects>,
     /// What the other sides of contour pixels read.
@@ -93,7 +90,8 @@ impl Surface {
     /// Bytes of the maps alone and of the links between their pixels.
     pub const BYTES_PER_PX: usize = 4 * size_of::<f32>() + 2 * size_of::<u8>();
 
-    /// Bytes of the maps and of what is computed when a surface is made.
+    /// Bytes of the maps, of what is computed when a surface is made, and of the pyramids, which
+    /// stay: every mark reads them, and they hold a small share of what the maps do.
     pub fn map_bytes(&self) -> u64 {
         let smooth_links = self.smooth_links.as_ref().map_or(0, |plane| plane.heap_bytes());
         let parts = self.parts.as_ref().map_or(0, |plane| plane.heap_bytes());
@@ -101,6 +99,7 @@ impl Surface {
             + smooth_links
             + parts
             + self.contours().bytes()
+            + self.bounds.bytes()
     }
 
     /// Bytes of what was computed from the maps and can be computed again.
@@ -118,17 +117,6 @@ impl HeapSize for Surface {
     fn heap_bytes(&self) -> u64 {
         self.map_bytes() + self.cached_bytes()
     }
-}
-
-impl HeapSize for MapPyramids {
-    fn heap_bytes(&self) -> u64 {
-        self.bytes()
-    }
-}
-
-impl Cache for MapPyramids {
-    /// They stay: every mark reads them, and they hold a small share of what the maps do.
-    fn clear(&self) {}
 }
 
 #[cfg(test)]
@@ -171,10 +159,6 @@ mod tests {
         surface.plane_layout(settings).unwrap();
         grew("layout", &mut last);
         surface.clear_caches();
-        assert_eq!(
-            surface.cached_bytes(),
-            surface.derived.bounds.bytes(),
-            "only the pyramids stay"
-        );
+        assert_eq!(surface.cached_bytes(), 0);
     }
 }
