@@ -55,8 +55,14 @@ impl Fs for Disk {
         std::fs::hard_link(from, to)
     }
 
+    #[cfg(not(windows))]
     fn remove(&self, path: &Path) -> io::Result<()> {
         std::fs::remove_file(path)
+    }
+
+    #[cfg(windows)]
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        windows::remove(path)
     }
 
     fn sync_dir(&self, folder: &Path) -> io::Result<()> {

@@ -2,7 +2,7 @@
 
 use super::Identity;
 use std::ffi::c_void;
-use std::fs::{File, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::os::windows::fs::OpenOptionsExt;
 use std::os::windows::io::AsRawHandle;
@@ -89,4 +89,24 @@ pub fn hold(file: &File) -> io::Result<bool> {
     } else {
         Err(error)
     }
+}
+
+/// Removes a file, also one that is set read-only, which the system refuses at first.
+#[expect(
+    clippy::permissions_set_readonly_false,
+    reason = "there the attribute is the file's alone"
+)]
+pub fn remove(path: &Path) -> io::Result<()> {
+    let Err(refused) = fs::remove_file(path) else { return Ok(()) };
+    let before = fs::symlink_metadata(path)?.permissions();
+    if refused.kind() != io::ErrorKind::PermissionDenied || !before.readonly() {
+        return Err(refused);
+    }
+    let mut writable = before.clone();
+    writable.set_readonly(false);
+    fs::set_permissions(path, writable)?;
+    fs::remove_file(path).inspect_err(|_| {
+        // The file stays as it was. The error that matters is the first one.
+        let _ = fs::set_permissions(path, before);
+    })
 }
