@@ -31,6 +31,7 @@ use super::preferences::Preferences;
 use super::render_thread::RenderThread;
 use super::theme;
 use crate::Error;
+use crate::document::Document;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
@@ -65,7 +66,7 @@ pub struct Canvas {
     /// The open document that is shown, by its key, and the last request.
     picture: u64,
     key: Option<usize>,
-    wanted: Option<(crate::document::Document, bool)>,
+    wanted: Option<(Document, bool)>,
     hand: PointerState,
     checker: Option<TextureHandle>,
     overlay: Overlay,
@@ -198,31 +199,21 @@ impl Canvas {
         self.shown_at = layout.is_none().then_some((rect, screen_from_canvas));
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
-        let scale = view.zoom * ui.ctx().pixels_per_point();
-        self.whole.magnify(scale, open.document().size);
-        self.draft.magnify(scale, open.document().size);
-        self.sheet.shown.magnify(scale, size);
+        self.magnify(view.zoom * ui.ctx().pixels_per_point(), open.document().size, size);
 
         let painter = ui.painter_at(rect);
         let canvas = size.rect();
-        let shadow = corners(canvas).map(|(x, y)| on_screen(screen_from_canvas, x, y));
-        self.draw_checker(ui, &painter, shadow);
+        let outline = corners(canvas).map(|(x, y)| on_screen(screen_from_canvas, x, y));
+        self.draw_checker(ui, &painter, outline);
         self.texture_in_front(layout.is_some()).draw(&painter, screen_from_canvas, size);
-        if let Some(wobble) = self.wobble.as_mut().filter(|_| layout.is_none()) {
-            if wobble.is_going_on(ui, open.shown_document()) {
-                return wobble.draw(&painter, screen_from_canvas);
-            }
-            // The event that ended it does nothing else.
-            self.wobble = None;
-            return ui.ctx().request_repaint();
-        }
         if layout.is_none() {
+            if self.is_wobbling(ui, open.shown_document(), &painter, screen_from_canvas) {
+                return;
+            }
             self.draw_overlay(ui.ctx(), session, &painter, screen_from_canvas);
         }
-        painter.add(egui::Shape::closed_line(
-            shadow.to_vec(),
-            Stroke::new(1.0, Color32::from_black_alpha(110)),
-        ));
+        let line = Stroke::new(1.0, Color32::from_black_alpha(110));
+        painter.add(egui::Shape::closed_line(outline.to_vec(), line));
 
         self.hand.listen(ui, &response, session, &view, middle, actions);
         let pointer = response.hover_pos().filter(|_| !self.hand.is_looking());
@@ -248,6 +239,32 @@ impl Canvas {
         if response.hovered() || self.hand.is_looking() {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
+    }
+
+    /// Says at what scale the pictures are seen: `size_px` and `sheet_px` are theirs.
+    fn magnify(&mut self, scale: f32, size_px: Size, sheet_px: Size) {
+        self.whole.magnify(scale, size_px);
+        self.draft.magnify(scale, size_px);
+        self.sheet.shown.magnify(scale, sheet_px);
+    }
+
+    /// Whether the picture is seen wobbling, or has just ended to: the event that ended it does
+    /// nothing else.
+    fn is_wobbling(
+        &mut self,
+        ui: &Ui,
+        document: &Document,
+        painter: &Painter,
+        screen_from_canvas: Affine2,
+    ) -> bool {
+        let Some(wobble) = self.wobble.as_mut() else { return false };
+        if wobble.is_going_on(ui, document) {
+            wobble.draw(painter, screen_from_canvas);
+        } else {
+            self.wobble = None;
+            ui.ctx().request_repaint();
+        }
+        true
     }
 
     /// What helps the hand, over the picture: guides, rulers, selections, the tool's own marks.

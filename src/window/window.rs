@@ -31,7 +31,7 @@ use super::theme;
 use super::thumbnails::Thumbnails;
 use crate::Error;
 use crate::advice::with_advice;
-use crate::document::Progress;
+use crate::document::{Progress, SurfaceSource};
 use crate::session::actions::{self, GuideAction};
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
@@ -309,24 +309,7 @@ impl MainWindow {
             DialogAnswer::Open => return,
             // The dialog stays while a file is chosen for it.
             DialogAnswer::Ask(ask @ WindowRequest::Choose(_)) => return requests.request(ask),
-            DialogAnswer::Import(source) => {
-                let read = move |progress: &Progress| {
-                    let found = match storage::import_watched(&source, progress) {
-                        Ok(Some(found)) => Ok(found),
-                        Ok(None) => return JobResult::nothing(),
-                        Err(error) => Err(error),
-                    };
-                    let picture = storage::finished_picture(&source);
-                    let read = MapsRead { source: *source, found, picture };
-                    JobResult::then(|window: &mut Self, ctx| {
-                        if let Some(import) = window.import() {
-                            import.take(ctx, read);
-                        }
-                    })
-                };
-                self.jobs.cancel(READING_MAPS);
-                return self.jobs.start(READING_MAPS.into(), JobKind::Working, read);
-            }
+            DialogAnswer::Import(source) => return self.read_maps(*source),
             // The dialog stays while there are drawings in it.
             DialogAnswer::Recover(lost) => return self.recover(lost),
             DialogAnswer::Delete(lost) => return self.delete(lost),
@@ -356,6 +339,26 @@ impl MainWindow {
             | DialogAnswer::Recover(_)
             | DialogAnswer::Delete(_) => {}
         }
+    }
+
+    /// Reads the maps of the import dialog, in place of those that are being read.
+    fn read_maps(&mut self, source: SurfaceSource) {
+        let read = move |progress: &Progress| {
+            let found = match storage::import_watched(&source, progress) {
+                Ok(Some(found)) => Ok(found),
+                Ok(None) => return JobResult::nothing(),
+                Err(error) => Err(error),
+            };
+            let picture = storage::finished_picture(&source);
+            let read = MapsRead { source, found, picture };
+            JobResult::then(|window: &mut Self, ctx| {
+                if let Some(import) = window.import() {
+                    import.take(ctx, read);
+                }
+            })
+        };
+        self.jobs.cancel(READING_MAPS);
+        self.jobs.start(READING_MAPS.into(), JobKind::Working, read);
     }
 
     /// Performs a request.

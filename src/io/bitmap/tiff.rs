@@ -109,23 +109,11 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     if let Some(unpacked) = &unpacked {
         decoder = Decoder::new(Cursor::new(&unpacked[..])).map_err(failed)?.with_limits(limits);
     }
-    let extra =
-        decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
-    let alpha = match extra.first() {
-        _ if samples(color) <= meaning.colors() => AlphaKind::None,
-        Some(1) => AlphaKind::Associated,
-        Some(2) => AlphaKind::Straight,
-        None if meaning == ColorModel::Rgb => AlphaKind::Straight,
-        _ => AlphaKind::None,
-    };
+    let alpha = find_alpha(&mut decoder, color, meaning);
     let map =
         decoder.find_tag_unsigned_vec::<u16>(Tag::ColorMap).ok().flatten().unwrap_or_default();
     let icc = decoder.get_tag_u8_vec(Tag::IccProfile).ok();
-    let turned = decoder
-        .find_tag_unsigned::<u8>(Tag::Orientation)
-        .ok()
-        .flatten()
-        .and_then(Orientation::from_exif);
+    let turned = decoder.find_tag_unsigned::<u8>(Tag::Orientation).ok().flatten();
     let mut values = DecodingResult::U8(Vec::new());
     let layout = decoder.read_image_to_buffer(&mut values).map_err(failed)?;
     let stored = TiffLayout {
@@ -138,8 +126,25 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
         map,
     };
     let image = stored.image(values).map_err(|reason| Error::unsupported_file(file, reason))?;
-    let orientation = turned.unwrap_or(Orientation::NoTransforms);
+    let orientation = turned.and_then(Orientation::from_exif).unwrap_or(Orientation::NoTransforms);
     Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
+}
+
+/// What the samples beyond the colors say.
+fn find_alpha(
+    decoder: &mut Decoder<Cursor<&[u8]>>,
+    color: ColorType,
+    meaning: ColorModel,
+) -> AlphaKind {
+    let extra =
+        decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
+    match extra.first() {
+        _ if samples(color) <= meaning.colors() => AlphaKind::None,
+        Some(1) => AlphaKind::Associated,
+        Some(2) => AlphaKind::Straight,
+        None if meaning == ColorModel::Rgb => AlphaKind::Straight,
+        _ => AlphaKind::None,
+    }
 }
 
 /// Strips and tiles of one picture; each takes some fifty microseconds, however small. The longest

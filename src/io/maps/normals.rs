@@ -225,15 +225,7 @@ fn space(
     let sided = orientation::one_sided(&sampled);
     let named = stored.layer.to_lowercase().contains("world");
     let wanted = overrides.space == Some(NormalSpace::World);
-    let attribute = stored.world_to_camera.and_then(world::from_attribute).and_then(|m| {
-        // Renderers disagree on where their camera's z points.
-        let looks_back = Mat3::from_diagonal(Vec3::new(1.0, 1.0, -1.0)) * m;
-        let pick = [m, looks_back].into_iter().min_by(|a, b| {
-            world::share_away(*a, &sampled).total_cmp(&world::share_away(*b, &sampled))
-        })?;
-        Some((pick, world::share_away(pick, &sampled)))
-    });
-    if let Some((matrix, share)) = attribute
+    if let Some((matrix, share)) = by_attribute(stored, &sampled)
         && (wanted || named || share + 0.01 < away.min(toward))
     {
         findings.add_detected("normal.space", "world", if share < 0.02 { 0.98 } else { 0.6 });
@@ -243,19 +235,36 @@ fn space(
     let planar =
         depth.map(|d| if near.near_high == Some(true) { d.map(|v| -v) } else { d.clone() });
     let aligned = planar.as_ref().and_then(|d| world::from_depth(unit, d, at));
-    let angle = |m: Mat3| {
-        ((m.col(0).x + m.col(1).y + m.col(2).z - 1.0) * 0.5).max(-1.0).min(1.0).acos().to_degrees()
-    };
     let mixed = !sided.iter().any(|&s| s) && away.min(toward) > 0.01;
-    let turned =
-        aligned.is_some_and(|a| a.free.fit > 0.9 && a.is_turned() && angle(a.free.matrix) > 3.0);
+    let turned = aligned
+        .is_some_and(|a| a.free.fit > 0.9 && a.is_turned() && angle_degrees(a.free.matrix) > 3.0);
     if !wanted && !named && !mixed && !turned {
         findings.add_detected("normal.space", "camera", if sided[2] { 0.95 } else { 0.6 });
         return None;
     }
-    let by_rim = world::from_rim(unit, inside);
-    let sound = |r: &world::FittedRotation| world::share_away(r.matrix, &sampled) < 0.1;
-    if let Some(found) = aligned.map(|a| a.free).filter(|r| r.fit > 0.8 && sound(r)) {
+    fitted_rotation(aligned.map(|a| a.free), world::from_rim(unit, inside), &sampled, findings)
+}
+
+/// The file's own matrix, and the share of the normals that then point away. Renderers disagree on
+/// where their camera's z points.
+fn by_attribute(stored: &StoredMap, sampled: &[Vec3]) -> Option<(Mat3, f32)> {
+    let matrix = stored.world_to_camera.and_then(world::from_attribute)?;
+    let looks_back = Mat3::from_diagonal(Vec3::new(1.0, 1.0, -1.0)) * matrix;
+    [matrix, looks_back]
+        .map(|matrix| (matrix, world::share_away(matrix, sampled)))
+        .into_iter()
+        .min_by(|(_, a), (_, b)| a.total_cmp(b))
+}
+
+/// The rotation to the camera that depth or else the silhouette says.
+fn fitted_rotation(
+    by_depth: Option<world::FittedRotation>,
+    by_rim: Option<world::FittedRotation>,
+    sampled: &[Vec3],
+    findings: &mut Findings,
+) -> Option<Mat3> {
+    let is_sound = |r: &world::FittedRotation| world::share_away(r.matrix, sampled) < 0.1;
+    if let Some(found) = by_depth.filter(|r| r.fit > 0.8 && is_sound(r)) {
         // Depth of unknown polarity leaves half a turn about the view axis open; the rim settles
         // it.
         let matrix = turn_upright(found.matrix, by_rim.as_ref());
@@ -263,11 +272,11 @@ fn space(
         findings.note(format!(
             "the normals are in world space; the rotation to the camera ({:.0}°) was found from \
              the depth map",
-            angle(matrix)
+            angle_degrees(matrix)
         ));
         return Some(matrix);
     }
-    if let Some(found) = by_rim.filter(|r| r.fit > 0.7 && sound(r)) {
+    if let Some(found) = by_rim.filter(|r| r.fit > 0.7 && is_sound(r)) {
         findings.add_detected("normal.space", "world", 0.5 * found.fit);
         findings.note(
             "the normals are in world space; the rotation was estimated from the silhouette. A \
@@ -280,6 +289,11 @@ fn space(
         "some normals point away from the viewer, as world-space normals do, but no rotation to the camera was found",
     );
     None
+}
+
+/// By how much a rotation turns, degrees.
+fn angle_degrees(m: Mat3) -> f32 {
+    ((m.col(0).x + m.col(1).y + m.col(2).z - 1.0) * 0.5).max(-1.0).min(1.0).acos().to_degrees()
 }
 
 /// The matrix or its half turn about the view axis, whichever fits the silhouette better.

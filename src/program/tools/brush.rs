@@ -16,7 +16,9 @@ use crate::document::{
     StrokeList,
 };
 use crate::math::{Vec2, hash, srgb::Color};
-use crate::paint::{ActiveStrokes, Backdrop, Brush, BrushMode, Sample, StabilizedPen, Stroke};
+use crate::paint::{
+    ActiveStrokes, Backdrop, Brush, BrushMode, Sample, Scene, StabilizedPen, Stroke,
+};
 use crate::raster::TileAt;
 use crate::surface::{Operator, PaintLimit, Surface};
 use erase::EraseStrokesGesture;
@@ -34,48 +36,17 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         Err(why) => return (None, why.map_or(Outcome::Idle, |why| Outcome::Refused(why.into()))),
     };
     let Some(layer) = document.layer(id) else { return (None, Outcome::Idle) };
+    if let (Content::Strokes(list), StrokePurpose::Erase, true) =
+        (&layer.content, purpose, pen.keys.ctrl)
+    {
+        return begin(EraseStrokesGesture::new(context.document, id, list), pen);
+    }
     let scene = document.scene_of(id).unwrap_or_else(|| document.scene());
-    let (target, backdrop) = match (&layer.content, purpose) {
-        (Content::Strokes(list), StrokePurpose::Erase) if pen.keys.ctrl => {
-            let taken = EraseStrokesGesture {
-                document: context.document.clone(),
-                layer: id,
-                list: list.clone(),
-                gone: Vec::new(),
-            };
-            return begin(taken, pen);
-        }
-        (Content::Strokes(list), _) => {
-            let strokes = list.params().strokes.clone();
-            // The tiles of an empty layer are known.
-            let blank = TileAt::covering(scene.size.rect())
-                .filter(|_| strokes.is_empty())
-                .map(|at| (at, None));
-            let shown = list.with_tiles(list.params().clone(), &scene, blank);
-            (StrokeTarget::Strokes { beneath: strokes.clone(), shown }, Backdrop::Strokes(strokes))
-        }
-        (Content::Pixels(pixels), _) => {
-            let mut shown = pixels.tiles.clone();
-            shown.reserve(scene.size.rect());
-            let base = PixelLayer { file: String::new(), ..pixels.clone() };
-            (StrokeTarget::Pixels { base, shown }, Backdrop::Pixels(pixels.tiles.clone()))
-        }
-        _ => return (None, Outcome::Idle),
+    let Some((target, backdrop)) = find_target(&layer.content, &scene) else {
+        return (None, Outcome::Idle);
     };
     let is_eraser = purpose == StrokePurpose::Erase;
-    let mut brush = context.tools.brush.clone();
-    if !context.tools.crosses_parts && is_begun_on_part(&document, layer, pen.place()) {
-        brush.bounded = PaintLimit::Object;
-    }
-    if is_eraser {
-        brush.mode = BrushMode::Paint;
-    }
-    brush.erases |= is_eraser;
-    brush.keeps_alpha |= layer.lock == LayerLock::Alpha;
-    if brush.is_random() {
-        // The same samples give the same seed, so a repeated stroke is identical.
-        brush.seed = hash::mix(pen.place().x.to_bits() ^ hash::mix(pen.place().y.to_bits()));
-    }
+    let brush = brush_in_hand(context, &document, layer, pen, is_eraser);
     let color =
         if is_eraser { Color { a: 255, ..context.tools.color } } else { context.tools.color };
     let images = document.symmetry.images(document.size);
@@ -85,12 +56,8 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     };
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
     let work = retouch::begin_stroke(context, &images, pen, layer, &strokes, &scene);
-    // With Shift a straight line from where the last stroke ended, with the pressure of this
-    // sample.
-    let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
-    let line = start.flat_map(|last| (0..8).map(move |i| last.lerp(pen.place(), i as f32 / 8.0)));
     let painting = StrokeGesture {
-        lead: line.map(|at| Sample { at, ..pen.sample }).collect(),
+        lead: straight_lead(context, pen),
         active: Some(work.unwrap_or_else(|| {
             ActiveWork::Strokes(ActiveStrokes::new(&strokes, backdrop, &scene))
         })),
@@ -104,6 +71,59 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         images,
     };
     begin(painting, pen)
+}
+
+/// What a stroke on such content changes, and what lies beneath it; `None` if it takes no strokes.
+fn find_target(content: &Content, scene: &Scene) -> Option<(StrokeTarget, Backdrop)> {
+    Some(match content {
+        Content::Strokes(list) => {
+            let strokes = list.params().strokes.clone();
+            // The tiles of an empty layer are known.
+            let blank = TileAt::covering(scene.size.rect())
+                .filter(|_| strokes.is_empty())
+                .map(|at| (at, None));
+            let shown = list.with_tiles(list.params().clone(), scene, blank);
+            (StrokeTarget::Strokes { beneath: strokes.clone(), shown }, Backdrop::Strokes(strokes))
+        }
+        Content::Pixels(pixels) => {
+            let mut shown = pixels.tiles.clone();
+            shown.reserve(scene.size.rect());
+            let base = PixelLayer { file: String::new(), ..pixels.clone() };
+            (StrokeTarget::Pixels { base, shown }, Backdrop::Pixels(pixels.tiles.clone()))
+        }
+        _ => return None,
+    })
+}
+
+/// The brush as the layer, the place and the eraser make it.
+fn brush_in_hand(
+    context: &ToolContext,
+    document: &Document,
+    layer: &Layer,
+    pen: PenSample,
+    is_eraser: bool,
+) -> Brush {
+    let mut brush = context.tools.brush.clone();
+    if !context.tools.crosses_parts && is_begun_on_part(document, layer, pen.place()) {
+        brush.bounded = PaintLimit::Object;
+    }
+    if is_eraser {
+        brush.mode = BrushMode::Paint;
+    }
+    brush.erases |= is_eraser;
+    brush.keeps_alpha |= layer.lock == LayerLock::Alpha;
+    if brush.is_random() {
+        // The same samples give the same seed, so a repeated stroke is identical.
+        brush.seed = hash::mix(pen.place().x.to_bits() ^ hash::mix(pen.place().y.to_bits()));
+    }
+    brush
+}
+
+/// With Shift a straight line from where the last stroke ended, with the pressure of this sample.
+fn straight_lead(context: &ToolContext, pen: PenSample) -> Vec<Sample> {
+    let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
+    let line = start.flat_map(|last| (0..8).map(move |i| last.lerp(pen.place(), i as f32 / 8.0)));
+    line.map(|at| Sample { at, ..pen.sample }).collect()
 }
 
 /// What a stroke is called in the history: what it does to the paint, or how it is bent.

@@ -4,9 +4,10 @@
 use super::sheet::TileSheet;
 use super::{Canvas, visible_rect};
 use crate::Error;
-use crate::math::Size;
+use crate::document::Document;
+use crate::math::{Rect, Size};
 use crate::render_thread::RenderRequest;
-use crate::session::{CanvasView, Session, is_same_look};
+use crate::session::{CanvasView, OpenDocument, Session, is_same_look};
 use crate::tools::ToolKind;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use std::time::Duration;
@@ -31,44 +32,60 @@ impl Canvas {
         if self.key != Some(open.key)
             || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size)
         {
-            self.key = Some(open.key);
-            self.picture += 1;
-            self.whole.begin(drawn.size);
-            self.sheet.begin();
-            if let Some(picture) = open.stored_preview.take() {
-                self.whole.show(picture);
-            }
-            (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
+            self.begin(open, drawn.size);
         }
-        let is_dragged = is_dragged(session);
-        if !self
-            .wanted
-            .as_ref()
-            .is_some_and(|(old, dragged)| *dragged == is_dragged && is_same_look(old, &drawn))
-        {
-            // Any part of the picture may be in sight on the sheet.
-            let visible = if open.unwrap_settings().is_some() {
-                drawn.size.rect()
-            } else {
-                visible_rect(view, area)
-            };
-            let (picture, document) = (self.picture, drawn.clone());
-            if let Some(thread) = &self.render_thread {
-                thread.want(RenderRequest { picture, document, visible, is_dragged });
-                self.is_busy = true;
-            }
-            self.wanted = Some((drawn, is_dragged));
-        }
+        // Any part of the picture may be in sight on the sheet.
+        let visible = match open.unwrap_settings() {
+            Some(_) => drawn.size.rect(),
+            None => visible_rect(view, area),
+        };
+        self.request_picture(drawn, visible, is_dragged(session));
         let was_busy = self.is_busy;
         // What the user did is shown in the same frame, if it is painted soon.
         let is_soon = self.is_busy
             && session.is_drawing()
             && ctx.current_pass_index() > 0
             && self.took < SOON;
-        let wait = if is_soon { SOON } else { Duration::ZERO };
+        self.take_rendered(open, if is_soon { SOON } else { Duration::ZERO });
+        if was_busy && !self.is_busy {
+            // The status bar and the panels of this frame were laid out before.
+            ctx.request_repaint_after(SETTLED);
+        }
+        let is_sent = self.whole.send(ctx, self.is_busy) | self.draft.send(ctx, self.is_busy);
+        self.small_is_old |= is_sent;
+    }
+
+    /// Starts anew for a document, or for a picture of another size.
+    fn begin(&mut self, open: &OpenDocument, size: Size) {
+        self.key = Some(open.key);
+        self.picture += 1;
+        self.whole.begin(size);
+        self.sheet.begin();
+        if let Some(picture) = open.stored_preview.take() {
+            self.whole.show(picture);
+        }
+        (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
+    }
+
+    /// Requests the picture of the document, unless it is on its way or shown.
+    fn request_picture(&mut self, drawn: Document, visible: Rect, is_dragged: bool) {
+        let is_wanted =
+            |(old, dragged): &(Document, bool)| *dragged == is_dragged && is_same_look(old, &drawn);
+        if self.wanted.as_ref().is_some_and(is_wanted) {
+            return;
+        }
+        if let Some(thread) = &self.render_thread {
+            let (picture, document) = (self.picture, drawn.clone());
+            thread.want(RenderRequest { picture, document, visible, is_dragged });
+            self.is_busy = true;
+        }
+        self.wanted = Some((drawn, is_dragged));
+    }
+
+    /// Takes what has been painted, after waiting for it for so long at most.
+    fn take_rendered(&mut self, open: &OpenDocument, wait: Duration) {
         let painted = self.render_thread.iter().flat_map(|thread| thread.take_rendered(wait));
         let painted = painted.filter(|painted| painted.picture == self.picture);
-        let mut is_draft_next = self.is_draft_in_front;
         for painted in painted {
             (self.took, self.is_busy) = (painted.took, !painted.is_settled);
             if let Some(refused) = painted.refused {
@@ -76,7 +93,7 @@ impl Canvas {
             }
             let is_draft = painted.is_draft;
             if painted.is_settled {
-                is_draft_next = is_draft;
+                self.is_draft_in_front = is_draft;
             }
             if is_draft && self.draft.size() != Some(painted.size) {
                 self.draft.begin(painted.size);
@@ -88,13 +105,6 @@ impl Canvas {
                 self.whole.take(painted);
             }
         }
-        if was_busy && !self.is_busy {
-            // The status bar and the panels of this frame were laid out before.
-            ctx.request_repaint_after(SETTLED);
-        }
-        let is_sent = self.whole.send(ctx, self.is_busy) | self.draft.send(ctx, self.is_busy);
-        self.is_draft_in_front = is_draft_next;
-        self.small_is_old |= is_sent;
     }
 
     /// The small picture for the navigator, of the sheet while that is shown; updated when the

@@ -25,6 +25,24 @@ enum MaskChoice {
 /// The mask of a layer: its kind, whether it is enabled, and whether the brush paints on it.
 pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter) {
     title(ui, "Mask");
+    choose_kind(ui, layer, setter);
+    buttons(ui, layer, on_mask, setter);
+    let Some(mask) = &layer.mask else { return };
+    if let Some(numbers) = mask.derived_mask().and_then(|derived| mask_numbers(ui, derived)) {
+        setter.take(Some(numbers.map(|derived| Property::Mask { mask: Some(derived) })));
+    }
+    if let Some(on) = check(ui, "Invert mask", "Paint where the mask is dark", mask.invert) {
+        setter.set(Property::MaskInverted { on }, true);
+    }
+    if let Some(on) =
+        check(ui, "Use mask", "Turn off to show the layer without its mask", !mask.disabled)
+    {
+        setter.set(Property::MaskDisabled { on: !on }, true);
+    }
+}
+
+/// What the mask is made of.
+fn choose_kind(ui: &mut Ui, layer: &Layer, setter: &mut LayerSetter) {
     let current = match layer.mask.as_ref().map(|mask| &mask.kind) {
         None => MaskChoice::None,
         Some(MaskKind::File { .. }) => MaskChoice::File,
@@ -55,6 +73,10 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
         };
         setter.set(Property::Mask { mask }, true);
     }
+}
+
+/// What can be done with the mask as it is.
+fn buttons(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter) {
     ui.horizontal_wrapped(|ui| {
         match &layer.mask {
             None => {
@@ -85,18 +107,6 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
             setter.set(Property::Mask { mask: None }, true);
         }
     });
-    let Some(mask) = &layer.mask else { return };
-    if let Some(numbers) = mask.derived_mask().and_then(|derived| mask_numbers(ui, derived)) {
-        setter.take(Some(numbers.map(|derived| Property::Mask { mask: Some(derived) })));
-    }
-    if let Some(on) = check(ui, "Invert mask", "Paint where the mask is dark", mask.invert) {
-        setter.set(Property::MaskInverted { on }, true);
-    }
-    if let Some(on) =
-        check(ui, "Use mask", "Turn off to show the layer without its mask", !mask.disabled)
-    {
-        setter.set(Property::MaskDisabled { on: !on }, true);
-    }
 }
 
 /// It is made elsewhere, and listed only if present.

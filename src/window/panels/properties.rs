@@ -29,7 +29,26 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
         return;
     };
     let mut setter = LayerSetter { layer: path, requests };
-    let has_surface = session.shown_document().is_some_and(|document| document.surface.is_some());
+    content(ui, session, layer, moods, &mut setter);
+    ui.separator();
+    let on_mask = session.active().is_some_and(|open| open.on_mask);
+    if let Some(document) = session.shown_document() {
+        attachment(ui, document, layer, &mut setter);
+    }
+    common(ui, layer, has_surface(session), on_mask, &mut setter);
+    if let Some(document) = session.shown_document() {
+        effects::show(ui, document, layer, &mut setter);
+    }
+}
+
+/// The properties of what the layer holds.
+fn content(
+    ui: &mut Ui,
+    session: &Session,
+    layer: &Layer,
+    moods: &mut MoodPictures,
+    setter: &mut LayerSetter,
+) {
     match &layer.content {
         Content::Fill(color) => {
             let changed = colors::picker(ui, "Fill color", *color);
@@ -48,15 +67,15 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
             strokes::show(ui, session, &setter.layer, &live.params().strokes, setter.requests);
         }
         Content::FormDrawing(live) => {
-            form_drawing::show(ui, session, live.params(), has_surface, &mut setter);
+            form_drawing::show(ui, session, live.params(), has_surface(session), setter);
         }
         Content::Image(live) => {
             if let Some(words) = &live.params().source.text {
-                text::show(ui, layer.id, words, &mut setter);
+                text::show(ui, layer.id, words, setter);
             }
-            image(ui, live.params(), &mut setter);
+            image(ui, live.params(), setter);
         }
-        Content::Gradient(live) => gradient(ui, live.params(), &mut setter),
+        Content::Gradient(live) => gradient(ui, live.params(), setter),
         Content::Shading(live) => {
             let canvas =
                 session.shown_document().map_or(Vec2::ONE, |document| 2.0 * document.size.center());
@@ -65,9 +84,9 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
             {
                 moods.follow(ui.ctx(), document, layer);
             }
-            material::shading(ui, live.params(), canvas, moods, &mut setter);
+            material::shading(ui, live.params(), canvas, moods, setter);
         }
-        Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
+        Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, setter),
         Content::Adjustment(live) => {
             let histogram = histogram_beneath(ui, session, layer);
             let answer = adjustment::show(ui, live.params(), histogram.as_deref());
@@ -80,7 +99,7 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
             let changed = adjustment::show_filter(ui, live.params());
             setter.take(changed.map(|c| c.map(|to| Property::FilterLayer { to })));
         }
-        Content::Normals(normals) => normal_layer(ui, normals, &mut setter),
+        Content::Normals(normals) => normal_layer(ui, normals, setter),
         Content::Group(group) => {
             let hint =
                 "Blend each layer with what is below the group, as if the group were not there";
@@ -89,15 +108,10 @@ pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: 
             }
         }
     }
-    ui.separator();
-    let on_mask = session.active().is_some_and(|open| open.on_mask);
-    if let Some(document) = session.shown_document() {
-        attachment(ui, document, layer, &mut setter);
-    }
-    common(ui, layer, has_surface, on_mask, &mut setter);
-    if let Some(document) = session.shown_document() {
-        effects::show(ui, document, layer, &mut setter);
-    }
+}
+
+fn has_surface(session: &Session) -> bool {
+    session.shown_document().is_some_and(|document| document.surface.is_some())
 }
 
 /// The tones beneath an adjustment, counted again when other layers change.

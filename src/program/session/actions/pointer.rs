@@ -7,6 +7,7 @@ use crate::paint::{BrushMode, Sample};
 use crate::session::actions::layers::texts;
 use crate::session::replay::{ReplayValue, actions, record};
 use crate::session::{CloneSource, OpenDocument, Session};
+use crate::surface::unwrap::PlaneLayout;
 use crate::tools::assistants::StrokeStart;
 use crate::tools::guides::GuideAt;
 use crate::tools::snap::{SnapTargets, ViewAids};
@@ -16,6 +17,7 @@ use crate::tools::{
     ToolKind,
 };
 use serde_json::Value;
+use std::sync::Arc;
 
 record!(ModifierKeys { shift, ctrl, alt });
 
@@ -86,59 +88,37 @@ impl PointerAction {
 
 fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) {
     session.drop_gesture();
-    let layout = session.active().and_then(OpenDocument::layout);
-    if layout.is_some() && !unwrapped::is_for_unwrapped(tool) {
-        let how =
-            "This tool works in the picture: leave the unwrapped view (View, Unwrapped) to use it.";
-        return session.notes.push(how.into());
-    }
     if let Some(open) = session.active_mut() {
         open.forget_preview();
+    }
+    if let Some(why) = why_refused(session, tool) {
+        return session.notes.push(why);
     }
     if tool == ToolKind::Text {
         return texts::press(session, pen.place());
     }
     let place = on_canvas(session, pen.place());
-    let clones = matches!(tool, ToolKind::Brush) && !pen.keys.alt;
-    let clone_offset = match session.tools.brush.mode {
-        BrushMode::Clone { aligned, .. } if clones => {
-            session.active_mut().zip(place).and_then(|(open, at)| open.begin_clone(at, aligned))
-        }
-        _ => None,
-    };
+    let clone_offset = begin_clone(session, tool, pen, place);
     let target = session.tools.transform.target;
     if let Some(open) = session.active_mut().filter(|_| tool == ToolKind::Transform) {
         open.hold_gizmo(target);
     }
     let Some(open) = session.active() else { return };
-    let paints =
-        matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Fill | ToolKind::Liquify);
-    if let Some(why) = open.why_hidden_beside().filter(|_| paints && !open.quick_mask) {
-        return session.notes.push(why);
-    }
-    let (strokes, layers) = (open.selected_strokes(), open.outermost_selected());
     let document = match works_in_place(tool, open) {
         Ok(document) => document,
         Err(why) => return session.notes.push(why.into()),
     };
-    let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser)
-        && pen.keys.shift
-        && open.last_end.is_some();
-    // Guides and other things to snap to lie in the picture.
-    let is_line = is_line && layout.is_none();
+    let (strokes, layers) = (open.selected_strokes(), open.outermost_selected());
+    let is_line = is_straight_line(open, tool, pen);
     let snap = targets(session, &document, tool, &layers, is_line, px_per_pt);
     // Straight lines end where they snap.
     let at = if is_line { snap.point(pen.place()).at } else { pen.place() };
     let pen = PenSample { sample: Sample { at, ..pen.sample }, ..pen };
     if let Some(guide) = guide_under(session, &document, tool, pen, px_per_pt) {
-        let to = SnapTargets::of(
-            &document,
-            &ViewAids { to_guides: false, ..session.tools.aids },
-            &[],
-            px_per_pt,
-        );
-        let (gesture, outcome) = tools::guides::hold(open.document(), guide, to);
-        return begin(session, (gesture, outcome));
+        let aids = ViewAids { to_guides: false, ..session.tools.aids };
+        let to = SnapTargets::of(&document, &aids, &[], px_per_pt);
+        let start = tools::guides::hold(open.document(), guide, to);
+        return begin(session, start);
     }
     let context = ToolContext {
         layer: open.active_layer,
@@ -153,20 +133,63 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         clone_offset,
         ..ToolContext::new(&document, &session.tools)
     };
-    let (gesture, outcome) = match (layout, stroke_start(tool)) {
-        (Some(layout), Some(start)) => unwrapped::paint(&context, pen, layout, start),
-        (Some(layout), None) => unwrapped::point(&context, pen, layout, tool),
-        // A line from the last stroke's end is straight already.
-        (None, Some(start)) if is_line => start(&context, pen),
-        (None, Some(start)) => tools::assistants::press_along(&context, pen, start),
-        (None, None) => tools::press(tool, &context, pen),
-    };
+    let (gesture, outcome) = start(&context, tool, pen, open.layout(), is_line);
     (session.gesture, session.draws_stroke) = (gesture, stroke_start(tool).is_some());
     session.last_pen = place.or(session.last_pen);
     if matches!(tool, ToolKind::Brush | ToolKind::Fill | ToolKind::Gradient) {
         session.remember_color();
     }
     take(session, outcome);
+}
+
+/// Why the tool does nothing in what is shown.
+fn why_refused(session: &Session, tool: ToolKind) -> Option<String> {
+    let open = session.active()?;
+    if open.layout().is_some() && !unwrapped::is_for_unwrapped(tool) {
+        let how =
+            "This tool works in the picture: leave the unwrapped view (View, Unwrapped) to use it.";
+        return Some(how.into());
+    }
+    let paints =
+        matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Fill | ToolKind::Liquify);
+    open.why_hidden_beside().filter(|_| paints && !open.quick_mask)
+}
+
+/// Where the clone brush takes its paint from, relative to the pen that comes down at `place`.
+fn begin_clone(
+    session: &mut Session,
+    tool: ToolKind,
+    pen: PenSample,
+    place: Option<Vec2>,
+) -> Option<Vec2> {
+    let BrushMode::Clone { aligned, .. } = session.tools.brush.mode else { return None };
+    let is_clone = tool == ToolKind::Brush && !pen.keys.alt;
+    session.active_mut().filter(|_| is_clone)?.begin_clone(place?, aligned)
+}
+
+/// Shift draws a straight line from the last stroke's end. What it snaps to lies in the picture, so
+/// there is none while the surface is seen unwrapped.
+fn is_straight_line(open: &OpenDocument, tool: ToolKind, pen: PenSample) -> bool {
+    let draws = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
+    draws && pen.keys.shift && open.last_end.is_some() && open.layout().is_none()
+}
+
+/// The gesture that the press begins, in the picture or on the unwrapped surface.
+fn start(
+    context: &ToolContext,
+    tool: ToolKind,
+    pen: PenSample,
+    layout: Option<Arc<PlaneLayout>>,
+    is_line: bool,
+) -> GestureStart {
+    match (layout, stroke_start(tool)) {
+        (Some(layout), Some(start)) => unwrapped::paint(context, pen, layout, start),
+        (Some(layout), None) => unwrapped::point(context, pen, layout, tool),
+        // A line from the last stroke's end is straight already.
+        (None, Some(start)) if is_line => start(context, pen),
+        (None, Some(start)) => tools::assistants::press_along(context, pen, start),
+        (None, None) => tools::press(tool, context, pen),
+    }
 }
 
 /// What the pen snaps to with a tool; strokes snap if they are lines.

@@ -7,13 +7,23 @@ use crate::tools::{Gesture, Outcome, PenSample};
 
 /// The eraser with Ctrl on a stroke layer: it removes every stroke that it touches.
 pub(super) struct EraseStrokesGesture {
-    pub document: Document,
-    pub layer: LayerId,
-    pub list: Live<StrokeList>,
-    pub gone: Vec<usize>,
+    document: Document,
+    layer: LayerId,
+    list: Live<StrokeList>,
+    gone: Vec<usize>,
 }
 
 impl EraseStrokesGesture {
+    /// None of the layer's strokes is gone yet.
+    pub fn new(document: &Document, layer: LayerId, list: &Live<StrokeList>) -> Self {
+        EraseStrokesGesture {
+            document: document.clone(),
+            layer,
+            list: list.clone(),
+            gone: Vec::new(),
+        }
+    }
+
     fn erase(&self) -> Option<Document> {
         let kept = |i: &usize| !self.gone.contains(i);
         let strokes = &self.list.params().strokes;
