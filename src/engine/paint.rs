@@ -19,6 +19,7 @@ pub mod grain;
 pub mod image;
 pub mod liquify;
 mod patches;
+pub mod path;
 pub mod pattern;
 mod peaked;
 pub mod picking;
@@ -58,8 +59,11 @@ pub use fill::Fill;
 pub use filter::{LiveFilter, PictureFilter};
 pub use form_drawing::{DrawingHand, FormDrawing, FormPattern};
 pub use gradient::{Gradient, GradientStop};
-pub use image::{PictureSource, PlacedImage, Placement};
+pub use image::{PictureOrigin, PictureSource, PlacedImage, Placement};
 pub use liquify::{LiquifySettings, LiquifyStroke, LiquifyTool};
+pub use path::{
+    Figure, FigureKind, LivePath, PathCap, PathGeometry, PathJoin, PathNode, PathRule, Subpath,
+};
 pub use ramp_colors::RampColors;
 pub use ramp_style::RampStyle;
 pub use retouch::ActiveRetouching;

@@ -8,6 +8,7 @@
 //! | `parts` | the parts of a shape |
 //! | `layers` | what every layer has, and fills, pixels and groups |
 //! | `images` | placed images, gradients, normal layers: operator, anchors, placement |
+//! | `texts`, `paths` | what images are that are drawn from words or lines |
 //! | `strokes` | strokes |
 //! | `samples` | readings of the pen |
 //! | `brush` | the numbers of a brush, its dynamics |
@@ -41,6 +42,7 @@ mod masks;
 mod materials;
 mod normals;
 pub mod parts;
+mod paths;
 mod pictures;
 mod presets;
 mod samples;

@@ -23,6 +23,7 @@ pub mod liquify;
 pub mod mask;
 pub mod move_content;
 pub mod outline;
+pub mod path;
 mod pen;
 pub mod purpose;
 mod retouch;

@@ -12,7 +12,7 @@ use super::surfaces::{SIZE, Shape};
 use image::RgbaImage;
 use rilievo::files::recipe::{self, RecipeSource};
 use rilievo::math::vec2;
-use rilievo::paint::{ActiveRetouching, Brush, BrushMode, Sample, Stroke};
+use rilievo::paint::{ActiveRetouching, Brush, BrushMode, FigureKind, Sample, Stroke};
 use rilievo::shading::Model;
 use rilievo::{BlendMode, Budget, Color, Document, Operator, Progress, Size, TileGrid, flatten};
 use serde_json::{Value, json};
@@ -125,6 +125,7 @@ pub fn all() -> Vec<Case> {
     all.extend(masks());
     all.extend(tips());
     all.push(stroke());
+    all.extend(paths());
     all.push(retouch());
     all.extend(super::sheets::all());
     all
@@ -350,6 +351,41 @@ fn stroke() -> Case {
             { "samples": [[20, 66], [66, 8]], "brush": { "size": 7, "hardness": 0.9, "erases": true } }
         ] }]);
     Case::layers("tip", "stroke", ROUNDED, Shape::Waves, layers)
+}
+
+/// Each kind of figure, one of them bent; lines of nodes with holes, dashes and uneven outlines.
+fn paths() -> Vec<Case> {
+    let path = |path: Value| json!({ "kind": "image", "source": { "path": path }, "clip_to_surface": false });
+    let figures: Vec<Value> = FigureKind::ALL
+        .iter()
+        .zip(0..)
+        .map(|((_, kind), i)| {
+            let (x, y) = (4.0 + 25.0 * (i % 3) as f32, 8.0 + 34.0 * (i / 3) as f32);
+            path(json!({ "fill": "#e0a030", "outline": 2, "outline_color": "#203050",
+                "figure": { "kind": kind, "from": [x, y], "to": [x + 22.0, y + 18.0], "corner": 3,
+                            "rotation": 10, "head": 12, "shaft": 5 } }))
+        })
+        .collect();
+    let mut bent =
+        path(json!({ "fill": "#c03020", "outline": 3, "outline_color": "#fff4d0", "join": "round",
+        "figure": { "kind": "star", "from": [10, 8], "to": [68, 64], "sides": 6 } }));
+    bent["operator"] = json!({ "kind": "surface" });
+    let square = json!([[20, 44], [34, 44], [34, 58], [20, 58]]);
+    let wave =
+        json!([[8, 26, 0, 0, 10, -26, 0.2], [38, 18, -8, 8, 8, -8, 1], [68, 16, -4, 20, 0, 0, 3]]);
+    let lines = [
+        path(json!({ "lines": [{ "nodes": wave }], "outline": 5, "outline_color": "#204060" })),
+        path(json!({ "fill": "#30806080", "rule": "even-odd", "lines": [
+            { "nodes": [[10, 50, 0, 14, 0, -14], [44, 50, 0, -20, 0, 20]], "closed": true },
+            { "nodes": square, "closed": true }] })),
+        path(json!({ "lines": [{ "nodes": [[50, 66], [60, 40], [74, 64]] }], "outline": 4,
+            "outline_color": "#a02020", "cap": "round", "join": "bevel", "dashes": [7, 6] })),
+    ];
+    vec![
+        Case::layers("path", "figures", ROUNDED, Shape::Ball, figures.into()),
+        Case::layers("path", "bent", ROUNDED, Shape::Ball, json!([bent])),
+        Case::layers("path", "lines", ROUNDED, Shape::Ball, lines.to_vec().into()),
+    ]
 }
 
 /// Smudged, blurred and cloned, one beneath the other.

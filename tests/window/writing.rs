@@ -11,7 +11,7 @@ fn text(harness: &Story) -> Text {
     let layer = session(harness).layer().expect("no layer is selected");
     match &layer.content {
         Content::Image(live) => {
-            live.params().source.text.as_deref().expect("it is no text").clone()
+            live.params().source.text().expect("it is no text").as_ref().clone()
         }
         _ => panic!("it is no image layer"),
     }

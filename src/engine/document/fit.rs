@@ -161,6 +161,8 @@ impl Total {
             Content::Image(live) => {
                 let crate::surface::Bend { anchors, pieces, .. } = &live.params().bend;
                 self.values += marks::AN_ANCHOR * (anchors.len() + pieces.len());
+                let path = live.params().source.path();
+                self.values += path.map_or(0, |path| marks::path_values(path));
             }
             Content::Gradient(live) => {
                 let crate::paint::Gradient { stops, pieces, .. } = live.params();

@@ -2,10 +2,12 @@
 //! Floor 3. Here: rendered as bytes. Without rounding: `floats`.
 
 mod floats;
+mod placed_path;
 
 use super::{
     adjust::Adjust,
     patches::Patches,
+    path::LivePath,
     scene::{ImageFilter, Scene},
     stamp::{StampCache, TipStamp},
     text::Text,
@@ -94,6 +96,18 @@ impl Placement {
     }
 }
 
+/// What a picture is drawn from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum PictureOrigin {
+    /// Its file alone.
+    #[default]
+    File,
+    /// The words that it shows.
+    Text(Arc<Text>),
+    /// A path, which needs no file.
+    Path(Arc<LivePath>),
+}
+
 /// A picture and its adjustments; the texture is made once, on first use.
 #[derive(Clone)]
 pub struct PictureSource {
@@ -103,8 +117,8 @@ pub struct PictureSource {
     pub picture: Picture,
     /// What is done to it before it is read.
     pub adjust: Adjust,
-    /// The words that it shows, if it is a text.
-    pub text: Option<Arc<Text>>,
+    /// What it is drawn from.
+    pub origin: PictureOrigin,
     derived: Arc<DerivedTextures>,
     /// How closely it is read if it is antialiased.
     rule: TapRule,
@@ -127,7 +141,7 @@ struct DerivedTextures {
 impl PartialEq for PictureSource {
     /// The same picture with the same adjustments, whatever its name.
     fn eq(&self, other: &Self) -> bool {
-        self.adjust == other.adjust && self.picture == other.picture && self.text == other.text
+        self.adjust == other.adjust && self.origin == other.origin && self.picture == other.picture
     }
 }
 
@@ -141,27 +155,47 @@ impl From<Picture> for PictureSource {
 impl PictureSource {
     /// A picture under its name in the document, and what is done to it.
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
-        Self { file, picture, adjust, text: None, derived: Arc::default(), rule: TapRule::AT_REST }
+        let (origin, derived) = (PictureOrigin::default(), Arc::default());
+        Self { file, picture, adjust, origin, derived, rule: TapRule::AT_REST }
     }
 
     /// The same picture with other adjustments.
     pub fn adjusted(&self, adjust: Adjust) -> Self {
-        let text = self.text.clone();
-        Self { text, ..Self::new(self.file.clone(), self.picture.clone(), adjust) }
+        let origin = self.origin.clone();
+        Self { origin, ..Self::new(self.file.clone(), self.picture.clone(), adjust) }
+    }
+
+    /// The words that it shows, if it is a text.
+    pub fn text(&self) -> Option<&Arc<Text>> {
+        match &self.origin {
+            PictureOrigin::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The path that it shows, if it is one.
+    pub fn path(&self) -> Option<&Arc<LivePath>> {
+        match &self.origin {
+            PictureOrigin::Path(path) => Some(path),
+            _ => None,
+        }
     }
 
     /// Where it lies unless something else is said: a text at the size of its type in the middle of
-    /// the canvas, a picture over all of it.
+    /// the canvas, a path where its points are, a picture over all of the canvas.
     pub fn default_placement(&self, canvas: Size) -> Placement {
-        match self.text {
-            Some(_) => Placement::at_own_size(canvas, &self.picture, canvas.center()),
-            None => Placement::covering(canvas),
+        match &self.origin {
+            PictureOrigin::Text(_) => {
+                Placement::at_own_size(canvas, &self.picture, canvas.center())
+            }
+            PictureOrigin::Path(path) => self.path_placement(canvas, path),
+            PictureOrigin::File => Placement::covering(canvas),
         }
     }
 
     /// What is beyond its edges unless something else is said.
     pub fn default_outside(&self) -> Outside {
-        if self.text.is_some() { Outside::None } else { Outside::Mirror }
+        if self.origin == PictureOrigin::File { Outside::Mirror } else { Outside::None }
     }
 
     /// The same picture, read as closely as a rule demands if it is antialiased.

@@ -7,8 +7,8 @@ use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::range::STOPS;
 use crate::math::{Size, TURNS, UNIT, Vec2, srgb::Color, vec2};
 use crate::paint::{
-    Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, RampStyle,
-    Text,
+    Adjust, Gradient, GradientStop, ImageFilter, PictureOrigin, PictureSource, PlacedImage,
+    Placement, RampStyle, Text,
 };
 use crate::raster::Outside;
 use crate::surface::plane_piece::PlanePiece;
@@ -77,9 +77,14 @@ impl LayerReader<'_> {
         fields.get("placement").map_or(Ok(covering), |node| placement(&node, covering))
     }
 
-    /// A picture of a file, or a text, whose outlines are in a file if it was laid out before.
+    /// A path, a picture of a file, or a text, whose outlines are in a file if it was laid out before.
     pub fn picture_source(&mut self, node: &JsonNode) -> Result<PictureSource> {
         let mut fields = node.fields()?;
+        if let Some(path) = fields.get("path") {
+            let adjust = adjust(&mut fields)?;
+            fields.finish()?;
+            return self.pictures.path(self.source, &path, adjust);
+        }
         let text = fields.get("text");
         let text = text.map(|node| Ok::<_, Error>((Text::from_json(&node)?, node))).transpose()?;
         let file = match &text {
@@ -91,11 +96,13 @@ impl LayerReader<'_> {
         match (file, text) {
             (Some(file), text) => {
                 let mut source = self.pictures.source(self.source, &file, adjust)?;
-                source.text = text.map(|(text, _)| Arc::new(text));
+                if let Some((text, _)) = text {
+                    source.origin = PictureOrigin::Text(Arc::new(text));
+                }
                 Ok(source)
             }
             (None, Some((text, node))) => self.pictures.text(self.source, &node, &text, adjust),
-            (None, None) => Err(node.refusal("needs a “file” or a “text”")),
+            (None, None) => Err(node.refusal("needs a “file”, a “text” or a “path”")),
         }
     }
 }
@@ -353,8 +360,11 @@ fn write_placement_beside(placement: &Placement, base: &Placement) -> JsonObject
 
 pub fn write_source(source: &PictureSource) -> Value {
     let mut out = JsonObject::default();
-    out.set("file", source.file.as_str().into());
-    out.set_some("text", source.text.as_deref(), Text::to_json);
+    match &source.origin {
+        PictureOrigin::Path(path) => out.set("path", path.to_json()),
+        _ => out.set("file", source.file.as_str().into()),
+    }
+    out.set_some("text", source.text(), |text| text.to_json());
     write_adjust(&mut out, &source.adjust);
     out.into_value()
 }

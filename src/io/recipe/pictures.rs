@@ -2,12 +2,13 @@
 //! Floor 5. Decoding is in `io::picture`.
 
 use super::RecipeSource;
+use super::value::RecipeValue;
 use crate::document::parts::PartMaps;
 use crate::document::source::NormalConvention;
 use crate::json::JsonNode;
 use crate::maps::detail;
 use crate::math::{Size, Vec3};
-use crate::paint::{Adjust, PictureSource, Text};
+use crate::paint::{Adjust, LivePath, PictureOrigin, PictureSource, Text};
 use crate::picture::Painted;
 use crate::raster::{CoverageGrid, Picture, Plane, TileGrid, blur};
 use crate::surface::DetailMap;
@@ -81,8 +82,22 @@ impl PictureCache {
         self.texts += 1;
         let file = format!("{TEXTS}{}.svg", self.texts);
         let mut made = PictureSource::new(file, laid.picture, adjust);
-        made.text = Some(Arc::new(laid.text));
+        made.origin = PictureOrigin::Text(Arc::new(laid.text));
         Ok(made)
+    }
+
+    /// A path, drawn at the size of its plane.
+    pub fn path(
+        &mut self,
+        source: RecipeSource,
+        node: &JsonNode,
+        adjust: Adjust,
+    ) -> Result<PictureSource> {
+        let path = LivePath::from_json(node)?;
+        path.fits().map_err(|why| node.refusal(why))?;
+        let size = path.picture_size();
+        self.spend(source, size, size.area() * 10)?;
+        Ok(PictureSource::of_path(path, adjust))
     }
 
     /// The picture that a field names, as it is.

@@ -2,8 +2,8 @@
 //! Floor 5. Not here: what selections and guides need (`selections`, `guides`).
 
 use crate::document::{Content, Document, Layer, LayerLabel};
-use crate::paint::DistanceMetric;
 use crate::paint::grain::GrainSpace;
+use crate::paint::{DistanceMetric, PictureOrigin};
 use crate::shading::{BallStrokes, Model, PixelShading};
 use crate::surface::Operator;
 
@@ -11,15 +11,15 @@ use crate::surface::Operator;
 /// first.
 pub const VERSION: i64 = 2;
 
-/// Whether a layer is on the unwrapped surface, sees itself, or is a text, which the first version does not
-/// know.
+/// Whether a layer is on the unwrapped surface, sees itself, or is a text or a path, which the first version
+/// does not know.
 pub fn has_unwrapped(document: &Document) -> bool {
     let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
     let is_new = |layer: &Layer| match &layer.content {
         Content::Image(live) => {
             let bend = &live.params().bend;
-            let is_text = live.params().source.text.is_some();
-            is_text || is_print(bend.operator) || !bend.pieces.is_empty()
+            let is_drawn = live.params().source.origin != PictureOrigin::File;
+            is_drawn || is_print(bend.operator) || !bend.pieces.is_empty()
         }
         Content::Gradient(live) => {
             is_print(live.params().operator) || !live.params().pieces.is_empty()

@@ -11,6 +11,7 @@ pub mod guides;
 pub mod hand;
 pub mod layers;
 pub mod parts;
+pub mod paths;
 pub mod pictures;
 pub mod placing;
 pub mod pointer;
@@ -27,6 +28,7 @@ pub use guides::GuideAction;
 pub use hand::HandAction;
 pub use layers::{LayerAction, NewLayer};
 pub use parts::{NewPart, PartAction};
+pub use paths::PathAction;
 pub use pointer::PointerAction;
 pub use selection::{EdgeChange, SelectionAction};
 pub use strokes::{StrokeAction, Style};
@@ -90,6 +92,7 @@ rooms! {
     "hand" Hand(HandAction),
     "layer" Layer(LayerAction),
     "part" Part(PartAction),
+    "path" Path(PathAction),
     "pointer" Pointer(PointerAction),
     "selection" Selection(SelectionAction),
     "stroke" Stroke(StrokeAction),
@@ -111,6 +114,7 @@ impl Action {
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
             Action::Part(action) => action.apply(session),
+            Action::Path(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),
             Action::Selection(action) => action.apply(session),
             Action::Stroke(action) => action.apply(session),

@@ -14,8 +14,8 @@ use crate::math::range::{STOPS, clamp_to_range};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{
     Adjust, Brush, ColorAdjustment, DrawingHand, FormDrawing, FormPattern, Gradient, GradientStop,
-    ImageFilter, LayerEffect, LiveAdjustment, LiveFilter, PictureFilter, PlacedImage, Placement,
-    RampStyle, Text,
+    ImageFilter, LayerEffect, LiveAdjustment, LiveFilter, LivePath, PictureFilter, PlacedImage,
+    Placement, RampStyle, Text,
 };
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
@@ -76,6 +76,8 @@ actions! {
         "drawn with" DrawnWith { preset: String }
         /// What a text says, in which type.
         "text" Worded { text: Text }
+        /// The lines of a path, and how it looks.
+        "path" Drawn { path: LivePath }
         "stops" Stops { stops: Vec<GradientStop> }
         "ends" Ends { from: Vec2, to: Vec2 }
         /// How a gradient runs from end to end.
@@ -156,6 +158,7 @@ impl Property {
             Property::Hand { .. } => "Hand",
             Property::LineSize { .. } | Property::DrawnWith { .. } => "Brush of the lines",
             Property::Worded { .. } => "Text",
+            Property::Drawn { .. } => "Path",
             Property::Stops { .. } => "Gradient stops",
             Property::Ends { .. } => "Gradient ends",
             Property::Ramp { .. } => "Gradient style",
@@ -192,7 +195,7 @@ impl Property {
     }
 
     /// Sets the value of a layer. A layer without the property is left as it is; so is what a text
-    /// says, which takes fonts (`texts`).
+    /// says, which takes fonts (`texts`), and a path, which takes the canvas (`paths`).
     pub fn apply(&self, layer: &mut Layer) {
         match self {
             Property::Name { name } => layer.name.clone_from(name),

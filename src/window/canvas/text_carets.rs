@@ -19,7 +19,7 @@ const DESCENT: f32 = 0.2;
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let (Some(layer), Some(document)) = (session.layer(), session.shown_document()) else { return };
     let Content::Image(live) = &layer.content else { return };
-    let (image, Some(text)) = (live.params(), &live.params().source.text) else { return };
+    let (image, Some(text)) = (live.params(), live.params().source.text()) else { return };
     if image.bend.operator != Operator::None {
         return;
     }

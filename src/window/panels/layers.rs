@@ -24,7 +24,7 @@ pub fn kind_icon(content: &Content) -> Icon {
     match content {
         Content::Fill(_) => Icon::Fill,
         Content::Pixels(_) => Icon::Pixels,
-        Content::Image(live) if live.params().source.text.is_some() => Icon::Tool(ToolKind::Text),
+        Content::Image(live) if live.params().source.text().is_some() => Icon::Tool(ToolKind::Text),
         Content::Image(_) => Icon::Tool(ToolKind::Image),
         Content::Gradient(_) => Icon::Tool(ToolKind::Gradient),
         Content::Strokes(_) => Icon::Tool(ToolKind::Strokes),

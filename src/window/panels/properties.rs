@@ -70,7 +70,7 @@ fn content(
             form_drawing::show(ui, session, live.params(), has_surface(session), setter);
         }
         Content::Image(live) => {
-            if let Some(words) = &live.params().source.text {
+            if let Some(words) = live.params().source.text() {
                 text::show(ui, layer.id, words, setter);
             }
             image(ui, live.params(), setter);
@@ -158,7 +158,7 @@ fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: 
 }
 
 fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
-    if image.source.text.is_none() {
+    if image.source.text().is_none() {
         ui.horizontal_wrapped(|ui| {
             ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
             setter.choose(ui, PicturePart::Image, "Replace…");

@@ -112,8 +112,7 @@ pub fn type_on_canvas(ui: &mut Ui, session: &Session, requests: &mut UiRequests)
     let Some(writing) = session.writing.filter(|_| session.tool == ToolKind::Text) else { return };
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
     let Content::Image(live) = &layer.content else { return };
-    let Some(words) = live.params().source.text.as_ref().filter(|_| layer.id == writing.layer)
-    else {
+    let Some(words) = live.params().source.text().filter(|_| layer.id == writing.layer) else {
         return;
     };
     let id = Id::unique(("words on the canvas", layer.id));

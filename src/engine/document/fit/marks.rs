@@ -12,8 +12,8 @@ use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
     Adjust, Brush, BrushMode, ColorAdjustment, ColorJitter, DrawingHand, FormDrawing, FormPattern,
-    Gradient, LayerEffect, PlacedImage, Placement, Sample, Stabilizer, Stroke, StrokeSelection,
-    Tip,
+    Gradient, LayerEffect, LivePath, PlacedImage, Placement, Sample, Stabilizer, Stroke,
+    StrokeSelection, Tip,
 };
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
@@ -24,6 +24,8 @@ use std::sync::Arc;
 /// The most values that things take in a description.
 pub const AN_ANCHOR: usize = 14;
 pub const A_STOP: usize = 4;
+/// Its own list and seven numbers.
+pub const A_NODE: usize = 16;
 const A_STROKE: usize = 60;
 /// Without its curves and pictures.
 const A_BRUSH: usize = 480;
@@ -246,10 +248,17 @@ pub fn operator(operator: Operator) -> Fit {
         .try_for_each(|(number, value)| check_range(number.label, value, &number.range))
 }
 
+/// The values that a path takes.
+pub fn path_values(path: &LivePath) -> usize {
+    let lines = path.figure().map_or(path.subpaths().len(), |_| 0);
+    2 * A_NODE + path.dashes.len() + A_NODE * (lines + path.count_nodes())
+}
+
 /// Whether a file can hold a placed picture.
 pub fn image(image: &PlacedImage) -> Fit {
     adjust(&image.source.adjust)?;
     placement(&image.placement)?;
+    image.source.path().map_or(Ok(()), |path| path.fits())?;
     operator(image.bend.operator)?;
     at_most("anchors", image.bend.anchors.len(), Bend::MOST_ANCHORS)?;
     image.bend.anchors.iter().try_for_each(|anchor| {

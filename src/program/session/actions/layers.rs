@@ -18,6 +18,7 @@ use crate::math::{PlaneMap, Vec2};
 use crate::paint::{
     ColorAdjustment, EffectLight, FormDrawing, LiveAdjustment, LiveFilter, PictureFilter, Text,
 };
+use crate::session::actions::paths;
 use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
@@ -156,7 +157,7 @@ impl LayerAction {
                 return session.say(why);
             }
             let is_set = set(open, layer, to, *done);
-            return session.said.extend(is_set.err().map(|why| why.to_string()));
+            return session.said.extend(is_set.err());
         }
         if let LayerAction::Write { text, at } = self {
             open.forget_preview();
@@ -390,13 +391,21 @@ fn tone_step(document: &Document, layer: &Layer) -> Option<EditStep> {
     Some(("Pixel shading", next, vec![layer.id]))
 }
 
-fn set(open: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) -> Result<()> {
+fn set(
+    open: &mut OpenDocument,
+    layers: &LayerPaths,
+    to: &Property,
+    done: bool,
+) -> Result<(), String> {
     let Some(ids) = layers.find(open.document()) else {
         open.forget_preview();
         return Ok(());
     };
     let next = match to {
-        Property::Worded { text } => texts::replace_texts(open.document(), &ids, text)?,
+        Property::Drawn { path } => paths::replace(open.document(), &ids, path)?,
+        Property::Worded { text } => {
+            texts::replace_texts(open.document(), &ids, text).map_err(|why| why.to_string())?
+        }
         _ => open.document().with_layers(&ids, |layer| to.apply(layer)),
     };
     match next {

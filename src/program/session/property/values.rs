@@ -6,7 +6,7 @@ use crate::io::json::JsonNode;
 use crate::io::recipe::transforms;
 use crate::paint::{
     Adjust, ColorAdjustment, DrawingHand, EffectLight, GradientStop, ImageFilter, LayerEffect,
-    PictureFilter, Placement, Text,
+    LivePath, PictureFilter, Placement, Text,
 };
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
@@ -29,7 +29,7 @@ names!(Model);
 names!(Projection);
 names!(Mood);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
-as_in_recipes!(ColorAdjustment, PictureFilter, Text, LayerEffect, EffectLight);
+as_in_recipes!(ColorAdjustment, PictureFilter, Text, LivePath, LayerEffect, EffectLight);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
 as_in_recipes!(Shadows, Painter, PixelShading, BallStrokes);
 as_in_recipes!(LineSettings, HatchSettings, DrawingHand);

@@ -69,7 +69,7 @@ fn a_text_is_saved_with_its_words_and_outlines_and_opened_as_it_was() {
         .map(|open| render(open.document()).to_straight_rgba(Size::new(200, 120).rect()));
     assert!(both[0] == both[1], "other pixels");
     let (_, image) = text_of(&session);
-    let text = image.source.text.unwrap();
+    let text = image.source.text().unwrap();
     assert_eq!((text.string().as_str(), text.runs[0].style.size), ("Rel", 30.0));
     assert!(made.document().difference(read.document()).is_none());
 }

@@ -107,11 +107,15 @@ impl LayerKind for Live<PlacedImage> {
     }
 
     fn files(&self) -> Vec<&str> {
-        vec![&self.params().source.file]
+        let source = &self.params().source;
+        if source.path().is_some() { Vec::new() } else { vec![&source.file] }
     }
 
     fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
         let mut image = self.params().clone();
+        if image.source.path().is_some() {
+            return Ok(None);
+        }
         image.source.file = name(&image.source.file, &image.source.picture)?;
         Ok(Some(Content::Image(Live::new(image))))
     }

@@ -6,7 +6,9 @@ use crate::Result;
 use crate::document::{Content, Document, Layer, LayerId, Live};
 use crate::io::{Budget, text};
 use crate::math::{Size, Vec2};
-use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement, Text, TextStyle};
+use crate::paint::{
+    Adjust, ImageFilter, PictureOrigin, PictureSource, PlacedImage, Placement, Text, TextStyle,
+};
 use crate::raster::Outside;
 use crate::session::actions::file_names::free_file;
 use crate::session::{OpenDocument, Session, Writing};
@@ -58,7 +60,7 @@ pub(in crate::session::actions) fn press(session: &mut Session, at: Vec2) {
 fn text_under(document: &Document, at: Vec2) -> Option<(LayerId, Option<usize>)> {
     document.walk().into_iter().rev().filter(|(_, layer)| layer.visible).find_map(|(_, layer)| {
         let Content::Image(live) = &layer.content else { return None };
-        let (image, text) = (live.params(), live.params().source.text.as_deref()?);
+        let (image, text) = (live.params(), &**live.params().source.text()?);
         let (in_frame, _) = image.frame.from_canvas(at)?;
         let own = image.frame_from_own(document.size).inverse().transform_point2(in_frame);
         let size = image.source.picture.own_size();
@@ -77,7 +79,7 @@ fn text_under(document: &Document, at: Vec2) -> Option<(LayerId, Option<usize>)>
 
 fn text_of(layer: &Arc<Layer>) -> Option<Arc<Text>> {
     match &layer.content {
-        Content::Image(live) => live.params().source.text.clone(),
+        Content::Image(live) => live.params().source.text().cloned(),
         _ => None,
     }
 }
@@ -124,7 +126,7 @@ pub(super) fn replace_texts(
     let (file, canvas) = (free_file(document, "text.svg"), document.size);
     Ok(document.with_layers(&ids, |layer| {
         let Content::Image(live) = &layer.content else { return };
-        let (image, old) = (live.params(), live.params().source.text.clone());
+        let (image, old) = (live.params(), live.params().source.text().cloned());
         let image = with_text(image, canvas, file.clone(), laid.clone());
         layer.content = Content::Image(Live::new(image));
         if old.is_some_and(|old| layer.name == name(&old)) && layer.name != name(text) {
@@ -144,7 +146,7 @@ fn with_text(image: &PlacedImage, canvas: Size, file: String, laid: TextPicture)
     // From the middle of a picture to where its first baseline begins, canvas px.
     let turn = Vec2::from_angle(-image.placement.rotation.to_radians());
     let begin = |origin: Vec2, size: Vec2| turn.rotate((origin - size / 2.0) * enlarged);
-    let was = image.source.text.as_ref().map_or(Vec2::ZERO, |text| text.origin);
+    let was = image.source.text().map_or(Vec2::ZERO, |text| text.origin);
     let moved = begin(was, old.own_size()) - begin(laid.text.origin, laid.size);
     let center = image.placement.center + moved;
     let placement = Placement { center, scale, rotation: image.placement.rotation };
@@ -153,7 +155,7 @@ fn with_text(image: &PlacedImage, canvas: Size, file: String, laid: TextPicture)
 
 fn source(file: String, laid: TextPicture, adjust: Adjust) -> PictureSource {
     let mut source = PictureSource::new(file, laid.picture, adjust);
-    source.text = Some(Arc::new(laid.text));
+    source.origin = PictureOrigin::Text(Arc::new(laid.text));
     source
 }
 

@@ -65,7 +65,7 @@ fn names_of(property: &Property) -> &'static [&'static str] {
             &["lines or how they are drawn"]
         }
         Anchors { .. } | Power { .. } | Adjusted { .. } => &["picture or how it lies"],
-        Worded { .. } => &["picture or how it lies", "name"],
+        Worded { .. } | Drawn { .. } => &["picture or how it lies", "name"],
         Bend { .. } | Pieces { .. } | Filtered { .. } => &["picture or how it lies", "gradient"],
         Place { .. } | Beyond { .. } => &["picture or how it lies", "detail"],
         Stops { .. } | Ends { .. } | Ramp { .. } => &["gradient"],
