@@ -48,6 +48,7 @@ use crate::surface::Operator;
 use crop::CropSettings;
 use gizmo::GizmoMemory;
 use gradient::GradientSettings;
+use path::{PathSettings, SelectedNode};
 use purpose::StrokePurpose;
 use snap::{SnapTargets, ViewAids};
 use transform::TransformSettings;
@@ -123,6 +124,10 @@ pub struct ToolSettings {
     pub operator: Operator,
     /// The gradient tool.
     pub gradient: GradientSettings,
+    /// The figure tool and the path tool.
+    pub path: PathSettings,
+    /// What of a path is selected.
+    pub path_node: SelectedNode,
     /// Whether a stroke that begins on a part of the shape may go on to others.
     pub crosses_parts: bool,
     /// The fill tool.
@@ -156,6 +161,8 @@ impl ToolSettings {
             brush,
             presses_by_speed: false,
             gradient: GradientSettings::default(),
+            path: PathSettings::default(),
+            path_node: SelectedNode::default(),
             color: Color::BLACK,
             second_color: Color::WHITE,
             operator: Operator::None,
@@ -182,6 +189,8 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Gradient => gradient::press(context, pen),
         ToolKind::Image => image::press(context, pen),
         ToolKind::Anchors => anchors::press(context, pen),
+        ToolKind::Figure => path::figures::press(context, pen),
+        ToolKind::Path => path::nodes::press(context, pen),
         ToolKind::Move => move_content::press(context, pen),
         ToolKind::Transform => transform::press(context, pen),
         ToolKind::Liquify => liquify::press(context, pen),

@@ -14,6 +14,7 @@ mod loupe;
 mod marks;
 mod overlay;
 mod parts;
+mod path_handles;
 mod pointer;
 mod rulers;
 mod second_view;
@@ -229,6 +230,7 @@ impl Canvas {
             }
             None => self.draw_aids(ui, &painter, session, &aids),
         }
+        path_handles::keys(ui, session, actions);
         lasso_keys(ui, session, actions);
         crop::keys(ui, session, actions);
         if tool == ToolKind::Anchors && layout.is_none() {

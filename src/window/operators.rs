@@ -76,7 +76,13 @@ pub enum OperatorOwner {
 pub fn whose(session: &Session) -> (OperatorOwner, Operator) {
     let of_layer = matches!(
         session.tool,
-        ToolKind::Image | ToolKind::Text | ToolKind::Anchors | ToolKind::Move | ToolKind::Gradient
+        ToolKind::Image
+            | ToolKind::Text
+            | ToolKind::Figure
+            | ToolKind::Path
+            | ToolKind::Anchors
+            | ToolKind::Move
+            | ToolKind::Gradient
     );
     let bent = session.layer().filter(|_| of_layer).and_then(|layer| layer.content.bend());
     let operator = bent.map(|bend| bend.operator);

@@ -12,6 +12,7 @@ mod light;
 mod marks;
 mod panels;
 mod pasting;
+mod paths;
 mod preferences;
 mod recovery;
 mod replayed;

@@ -16,7 +16,7 @@ impl RecipeValue for LivePath {
         let plain = LivePath::new(Vec::new());
         let mut out = JsonObject::default();
         match &self.geometry {
-            PathGeometry::Figure(figure) => out.set("figure", write_figure(figure)),
+            PathGeometry::Figure(figure) => out.set("figure", figure.to_json()),
             PathGeometry::Nodes(lines) => out.set("lines", lines.iter().map(write_line).collect()),
         }
         out.set_some("fill", self.fill, object::color);
@@ -34,7 +34,7 @@ impl RecipeValue for LivePath {
     fn from_json(node: &JsonNode) -> Result<Self> {
         let mut fields = node.fields()?;
         let geometry = match (fields.get("figure"), fields.get("lines")) {
-            (Some(figure), None) => PathGeometry::Figure(read_figure(&figure)?),
+            (Some(figure), None) => PathGeometry::Figure(Figure::from_json(&figure)?),
             (None, Some(lines)) => PathGeometry::Nodes(read_lines(&lines)?),
             _ => return Err(node.refusal("needs either a “figure” or “lines”")),
         };
@@ -59,29 +59,32 @@ fn read_dashes(node: &JsonNode) -> Result<Vec<f32>> {
     items.iter().map(|item| item.number(LivePath::DASH)).collect()
 }
 
-fn write_figure(figure: &Figure) -> Value {
-    let mut out = JsonObject::default();
-    out.set("kind", figure.kind.name().into());
-    out.set("from", object::point(figure.from));
-    out.set("to", object::point(figure.to));
-    for setting in Figure::SETTINGS {
-        out.number(setting.name, (setting.get)(figure), (setting.get)(&Figure::DEFAULT));
+/// `{ "kind": "star", "from": [x, y], "to": [x, y], … }`.
+impl RecipeValue for Figure {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        out.set("kind", self.kind.name().into());
+        out.set("from", object::point(self.from));
+        out.set("to", object::point(self.to));
+        for setting in Figure::SETTINGS {
+            out.number(setting.name, (setting.get)(self), (setting.get)(&Figure::DEFAULT));
+        }
+        out.into_value()
     }
-    out.into_value()
-}
 
-fn read_figure(node: &JsonNode) -> Result<Figure> {
-    let mut fields = node.fields()?;
-    let kind = fields.require("kind")?.one_of(&FigureKind::ALL)?;
-    let (from, to) = (fields.require("from")?.point()?, fields.require("to")?.point()?);
-    let mut figure = Figure { kind, from, to, ..Figure::DEFAULT };
-    for setting in Figure::SETTINGS {
-        let default = (setting.get)(&figure);
-        let to = fields.number(setting.name, default, setting.range.clone())?;
-        (setting.set)(&mut figure, to);
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let kind = fields.require("kind")?.one_of(&FigureKind::ALL)?;
+        let (from, to) = (fields.require("from")?.point()?, fields.require("to")?.point()?);
+        let mut figure = Figure { kind, from, to, ..Figure::DEFAULT };
+        for setting in Figure::SETTINGS {
+            let default = (setting.get)(&figure);
+            let to = fields.number(setting.name, default, setting.range.clone())?;
+            (setting.set)(&mut figure, to);
+        }
+        fields.finish()?;
+        Ok(figure)
     }
-    fields.finish()?;
-    Ok(figure)
 }
 
 /// `{ "nodes": [ … ], "closed": true }`.

@@ -37,6 +37,16 @@ rilievo_engine::named! {
             "Text",
             "Click to write, or on a text to change it; its type is in Properties",
         ),
+        Figure = "figure" => (
+            "Figure",
+            "Drag to draw a rectangle, ellipse, polygon, star, line or arrow; Shift makes it regular, Alt begins at \
+             its middle. Handles change the selected one, Ctrl turns it",
+        ),
+        Path = "path" => (
+            "Path",
+            "Click for corners, drag for smooth nodes; the first node closes, Enter ends. Drag nodes and handles \
+             later; Ctrl breaks a handle, Alt deletes a node",
+        ),
         Move = "move" => (
             "Move",
             "Drag the selected layer; on a stroke layer, the stroke under the pen (Shift: all of them)",
@@ -117,6 +127,8 @@ impl ToolKind {
             ToolKind::Move => 'V',
             // With Shift.
             ToolKind::Text | ToolKind::Transform => 'T',
+            ToolKind::Figure => 'U',
+            ToolKind::Path => 'P',
             ToolKind::Liquify => 'K',
             ToolKind::Assistants => 'Y',
             ToolKind::Crop => 'C',
@@ -137,17 +149,26 @@ impl ToolKind {
 
     /// Whether that letter is pressed with Shift.
     pub fn is_key_shifted(self) -> bool {
-        self == ToolKind::Text
+        matches!(self, ToolKind::Text | ToolKind::Figure | ToolKind::Path)
     }
 
     /// Whether the pen snaps to guides, the grid and edges in all uses.
     pub fn is_snapping_tool(self) -> bool {
         use ToolKind::{
-            Assistants, Crop, Gradient, Move, SelectEllipse, SelectRectangle, Transform,
+            Assistants, Crop, Figure, Gradient, Move, Path, SelectEllipse, SelectRectangle,
+            Transform,
         };
         matches!(
             self,
-            Assistants | Crop | Gradient | Move | SelectEllipse | SelectRectangle | Transform
+            Assistants
+                | Crop
+                | Figure
+                | Gradient
+                | Move
+                | Path
+                | SelectEllipse
+                | SelectRectangle
+                | Transform
         )
     }
 

@@ -40,6 +40,9 @@ pub fn draw(
     if tool == ToolKind::Crop {
         super::crop::draw(painter, session, &to_screen);
     }
+    if matches!(tool, ToolKind::Path | ToolKind::Figure) {
+        super::path_handles::draw(painter, session, &to_screen, under, tool);
+    }
     if tool == ToolKind::Text {
         super::text_carets::draw(painter, session, &to_screen);
     }

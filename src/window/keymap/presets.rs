@@ -34,6 +34,7 @@ type Rows = &'static [(&'static str, &'static [&'static str])];
 const KRITA: Rows = &[
     ("Eyedropper", &["P"]),
     ("Shape", &["Shift+P"]),
+    ("Path", &["Shift+V"]),
     ("Move", &["T"]),
     ("Transform", &["V"]),
     ("Select rectangle", &["Ctrl+R"]),
@@ -63,6 +64,10 @@ const PHOTOSHOP: Rows = &[
     ("Quick mask", &["Q"]),
     ("Surface wand", &["Shift+W"]),
     ("Text", &["T"]),
+    ("Path", &["P"]),
+    ("Shape", &["Shift+P"]),
+    ("Figure", &["U"]),
+    ("Sculpt", &["Shift+U"]),
     ("Transform", &["Shift+T"]),
     ("Fill", &["Shift+G"]),
     ("Full screen", &["F", "F11"]),
@@ -88,6 +93,9 @@ const PHOTOSHOP: Rows = &[
 const CLIP_STUDIO: Rows = &[
     ("Brush", &["P", "B"]),
     ("Shape", &["Shift+P"]),
+    ("Path", &["Shift+V"]),
+    ("Figure", &["U"]),
+    ("Sculpt", &["Shift+U"]),
     ("Fill", &["G"]),
     ("Gradient", &["Shift+G"]),
     ("Move", &["K"]),

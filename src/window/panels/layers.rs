@@ -25,6 +25,7 @@ pub fn kind_icon(content: &Content) -> Icon {
         Content::Fill(_) => Icon::Fill,
         Content::Pixels(_) => Icon::Pixels,
         Content::Image(live) if live.params().source.text().is_some() => Icon::Tool(ToolKind::Text),
+        Content::Image(live) if live.params().source.path().is_some() => Icon::Tool(ToolKind::Path),
         Content::Image(_) => Icon::Tool(ToolKind::Image),
         Content::Gradient(_) => Icon::Tool(ToolKind::Gradient),
         Content::Strokes(_) => Icon::Tool(ToolKind::Strokes),

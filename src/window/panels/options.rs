@@ -1,7 +1,9 @@
 //! The options bar above the canvas: one row with what the tool in hand needs, bending first; the
 //! rest is behind *More*. Floor 7.
 
-use super::{assistants, brush_mode, crop, fill, gradient, liquify, select, shaping, transform};
+use super::{
+    assistants, brush_mode, crop, fill, gradient, liquify, path, select, shaping, transform,
+};
 use crate::document::Symmetry;
 use crate::operators::{
     OPERATORS, OfferedOperator, OperatorOwner, give, has_operator, hint_of, set, whose,
@@ -49,8 +51,11 @@ fn divide(ui: &mut Ui) {
 
 /// Whether a tool makes or changes something that bends.
 fn is_bending(tool: ToolKind) -> bool {
-    use ToolKind::{Anchors, Brush, Eraser, Gradient, Image, Move, Strokes, Text};
-    matches!(tool, Brush | Eraser | Gradient | Image | Text | Anchors | Move | Strokes)
+    use ToolKind::{Anchors, Brush, Eraser, Figure, Gradient, Image, Move, Path, Strokes, Text};
+    matches!(
+        tool,
+        Brush | Eraser | Gradient | Image | Text | Anchors | Move | Strokes | Figure | Path
+    )
 }
 
 /// The operator and its numbers.
@@ -95,6 +100,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             symmetry(ui, session, requests);
         }
         ToolKind::Gradient => gradient::options(ui, session, requests),
+        ToolKind::Figure | ToolKind::Path => path::options(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
         tool => drop(ui.weak(tool.hint())),

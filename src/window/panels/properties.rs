@@ -3,15 +3,17 @@
 
 use super::setter::LayerSetter;
 use super::{
-    adjustment, attachment, colors, effects, form_drawing, mask, material, options, ramp, strokes,
-    text,
+    adjustment, attachment, colors, effects, form_drawing, mask, material, options, path, ramp,
+    strokes, text,
 };
 use crate::document::{Content, DetailSource, Document, Histogram, Layer, NormalLayer, Progress};
 use crate::file_purpose::FilePurpose;
 use crate::math::{Vec2, vec2};
 use crate::mood_pictures::MoodPictures;
 use crate::operators::{OPERATORS, OfferedOperator};
-use crate::paint::{Adjust, Gradient, ImageFilter, PlacedImage, Placement, RampStyle};
+use crate::paint::{
+    Adjust, Gradient, ImageFilter, PictureOrigin, PlacedImage, Placement, RampStyle,
+};
 use crate::raster::Outside;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
@@ -72,6 +74,9 @@ fn content(
         Content::Image(live) => {
             if let Some(words) = live.params().source.text() {
                 text::show(ui, layer.id, words, setter);
+            }
+            if let Some(path) = live.params().source.path() {
+                path::show(ui, path, setter);
             }
             image(ui, live.params(), setter);
         }
@@ -158,7 +163,7 @@ fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: 
 }
 
 fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
-    if image.source.text().is_none() {
+    if image.source.origin == PictureOrigin::File {
         ui.horizontal_wrapped(|ui| {
             ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
             setter.choose(ui, PicturePart::Image, "Replace…");

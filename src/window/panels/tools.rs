@@ -19,7 +19,7 @@ const GROUPS: [&[ToolKind]; 5] = {
     [
         &[Brush, Eraser, Fill, Gradient, Eyedropper],
         &[SelectRectangle, SelectEllipse, Lasso, Wand, SurfaceWand],
-        &[Move, Transform, Liquify, Strokes, Image, Text, Anchors, Crop],
+        &[Move, Transform, Liquify, Strokes, Image, Text, Figure, Path, Anchors, Crop],
         &[Shape, Touch, Sculpt],
         &[Assistants, Hand, Zoom],
     ]

@@ -16,6 +16,7 @@ use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::gradient::GradientSettings;
+use crate::tools::path::SelectedNode;
 use crate::tools::{ShapeSettings, ToolKind};
 use serde_json::Value;
 
@@ -114,6 +115,7 @@ impl HandAction {
                     session.tools.shape = ShapeSettings::for_canvas(document.size);
                 }
                 session.tools.lasso.clear();
+                session.tools.path_node = SelectedNode::default();
                 session.tools.transform.mesh_points.clear();
                 session.tools.crop.area = None;
                 session.tool = *tool;

@@ -3,16 +3,28 @@
 
 use super::layers::slot_above;
 use crate::document::{Document, LayerId};
-use crate::paint::{LivePath, PathGeometry};
-use crate::session::replay::actions;
+use crate::paint::{Figure, LivePath, PathCap, PathGeometry, PathJoin};
+use crate::session::replay::{actions, as_in_recipes, names, record};
 use crate::session::{LayerPath, OpenDocument, Session};
-use crate::tools::path;
+use crate::tools::ToolContext;
+use crate::tools::path::{self, PathSettings, nodes};
+
+names!(PathCap);
+names!(PathJoin);
+as_in_recipes!(Figure);
+record!(PathSettings { figure, fills, outline, cap, join });
 
 actions! {
     /// `layer` is a layer of a path.
     PathAction {
         /// A path as a layer of its own, its points canvas points.
         "draw" Draw { path: LivePath }
+        /// What new paths and figures are like.
+        "settings" Settings { path: PathSettings }
+        /// The line that clicks of the path tool continue ends.
+        "end" End {}
+        /// The node that was set last, or that is selected, is taken away.
+        "back" Back {}
         /// A figure becomes nodes, which the path tool moves.
         "to nodes" ToNodes { layer: LayerPath }
     }
@@ -24,15 +36,39 @@ impl PathAction {
     /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
+        match self {
+            PathAction::Settings { path } => return session.tools.path = path.clamp_to_ranges(),
+            PathAction::End {} => return session.tools.path_node.line = None,
+            PathAction::Back {} => return step_back(session),
+            _ => {}
+        }
         let Some(open) = session.active_mut() else { return session.say("There is no document.") };
         open.forget_preview();
         let done = match self {
             PathAction::Draw { path } => draw(open, path),
             PathAction::ToNodes { layer } => to_nodes(open, layer),
+            PathAction::Settings { .. } | PathAction::End {} | PathAction::Back {} => Ok(()),
         };
         if let Err(why) = done {
             session.say(&why);
         }
+    }
+}
+
+/// Takes the node that was set last away.
+fn step_back(session: &mut Session) {
+    let Some(open) = session.active() else { return session.say("There is no document.") };
+    let context = ToolContext {
+        layer: open.active_layer,
+        ..ToolContext::new(open.document(), &session.tools)
+    };
+    let Some((document, selected)) = nodes::step_back(&context) else {
+        return session.say("No node of a path is selected.");
+    };
+    session.tools.path_node = selected;
+    if let Some(open) = session.active_mut() {
+        open.forget_preview();
+        open.commit("Delete node", document);
     }
 }
 

@@ -10,6 +10,7 @@ use crate::session::{CloneSource, OpenDocument, Session};
 use crate::surface::unwrap::PlaneLayout;
 use crate::tools::assistants::StrokeStart;
 use crate::tools::guides::GuideAt;
+use crate::tools::path;
 use crate::tools::snap::{SnapTargets, ViewAids};
 use crate::tools::unwrapped;
 use crate::tools::{
@@ -136,7 +137,9 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     let (gesture, outcome) = start(&context, tool, pen, open.layout(), is_line);
     (session.gesture, session.draws_stroke) = (gesture, stroke_start(tool).is_some());
     session.last_pen = place.or(session.last_pen);
-    if matches!(tool, ToolKind::Brush | ToolKind::Fill | ToolKind::Gradient) {
+    let takes_color =
+        [ToolKind::Brush, ToolKind::Fill, ToolKind::Gradient, ToolKind::Figure, ToolKind::Path];
+    if takes_color.contains(&tool) {
         session.remember_color();
     }
     take(session, outcome);
@@ -281,7 +284,10 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
                 | ToolKind::Crop
                 | ToolKind::Assistants
         );
-    let Some(layer) = open.active_layer.filter(|_| !looks_only) else {
+    let active = open.active_layer.and_then(|id| document.layer(id));
+    let is_on_path = active.is_some_and(|layer| path::of_layer(layer).is_some());
+    let draws_new = matches!(tool, ToolKind::Figure | ToolKind::Path) && !is_on_path;
+    let Some(layer) = open.active_layer.filter(|_| !looks_only && !draws_new) else {
         return Ok(document.clone());
     };
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };

@@ -3,7 +3,7 @@
 use super::dice::{Dice, Roll};
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
-use crate::session::actions::{Action, CanvasAction, PointerAction, SelectionAction};
+use crate::session::actions::{Action, CanvasAction, PathAction, PointerAction, SelectionAction};
 use crate::tools::{ModifierKeys, PenSample, ToolKind};
 
 /// Samples of a long stroke.
@@ -46,7 +46,9 @@ pub fn gesture(dice: &mut Dice, tool: ToolKind) -> Vec<Action> {
                 drag(dice, tool, somewhere)
             }
         }
+        ToolKind::Path => path_nodes(dice, tool),
         ToolKind::Gradient
+        | ToolKind::Figure
         | ToolKind::Image
         | ToolKind::Anchors
         | ToolKind::Move
@@ -88,6 +90,22 @@ pub fn gesture(dice: &mut Dice, tool: ToolKind) -> Vec<Action> {
         }
         ToolKind::Lasso => stroke(dice, tool, somewhere),
     }
+}
+
+/// A few nodes of a path, clicked and dragged; some of them taken back.
+fn path_nodes(dice: &mut Dice, tool: ToolKind) -> Vec<Action> {
+    let mut actions = Vec::new();
+    for _ in 0..1 + dice.below(4) {
+        let at = dice.place();
+        actions.extend(if dice.is(60) { click(dice, tool, at) } else { drag(dice, tool, at) });
+        if dice.is(15) {
+            actions.push(Action::Path(PathAction::Back {}));
+        }
+    }
+    if dice.is(50) {
+        actions.push(Action::Path(PathAction::End {}));
+    }
+    actions
 }
 
 fn keys(dice: &mut Dice) -> ModifierKeys {
