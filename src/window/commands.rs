@@ -12,6 +12,7 @@ mod image;
 mod layer;
 mod paint;
 mod parts;
+mod paths;
 mod row;
 mod select;
 mod shading;

@@ -3,6 +3,7 @@
 
 mod drawing;
 mod figure;
+mod flatten;
 mod live_path;
 mod nodes;
 mod ribbon;
@@ -10,6 +11,7 @@ mod subpath;
 
 pub use drawing::PathDrawing;
 pub use figure::{Figure, FigureKind};
+pub use flatten::FlatLine;
 pub use live_path::{LivePath, PathCap, PathGeometry, PathJoin, PathRule};
 pub use nodes::{NodeHandle, PathPlace};
 pub use subpath::{PathNode, Subpath};

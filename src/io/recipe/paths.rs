@@ -169,7 +169,7 @@ mod tests {
             join: PathJoin::Bevel,
             dashes: vec![4.0, 2.5],
             rule: PathRule::EvenOdd,
-            ..LivePath::filled(lines, Color::BLACK)
+            ..LivePath::new(lines).with_fill(Color::BLACK)
         };
         assert_eq!(read(&path.to_json()).unwrap(), path);
         let (from, to) = (vec2(1.0, 2.0), vec2(3.0, 4.0));

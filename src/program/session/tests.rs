@@ -6,6 +6,7 @@ mod dialect;
 mod held;
 mod kept;
 mod pasting;
+mod paths;
 mod selecting;
 mod several;
 mod shaped;

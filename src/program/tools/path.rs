@@ -1,6 +1,7 @@
 //! Layers of paths: how new ones look, the path that the pen changes, and what of it is selected.
 //! Floor 5.
 
+pub mod along;
 pub mod figures;
 pub mod nodes;
 
@@ -13,6 +14,9 @@ use crate::paint::{Figure, FigureKind, LivePath, PathCap, PathGeometry, PathJoin
 
 /// The width of a line that would be seen by nothing else, px.
 const LINE_PX: f32 = 4.0;
+
+/// Letters of a layer's name that a refusal shows.
+const SHOWN_LETTERS: usize = 60;
 
 /// What new paths are like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,14 +106,21 @@ pub fn make_layer(document: &Document, path: LivePath) -> Layer {
 }
 
 /// The document with another path in the layers of paths among some; `None` where none is. A layer
-/// that is named after its figure is named after the new one.
-pub fn replace_paths(document: &Document, ids: &[LayerId], path: &LivePath) -> Option<Document> {
+/// that is named after its figure is named after the new one. A path that no file could hold is
+/// refused before it is drawn.
+pub fn replace_paths(
+    document: &Document,
+    ids: &[LayerId],
+    path: &LivePath,
+) -> Result<Option<Document>, String> {
     let is_path = |id: &LayerId| document.layer(*id).is_some_and(|layer| of_layer(layer).is_some());
     let ids: Vec<LayerId> = ids.iter().copied().filter(is_path).collect();
-    if ids.is_empty() {
-        return None;
+    let Some(first) = ids.first().and_then(|id| document.layer(*id)) else { return Ok(None) };
+    if let Err(why) = path.fits() {
+        let name: String = first.name.chars().take(SHOWN_LETTERS).collect();
+        return Err(format!("“{name}”: {why}. Nothing was changed."));
     }
-    document.with_layers(&ids, |layer| {
+    Ok(document.with_layers(&ids, |layer| {
         let Some(image) = of_layer(layer) else { return };
         let (was, label) = (image.source.path().map(|path| path.label()), path.label());
         let Some(next) = image.with_path(document.size, path.clone()) else { return };
@@ -117,7 +128,7 @@ pub fn replace_paths(document: &Document, ids: &[LayerId], path: &LivePath) -> O
         if was.is_some_and(|was| was != label && layer.name == was) {
             layer.name = document.free_layer_name(label);
         }
-    })
+    }))
 }
 
 /// The image of a layer that is a path.
@@ -133,10 +144,10 @@ struct HeldPath {
     /// Before the gesture.
     document: Document,
     path: LivePath,
-    layer: HeldLayer,
+    layer: PathTarget,
 }
 
-enum HeldLayer {
+enum PathTarget {
     New(Box<Layer>, LayerSlot),
     Old(LayerId, Box<PlacedImage>),
 }
@@ -153,7 +164,7 @@ impl HeldPath {
         }
         let Some(path) = image.source.path() else { return Ok(None) };
         let (path, layer) =
-            (LivePath::clone(path), HeldLayer::Old(layer.id, Box::new(image.clone())));
+            (LivePath::clone(path), PathTarget::Old(layer.id, Box::new(image.clone())));
         Ok(Some(Self { document: context.document.clone(), path, layer }))
     }
 
@@ -163,14 +174,14 @@ impl HeldPath {
         let place = place
             .map_or(LayerSlot::top_level(usize::MAX), |p| LayerSlot { index: p.index + 1, ..p });
         let document = context.document.clone();
-        let layer = HeldLayer::New(Box::new(make_layer(&document, path.clone())), place);
+        let layer = PathTarget::New(Box::new(make_layer(&document, path.clone())), place);
         Self { document, path, layer }
     }
 
     fn id(&self) -> LayerId {
         match &self.layer {
-            HeldLayer::New(layer, _) => layer.id,
-            HeldLayer::Old(id, _) => *id,
+            PathTarget::New(layer, _) => layer.id,
+            PathTarget::Old(id, _) => *id,
         }
     }
 
@@ -178,8 +189,8 @@ impl HeldPath {
     fn with(&self, path: &LivePath) -> Option<Document> {
         path.fits().ok()?;
         match &self.layer {
-            HeldLayer::Old(id, _) => replace_paths(&self.document, &[*id], path),
-            HeldLayer::New(layer, place) => {
+            PathTarget::Old(id, _) => replace_paths(&self.document, &[*id], path).ok()?,
+            PathTarget::New(layer, place) => {
                 let image = PlacedImage::of_path(self.document.size, path.clone());
                 let content = Content::Image(Live::new(image));
                 self.document.with_inserted(Layer { content, ..Layer::clone(layer) }, *place)
@@ -190,8 +201,8 @@ impl HeldPath {
     /// A point of the canvas in the path's plane.
     fn to_path(&self, at: Vec2) -> Vec2 {
         match &self.layer {
-            HeldLayer::New(..) => at,
-            HeldLayer::Old(_, image) => {
+            PathTarget::New(..) => at,
+            PathTarget::Old(_, image) => {
                 image.path_from_canvas(self.document.size, at).unwrap_or(at)
             }
         }

@@ -146,6 +146,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     ),
     submenu("New part", super::parts::COMMANDS),
     submenu("From the drawing", DRAWING),
+    submenu("Path", super::paths::COMMANDS),
     LINE,
     row(
         "Layer via copy",

@@ -26,7 +26,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         requests.actions.extend(to.map(|path| Action::Path(PathAction::Settings { path })))
     };
     if session.tool == ToolKind::Figure {
-        let kind = choice(ui, "Figure", settings.figure.kind, &FigureKind::LABELS);
+        let kind = choice(ui, "Kind of figure", settings.figure.kind, &FigureKind::LABELS);
         let with = |figure: Figure| PathSettings { figure, ..settings };
         push(kind.map(|kind| with(Figure { kind, ..settings.figure })));
         let number = figure_numbers(settings.figure, |field, value| field.inline(ui, value, 60.0));
@@ -105,7 +105,7 @@ fn take(setter: &mut LayerSetter, path: Option<ValueChange<LivePath>>) {
 
 fn show_figure(ui: &mut Ui, path: &LivePath, figure: &Figure, setter: &mut LayerSetter) {
     let with = |figure: Figure| LivePath { geometry: figure.into(), ..path.clone() };
-    let kind = choice_row(ui, "Figure", figure.kind, &FigureKind::LABELS);
+    let kind = choice_row(ui, "Kind", figure.kind, &FigureKind::LABELS);
     set(setter, kind.map(|kind| with(Figure { kind, ..*figure })));
     let number = figure_numbers(*figure, |field, value| field.row(ui, value));
     take(setter, number.map(|changed| changed.map(with)));

@@ -106,7 +106,7 @@ mod tests {
     fn star() -> LivePath {
         let (from, to) = (vec2(10.0, 8.0), vec2(50.0, 40.0));
         let figure = Figure { kind: FigureKind::Star, from, to, ..Figure::DEFAULT };
-        LivePath::filled(figure, Color::BLACK)
+        LivePath::new(figure).with_fill(Color::BLACK)
     }
 
     #[test]
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn edges_between_pixels_stay_sharp() {
         let (from, to) = (vec2(10.0, 8.0), vec2(50.0, 40.0));
-        let path = LivePath::filled(Figure { from, to, ..Figure::DEFAULT }, Color::BLACK);
+        let path = LivePath::new(Figure { from, to, ..Figure::DEFAULT }).with_fill(Color::BLACK);
         let image = PlacedImage::of_path(CANVAS, path);
         let scene = Scene { size: CANVAS, surface: None };
         let tile = image.render_tile(&scene, TileAt::new(0, 0)).unwrap();

@@ -108,9 +108,9 @@ impl LivePath {
         }
     }
 
-    /// A filled path without an outline.
-    pub fn filled(geometry: impl Into<PathGeometry>, fill: Color) -> Self {
-        Self { fill: Some(fill), ..Self::new(geometry) }
+    /// The same path, filled.
+    pub fn with_fill(self, fill: Color) -> Self {
+        Self { fill: Some(fill), ..self }
     }
 
     /// The figure that it is, if it is one.

@@ -63,20 +63,40 @@ pub fn ellipse(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
 /// The inside of a closed polygon within a rectangle of pixels. Where it runs round a point more
 /// than once, that counts once. A polygon with a corner that is not finite covers nothing.
 pub fn polygon(corners: &[Vec2], within: Rect) -> CoverageGrid {
-    if corners.len() < 3 || !corners.iter().all(|p| p.is_finite()) {
+    polygons(&[corners], false, within)
+}
+
+/// The same of several polygons together.
+///
+/// * `has_holes`: what lies inside of an even number of them is outside.
+pub fn polygons(lines: &[&[Vec2]], has_holes: bool, within: Rect) -> CoverageGrid {
+    let lines = || lines.iter().filter(|corners| corners.len() >= 3);
+    let corners = || lines().flat_map(|corners| corners.iter());
+    if corners().next().is_none() || !corners().all(|p| p.is_finite()) {
         return CoverageGrid::default();
     }
-    let low = corners.iter().fold(Vec2::INFINITY, |low, p| low.min(*p)).floor().as_ivec2();
-    let high = corners.iter().fold(Vec2::NEG_INFINITY, |high, p| high.max(*p)).ceil().as_ivec2();
+    let low = corners().fold(Vec2::INFINITY, |low, p| low.min(*p)).floor().as_ivec2();
+    let high = corners().fold(Vec2::NEG_INFINITY, |high, p| high.max(*p)).ceil().as_ivec2();
     let area = Rect::new(low.x, low.y, high.x, high.y).intersect(within);
-    let closed = corners.iter().zip(corners.iter().cycle().skip(1));
+    let closed = lines().flat_map(|corners| corners.iter().zip(corners.iter().cycle().skip(1)));
     // Level edges part nothing above from below.
     let edges: Vec<[Vec2; 2]> = closed.map(|(a, b)| [*a, *b]).filter(|[a, b]| a.y != b.y).collect();
     let bands: Vec<Rect> = bands(area).collect();
-    let made: Vec<Vec<_>> = bands.par_iter().map(|&band| band_tiles(&edges, band)).collect();
+    let share = if has_holes { odd_share } else { inner_share };
+    let made: Vec<Vec<_>> = bands.par_iter().map(|&band| band_tiles(&edges, band, share)).collect();
     let mut grid = CoverageGrid::for_rect(area);
     made.into_iter().flatten().for_each(|(at, tile)| grid.set(at, tile));
     grid
+}
+
+/// How much of a pixel lies inside, of its winding number averaged over it.
+fn inner_share(winding: f32) -> f32 {
+    winding.abs().min(1.0)
+}
+
+/// The same where what lies inside twice is outside.
+fn odd_share(winding: f32) -> f32 {
+    1.0 - (1.0 - winding.abs().rem_euclid(2.0)).abs()
 }
 
 /// A rectangle in rows of tiles.
@@ -93,6 +113,7 @@ fn bands(area: Rect) -> impl Iterator<Item = Rect> {
 fn band_tiles(
     edges: &[[Vec2; 2]],
     band: Rect,
+    share: fn(f32) -> f32,
 ) -> Vec<(TileAt, Option<std::sync::Arc<CoverageTile>>)> {
     let width = band.width();
     let mut turned = vec![0.0f32; (width + 2) * band.height()];
@@ -105,7 +126,7 @@ fn band_tiles(
         let mut winding = 0.0f32;
         for (to, change) in row.iter_mut().zip(turned) {
             winding += change;
-            *to = (winding.abs().min(1.0) * 255.0 + 0.5) as u8;
+            *to = (share(winding) * 255.0 + 0.5) as u8;
         }
         for (at, bytes) in &mut tiles {
             let (tile, area) = (at.rect(), at.rect().intersect(band));
@@ -236,6 +257,17 @@ mod tests {
         let square = [vec2(20.0, 20.0), vec2(60.0, 20.0), vec2(60.0, 60.0), vec2(20.0, 60.0)];
         let twice: Vec<Vec2> = square.iter().chain(&square).copied().collect();
         assert!(polygon(&twice, CANVAS).is_same(&polygon(&square, CANVAS)));
+    }
+
+    #[test]
+    fn several_polygons_cover_what_any_does_or_have_holes() {
+        let square = |a: f32, b: f32| [vec2(a, a), vec2(b, a), vec2(b, b), vec2(a, b)];
+        let (outer, inner) = (square(10.0, 70.0), square(30.5, 50.0));
+        let both = [&outer[..], &inner[..]];
+        let whole = polygons(&both, false, CANVAS);
+        assert!(whole.is_same(&polygon(&outer, CANVAS)));
+        let holed = polygons(&both, true, CANVAS);
+        assert_eq!([holed.at(40, 40), holed.at(20, 40), holed.at(30, 40)], [0, 255, 128]);
     }
 
     #[test]

@@ -18,13 +18,13 @@ use crate::math::{PlaneMap, Vec2};
 use crate::paint::{
     ColorAdjustment, EffectLight, FormDrawing, LiveAdjustment, LiveFilter, PictureFilter, Text,
 };
-use crate::session::actions::paths;
 use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, PixelShading};
 use crate::tools::gizmo::TransformTarget;
+use crate::tools::path;
 use crate::tools::transform::{self, mapped};
 use flattening::bake_displacement;
 use new::{NewLayerSettings, lit_layer, make_layer, selecting};
@@ -402,7 +402,7 @@ fn set(
         return Ok(());
     };
     let next = match to {
-        Property::Drawn { path } => paths::replace(open.document(), &ids, path)?,
+        Property::Drawn { path } => path::replace_paths(open.document(), &ids, path)?,
         Property::Worded { text } => {
             texts::replace_texts(open.document(), &ids, text).map_err(|why| why.to_string())?
         }

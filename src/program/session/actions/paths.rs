@@ -2,12 +2,12 @@
 //! Not here: another path for a layer, which is a property of it (`Property::Drawn`).
 
 use super::layers::slot_above;
-use crate::document::{Document, LayerId};
-use crate::paint::{Figure, LivePath, PathCap, PathGeometry, PathJoin};
+use crate::paint::{Figure, LivePath, PathCap, PathGeometry, PathJoin, Selection};
+use crate::raster::coverage::SelectionMode;
 use crate::session::replay::{actions, as_in_recipes, names, record};
 use crate::session::{LayerPath, OpenDocument, Session};
 use crate::tools::ToolContext;
-use crate::tools::path::{self, PathSettings, nodes};
+use crate::tools::path::{self, PathSettings, along, nodes};
 
 names!(PathCap);
 names!(PathJoin);
@@ -25,12 +25,17 @@ actions! {
         "end" End {}
         /// The node that was set last, or that is selected, is taken away.
         "back" Back {}
+        /// What lies inside is selected.
+        "select" Select { layer: LayerPath, how: SelectionMode }
+        /// The brush in hand goes along it, on another layer, or on strokes above it.
+        "stroke" Stroke { layer: LayerPath, onto: Option<LayerPath> }
         /// A figure becomes nodes, which the path tool moves.
         "to nodes" ToNodes { layer: LayerPath }
     }
 }
 
 const NO_PATH: &str = "That layer is no path.";
+const NO_LAYER: &str = "There is no such layer.";
 
 impl PathAction {
     /// Performs it.
@@ -40,6 +45,10 @@ impl PathAction {
             PathAction::Settings { path } => return session.tools.path = path.clamp_to_ranges(),
             PathAction::End {} => return session.tools.path_node.line = None,
             PathAction::Back {} => return step_back(session),
+            PathAction::Stroke { layer, onto } => {
+                let stroked = stroke(session, layer, onto.as_ref());
+                return session.said.extend(stroked.err());
+            }
             _ => {}
         }
         let Some(open) = session.active_mut() else { return session.say("There is no document.") };
@@ -47,7 +56,11 @@ impl PathAction {
         let done = match self {
             PathAction::Draw { path } => draw(open, path),
             PathAction::ToNodes { layer } => to_nodes(open, layer),
-            PathAction::Settings { .. } | PathAction::End {} | PathAction::Back {} => Ok(()),
+            PathAction::Select { layer, how } => select(open, layer, *how),
+            PathAction::Settings { .. }
+            | PathAction::End {}
+            | PathAction::Back {}
+            | PathAction::Stroke { .. } => Ok(()),
         };
         if let Err(why) = done {
             session.say(&why);
@@ -85,30 +98,46 @@ fn draw(open: &mut OpenDocument, path: &LivePath) -> Result<(), String> {
     Ok(())
 }
 
+/// Selects what lies inside of a path.
+fn select(open: &mut OpenDocument, layer: &LayerPath, how: SelectionMode) -> Result<(), String> {
+    let document = open.document();
+    let id = layer.find(document).ok_or(NO_LAYER)?.id;
+    let inside = along::inside(document, id).ok_or(NO_PATH)?;
+    if inside.is_empty() {
+        return Err("The path has no inside: there is nothing to select.".into());
+    }
+    open.commit("Select path", document.with_combined(Selection::new(inside), how));
+    Ok(())
+}
+
+/// Paints along a path with the brush in hand.
+fn stroke(session: &mut Session, path: &LayerPath, onto: Option<&LayerPath>) -> Result<(), String> {
+    let open = session.active().ok_or("There is no document.")?;
+    let document = open.document();
+    let path = path.find(document).ok_or(NO_LAYER)?.id;
+    let onto = onto.map(|onto| onto.find(document).ok_or(NO_LAYER)).transpose()?;
+    let layer = onto.map_or(path, |onto| onto.id);
+    let context = ToolContext { layer: Some(layer), ..ToolContext::new(document, &session.tools) };
+    let (next, select) = along::stroke(&context, path)?;
+    session.remember_color();
+    if let Some(open) = session.active_mut() {
+        open.forget_preview();
+        if open.commit("Stroke path", next) {
+            open.active_layer = select.or(open.active_layer);
+        }
+    }
+    Ok(())
+}
+
 fn to_nodes(open: &mut OpenDocument, layer: &LayerPath) -> Result<(), String> {
-    let found = layer.find(open.document()).cloned().ok_or("There is no such layer.")?;
+    let found = layer.find(open.document()).cloned().ok_or(NO_LAYER)?;
     let live = path::of_layer(&found).and_then(|image| image.source.path()).ok_or(NO_PATH)?;
     let PathGeometry::Figure(figure) = &live.geometry else {
         return Err("The path consists of nodes already.".into());
     };
     let nodes = live.with_lines(figure.subpaths());
-    if let Some(next) = path::replace_paths(open.document(), &[found.id], &nodes) {
+    if let Some(next) = path::replace_paths(open.document(), &[found.id], &nodes)? {
         open.commit("To nodes", next);
     }
     Ok(())
-}
-
-/// The document with another path in those of some layers that are paths; refuses one that no file
-/// could hold before it is drawn.
-pub(super) fn replace(
-    document: &Document,
-    ids: &[LayerId],
-    path: &LivePath,
-) -> Result<Option<Document>, String> {
-    const SHOWN: usize = 60;
-    if let (Err(why), Some(layer)) = (path.fits(), ids.iter().find_map(|id| document.layer(*id))) {
-        let name: String = layer.name.chars().take(SHOWN).collect();
-        return Err(format!("“{name}”: {why}. Nothing was changed."));
-    }
-    Ok(path::replace_paths(document, ids, path))
 }

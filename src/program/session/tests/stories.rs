@@ -12,6 +12,7 @@ mod gestures;
 mod known;
 mod names;
 mod parts;
+mod paths;
 mod play;
 mod promises;
 mod shrink;

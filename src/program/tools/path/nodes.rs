@@ -236,7 +236,7 @@ impl NodeGesture {
     }
 
     /// The line that ends at the selected node, so that it ends there, as clicks go on from its end.
-    fn continued(&self, place: PathPlace) -> LivePath {
+    fn continue_from(&self, place: PathPlace) -> LivePath {
         if place.node > 0 {
             return self.path.clone();
         }
@@ -248,13 +248,13 @@ impl NodeGesture {
     }
 
     /// The pen was lifted where it came down.
-    fn clicked(&mut self) -> Outcome {
+    fn finish_click(&mut self) -> Outcome {
         let selected = self.selected;
         let (path, selected) = match (self.click, selected.node) {
             (NodeClick::Keep, _) => (self.path.clone(), selected),
             (NodeClick::Turn, Some(place)) => (self.path.with_turned_node(place), selected),
             (NodeClick::Continue, Some(place)) => {
-                let path = self.continued(place);
+                let path = self.continue_from(place);
                 let node = path.subpaths()[place.line].nodes.len() - 1;
                 let node = Some(PathPlace { node, ..place });
                 (path, SelectedNode { line: Some(place.line), node, ..selected })
@@ -269,7 +269,7 @@ impl NodeGesture {
     fn commit(&self) -> Outcome {
         let selected = self.selected;
         let is_same =
-            self.now == self.held.path && matches!(self.held.layer, super::HeldLayer::Old(..));
+            self.now == self.held.path && matches!(self.held.layer, super::PathTarget::Old(..));
         let done = match self.held.with(&self.now).filter(|_| !is_same) {
             Some(document) => Outcome::Commit {
                 label: self.label().into(),
@@ -306,7 +306,7 @@ impl Gesture for NodeGesture {
     }
 
     fn release(&mut self) -> Outcome {
-        if self.is_dragged { self.commit() } else { self.clicked() }
+        if self.is_dragged { self.commit() } else { self.finish_click() }
     }
 
     fn snap_lines(&self) -> SnapLines {

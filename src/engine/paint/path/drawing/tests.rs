@@ -20,7 +20,7 @@ fn alpha_at(path: &LivePath, x: i32, y: i32) -> u8 {
 
 #[test]
 fn a_filled_rectangle_covers_its_pixels_and_half_of_those_it_cuts() {
-    let path = LivePath::filled(rectangle(vec2(10.0, 20.0), vec2(40.5, 60.0)), RED);
+    let path = LivePath::new(rectangle(vec2(10.0, 20.0), vec2(40.5, 60.0))).with_fill(RED);
     assert_eq!(path.bounds(), Rect { x0: 9, y0: 19, x1: 42, y1: 61 });
     assert_eq!([alpha_at(&path, 10, 20), alpha_at(&path, 39, 59)], [255, 255]);
     assert_eq!([alpha_at(&path, 9, 20), alpha_at(&path, 20, 60)], [0, 0]);
@@ -43,7 +43,7 @@ fn an_outline_lies_half_inside_and_ends_as_its_caps_say() {
 fn what_lies_inside_twice_is_a_hole_by_the_rule() {
     let square =
         |a: f32, b: f32| Subpath::polygon([vec2(a, a), vec2(b, a), vec2(b, b), vec2(a, b)]);
-    let both = LivePath::filled(vec![square(0.0, 60.0), square(20.0, 40.0)], RED);
+    let both = LivePath::new(vec![square(0.0, 60.0), square(20.0, 40.0)]).with_fill(RED);
     assert_eq!(alpha_at(&both, 30, 30), 255);
     let holed = LivePath { rule: PathRule::EvenOdd, ..both };
     assert_eq!([alpha_at(&holed, 30, 30), alpha_at(&holed, 10, 30)], [0, 255]);
@@ -64,7 +64,7 @@ fn an_uneven_outline_is_as_wide_as_its_nodes_say() {
 
 #[test]
 fn a_large_path_is_drawn_smaller_by_a_whole_number_and_larger_where_it_is_seen() {
-    let path = LivePath::filled(rectangle(Vec2::ZERO, vec2(10_000.0, 30.0)), RED);
+    let path = LivePath::new(rectangle(Vec2::ZERO, vec2(10_000.0, 30.0))).with_fill(RED);
     let (bounds, size) = (path.bounds(), path.picture_size());
     assert_eq!((bounds.width() % 3, bounds.height() % 3), (0, 0));
     assert_eq!(size, Size::new(bounds.width() as u32 / 3, bounds.height() as u32 / 3));
@@ -77,8 +77,8 @@ fn a_large_path_is_drawn_smaller_by_a_whole_number_and_larger_where_it_is_seen()
 #[test]
 fn what_covers_nothing_is_a_picture_of_nothing() {
     let empty = LivePath::new(Vec::new());
-    let point = LivePath::filled(vec![Subpath::polygon([vec2(50.0, 50.0)])], RED);
-    let flat = LivePath::filled(rectangle(vec2(5.0, 5.0), vec2(90.0, 5.0)), RED);
+    let point = LivePath::new(vec![Subpath::polygon([vec2(50.0, 50.0)])]).with_fill(RED);
+    let flat = LivePath::new(rectangle(vec2(5.0, 5.0), vec2(90.0, 5.0))).with_fill(RED);
     for path in [empty, point, flat] {
         let picture = path.picture();
         let crate::raster::picture::Texels::Srgb8(texels) = &picture.texels else {
@@ -91,7 +91,7 @@ fn what_covers_nothing_is_a_picture_of_nothing() {
 
 #[test]
 fn a_path_beyond_the_limits_is_refused_before_it_is_drawn() {
-    let far = LivePath::filled(rectangle(vec2(-1e6, 0.0), vec2(1e6, 10.0)), RED);
+    let far = LivePath::new(rectangle(vec2(-1e6, 0.0), vec2(1e6, 10.0))).with_fill(RED);
     assert!(far.fits().unwrap_err().contains("px long"), "{:?}", far.fits());
     let wide = LivePath { outline: f32::NAN, ..LivePath::new(Vec::new()) };
     assert!(wide.fits().is_err());

@@ -1,6 +1,6 @@
 //! Draws the values that documents hold: operators, anchors, lights, masks, transforms, brushes.
 //! Each is mostly one that a file may hold, at times one that it may not, which must then be
-//! refused. Not here: parts (`parts`).
+//! refused. Not here: parts (`parts`), paths (`paths`).
 
 use super::dice::{Dice, Roll};
 use crate::document::Symmetry;
@@ -8,15 +8,14 @@ use crate::document::parts::from_flats::PartFor;
 use crate::document::{DerivedMask, Inflation, LayerTransform, TransformShape};
 use crate::io::recipe::value::RecipeValue;
 use crate::math::srgb::Color;
-use crate::math::{DVec2, Range, Size, vec2};
+use crate::math::{DVec2, Range, Size};
 use crate::paint::adjustment::{
     ColorTable, NumberParameter, ParameterName, ParameterVisitor, ToneCurve,
 };
 use crate::paint::effect::{EffectField, EffectPattern};
 use crate::paint::{
-    Adjust, BrushMode, ColorAdjustment, DrawingHand, EffectKind, EffectLight, Figure, FigureKind,
-    GradientStop, LayerEffect, LivePath, PathCap, PathGeometry, PathJoin, PathNode, PathRule,
-    PictureFilter, Placement, Subpath, Text, TextAlign, TextStyle,
+    Adjust, BrushMode, ColorAdjustment, DrawingHand, EffectKind, EffectLight, GradientStop,
+    LayerEffect, PictureFilter, Placement, Text, TextAlign, TextStyle,
 };
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
@@ -35,7 +34,7 @@ use std::sync::Arc;
 
 impl Dice {
     /// A number of a range, or of the useful part of it.
-    fn in_range(&mut self, useful: Range, all: Range) -> f32 {
+    pub fn in_range(&mut self, useful: Range, all: Range) -> f32 {
         match self.below(30) {
             0 => *all.start(),
             1 => *all.end(),
@@ -115,59 +114,6 @@ impl Roll for Text {
             vertical: dice.is(20),
             arc: if dice.is(20) { dice.in_range(-180.0..=180.0, Text::ARC) } else { 0.0 },
             ..text
-        }
-    }
-}
-
-impl Roll for Figure {
-    fn roll(dice: &mut Dice) -> Self {
-        let kind = dice.one_of(&FigureKind::ALL).0;
-        let mut figure = Figure { kind, from: dice.place(), to: dice.place(), ..Figure::DEFAULT };
-        for setting in Figure::SETTINGS {
-            if dice.is(60) {
-                continue;
-            }
-            let (least, most) = (*setting.range.start(), *setting.range.end());
-            let useful = least.max(-180.0)..=most.min(40.0);
-            (setting.set)(&mut figure, dice.in_range(useful, setting.range.clone()));
-        }
-        figure
-    }
-}
-
-impl Roll for PathNode {
-    fn roll(dice: &mut Dice) -> Self {
-        let node = PathNode::corner(dice.place());
-        let mut handle = || vec2(dice.within(-20.0, 20.0), dice.within(-20.0, 20.0));
-        let (before, after) = (handle(), handle());
-        match dice.below(4) {
-            0 => node,
-            1 => PathNode::smooth(node.at, after),
-            2 => PathNode { before, after, width: dice.in_range(0.0..=3.0, 0.0..=20.0), ..node },
-            _ => PathNode { after, ..node },
-        }
-    }
-}
-
-impl Roll for LivePath {
-    fn roll(dice: &mut Dice) -> Self {
-        let line = |dice: &mut Dice| {
-            let nodes = (0..dice.below(5)).map(|_| PathNode::roll(dice)).collect();
-            Subpath { nodes, closed: dice.is(50) }
-        };
-        let geometry: PathGeometry = match dice.is(50) {
-            true => Figure::roll(dice).into(),
-            false => (0..dice.below(3)).map(|_| line(dice)).collect::<Vec<_>>().into(),
-        };
-        LivePath {
-            fill: if dice.is(60) { Some(dice.value(dice.word, "color")) } else { None },
-            rule: dice.one_of(&PathRule::ALL).0,
-            outline: if dice.is(50) { dice.in_range(0.0..=9.0, 0.0..=60.0) } else { 0.0 },
-            outline_color: dice.value(dice.word, "color"),
-            cap: dice.one_of(&PathCap::ALL).0,
-            join: dice.one_of(&PathJoin::ALL).0,
-            dashes: (0..dice.below(4)).map(|_| dice.within(0.0, 12.0)).collect(),
-            ..LivePath::new(geometry)
         }
     }
 }
