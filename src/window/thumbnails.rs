@@ -3,7 +3,10 @@
 
 use super::jobs;
 use crate::Error;
-use crate::document::{Document, Layer, LayerId, LayerMask, MaskKind, Progress, flatten_layer};
+use crate::document::{
+    Content, Document, InkLayer, Layer, LayerId, LayerMask, MaskKind, PixelLayer, Progress,
+    flatten_layer,
+};
 use crate::mood_pictures::MoodPictures;
 use crate::part_pictures::PartPictures;
 use crate::raster::{Plane, TileGrid};
@@ -105,7 +108,7 @@ impl Thumbnails {
             self.ordered.get(&layer.id).is_some_and(|known| known.as_ptr() == Arc::as_ptr(layer));
         if !is_ordered {
             self.ordered.insert(layer.id, Arc::downgrade(layer));
-            let alone = Document { layers: vec![layer.clone()], ..document.clone() };
+            let alone = Document { layers: vec![without_drawing(layer)], ..document.clone() };
             // Without a thread there is no receiver; the error was reported.
             let _ = self.orders.send(ThumbnailOrder { layer: layer.clone(), document: alone });
         }
@@ -142,6 +145,16 @@ impl Thumbnails {
         }
         self.masks.get(&layer.id).map(|(_, _, texture)| (texture.id(), texture.size_vec2()))
     }
+}
+
+/// The layer as it is without the others: lines that follow a drawing are the pixels that they are
+/// now.
+fn without_drawing(layer: &Arc<Layer>) -> Arc<Layer> {
+    let Content::Ink(InkLayer { shown: Some(shown), .. }) = &layer.content else {
+        return layer.clone();
+    };
+    let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: shown.tiles.clone() };
+    Arc::new(Layer { content: Content::Pixels(pixels), ..Layer::clone(layer) })
 }
 
 /// The thread's state: the surfaces that were reduced last, the newest first.
@@ -241,6 +254,7 @@ fn covered_area(image: &ColorImage) -> CoveredArea {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Size;
 
     #[test]
     fn a_thumbnail_is_cropped_to_what_is_covered() {
@@ -249,5 +263,33 @@ mod tests {
         image[(4, 3)] = Color32::RED;
         image[(7, 9)] = Color32::RED;
         assert_eq!(covered_area(&image), CoveredArea { low: [3, 2], size: [6, 8] });
+    }
+
+    #[test]
+    fn lines_have_a_thumbnail_without_their_drawing() {
+        let size = Size::new(80, 64);
+        // Two flats, with ink around and between them.
+        let pixel = |i: usize| {
+            let (x, y) = (i % 80, i / 80);
+            let is_within = |m: usize| (m..80 - m).contains(&x) && (m..64 - m).contains(&y);
+            match () {
+                _ if !is_within(6) => [0; 4],
+                _ if !is_within(8) || (39..41).contains(&x) => [24, 20, 30, 255],
+                _ if x < 40 => [210, 60, 40, 255],
+                _ => [50, 160, 90, 255],
+            }
+        };
+        let rgba: Vec<u8> = (0..80 * 64).flat_map(pixel).collect();
+        let tiles = TileGrid::from_straight_rgba(&rgba, 80, 64, 0, 0);
+        let drawing = Layer::new("Drawing", tiles);
+        let id = drawing.id;
+        let document = Document { layers: vec![Arc::new(drawing)], ..Document::empty(size) };
+        let (document, ink) = document.with_lines_on_top(id).unwrap();
+        let layer = without_drawing(document.layer(ink).unwrap());
+        let alone = Document { layers: vec![layer.clone()], ..document };
+        let order = ThumbnailOrder { layer, document: alone };
+        let image = ThumbnailMaker::default().make(&order).unwrap().image;
+        assert!(image.pixels.iter().any(|pixel| pixel.a() > 200), "no line is seen");
+        assert!(image.pixels.iter().all(|pixel| pixel.r() < 60 || pixel.a() < 60), "only lines");
     }
 }
