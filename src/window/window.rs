@@ -371,6 +371,9 @@ impl MainWindow {
             if !self.hold_action(&action) && !self.begin_edit(&action) {
                 self.apply(&action);
             }
+            if matches!(&action, Action::Layer(action) if action.is_adding_settings()) {
+                self.settings.layout.front = PanelKind::Properties;
+            }
         }
         self.tell_notes();
         self.session.said.drain(..).for_each(|sentence| self.jobs.say(sentence));

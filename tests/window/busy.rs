@@ -21,6 +21,8 @@ fn row(harness: &mut Story, name: &str) {
 fn layered() -> Story {
     let mut harness = window();
     (0..4).for_each(|_| command(&mut harness, "New gradient layer"));
+    // Its properties leave room for three layers only.
+    command(&mut harness, "Brushes");
     harness
 }
 

@@ -21,6 +21,17 @@ fn layers_are_added_hidden_and_deleted_by_their_buttons() {
 }
 
 #[test]
+fn a_layer_that_is_made_of_settings_shows_them() {
+    let mut harness = window();
+    press(&mut harness, "Brushes");
+    command(&mut harness, "New stroke layer");
+    let shows_settings = |harness: &Story| harness.query_all_by_label("Made of").next().is_some();
+    assert!(!shows_settings(&harness), "brushes stay, which it is painted with");
+    command(&mut harness, "New vibrance layer");
+    assert!(shows_settings(&harness));
+}
+
+#[test]
 fn layers_are_merged_baked_and_flattened_beside_the_window() {
     let mut harness = window();
     command(&mut harness, "New gradient layer");
@@ -90,6 +101,8 @@ fn rows_are_dragged_to_another_place_and_into_a_group_one_or_several() {
     ["New fill layer", "New gradient layer", "New group"]
         .into_iter()
         .for_each(|name| command(&mut harness, name));
+    // The properties leave room for three rows only.
+    press(&mut harness, "Brushes");
     assert_eq!(layers(&harness), ["Background", "Fill", "Gradient", "Group"]);
     drag_row(&mut harness, "Gradient", "Fill", 0.9);
     assert_eq!(layers(&harness), ["Background", "Gradient", "Fill", "Group"]);

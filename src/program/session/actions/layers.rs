@@ -139,6 +139,21 @@ impl LayerAction {
         Some(LayerAction::Choose { layer: LayerPaths::of(document, ids), active_layer, anchor })
     }
 
+    /// Whether it adds a layer that is made of its settings, which are what is set next.
+    pub fn is_adding_settings(&self) -> bool {
+        match self {
+            // A fill has the color in hand.
+            LayerAction::Add { kind } => !matches!(
+                kind,
+                NewLayer::Paint | NewLayer::Strokes | NewLayer::Fill | NewLayer::Group
+            ),
+            LayerAction::AddShading { .. }
+            | LayerAction::AddAdjustment { .. }
+            | LayerAction::AddFilter { .. } => true,
+            _ => false,
+        }
+    }
+
     /// Performs it.
     pub fn apply(&self, session: &mut Session) {
         let settings = NewLayerSettings::of(&session.tools);
