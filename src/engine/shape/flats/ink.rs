@@ -6,6 +6,7 @@ use super::palette::{NONE, NOTHING};
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, distance};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// Half of the widest line, as a share of the longer side of a picture; and the share that it may
 /// be up to 2 px wide.
@@ -22,6 +23,14 @@ const LEAST_LONG: usize = 32;
 /// An area is no corner in which lines meet: the least of it, in squares of half of the widest
 /// line.
 const LEAST_THICK: usize = 24;
+/// Bold lines are so many times as wide, and run along so many colors, of which nothing is one.
+const BOLD: usize = 2;
+const LEAST_BESIDE: usize = 4;
+/// Some of a drawing's lines are bolder than others, and where they run into each other they are
+/// wider for a short way: up to so many times as wide, with the most of such an area in squares of
+/// half of the width of the drawing's own lines.
+const MOST_WIDENED: f32 = 2.25;
+const MOST_JOINED: f32 = 128.0;
 /// How far beyond a line's border an area begins, px: the border is soft.
 const SOFT: usize = 4;
 
@@ -77,6 +86,22 @@ fn is_rim(of: &Plane<u16>, (x, y): (usize, usize)) -> bool {
 /// * `count`: of the color.
 pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usize, usize)>> {
     let half = half_width(of.size());
+    let bold = || lines_up_to(of, color, count, BOLD * half);
+    lines_up_to(of, color, count, half).map(|found| found.pixels).or_else(|| {
+        // A strap is as wide, but it runs along few areas.
+        Some(bold()?).filter(|found| found.beside >= LEAST_BESIDE).map(|found| found.pixels)
+    })
+}
+
+/// The lines of a color.
+struct FoundLines {
+    pixels: Vec<(usize, usize)>,
+    /// Along how many colors they run; nothing counts as one.
+    beside: usize,
+}
+
+/// Lines up to twice as wide as `half`.
+fn lines_up_to(of: &Plane<u16>, color: u16, count: ColorPixels, half: usize) -> Option<FoundLines> {
     let ColorPixels { all, rim, area } = count;
     // A line of that width has a pixel of rim for each pixel of half its width.
     if all == 0 || (rim * half) as f32 <= LEAST_THIN * all as f32 {
@@ -90,19 +115,28 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
     let mut lines: Vec<(usize, usize)> = Vec::new();
     for start in pixels((of.width(), of.height())) {
         let area = take_area(&mut thin, start);
-        if area.is_empty() {
-            continue;
-        }
-        let rim = area.iter().filter(|at| is_rim(of, **at)).count();
-        if rim * rim >= LEAST_LONG * area.len() {
+        if is_long(of, &area) {
             lines.extend(area);
         }
     }
-    let between = lines.iter().filter(|at| is_between_areas(of, **at, reach)).count();
+    let mut beside = BTreeSet::new();
+    let mut between = 0;
+    for at in &lines {
+        let sides = areas_beside(of, *at, reach);
+        between += usize::from(sides.is_some());
+        beside.extend(sides.into_iter().flatten());
+    }
     let is_ink = lines.len() as f32 >= LEAST_THIN * all as f32
         && between as f32 >= LEAST_BETWEEN * lines.len() as f32;
     let (x0, y0) = (area.x0 as usize, area.y0 as usize);
-    is_ink.then(|| lines.into_iter().map(|(x, y)| (x + x0, y + y0)).collect())
+    let pixels = lines.into_iter().map(|(x, y)| (x + x0, y + y0)).collect();
+    is_ink.then_some(FoundLines { pixels, beside: beside.len() })
+}
+
+/// Whether pixels that are joined are long for their width.
+fn is_long(of: &Plane<u16>, area: &[(usize, usize)]) -> bool {
+    let rim = area.iter().filter(|at| is_rim(of, **at)).count();
+    !area.is_empty() && rim * rim >= LEAST_LONG * area.len()
 }
 
 /// The pixels of a color that are in none of its areas that are wider than lines and large enough
@@ -112,20 +146,33 @@ pub fn lines(of: &Plane<u16>, color: u16, count: ColorPixels) -> Option<Vec<(usi
 fn thin_pixels(of: &Plane<u16>, color: u16, half: usize, least: usize) -> Plane<bool> {
     let reach = half.min(usize::from(distance::FARTHEST) - 1);
     let within = (reach * reach + reach) as u16;
-    let outside =
-        distance::squared_distances(&of.map(|of| u8::from(of != color)), reach as u16 + 1);
+    let widest = (MOST_WIDENED * half as f32) as u16;
+    let outside = distance::squared_distances(&of.map(|of| u8::from(of != color)), widest + 1);
     let core =
         distance::squared_distances(&outside.map(|away| u8::from(away > within)), reach as u16 + 1);
     let is_thick = |x: usize, y: usize| of.at(x, y) == color && core.at(x, y) <= within;
     let mut thick = Plane::from_fn(of.size(), is_thick);
     let mut thin = Plane::from_fn(of.size(), |x, y| of.at(x, y) == color && !is_thick(x, y));
+    let own_half = own_half_width(of, &thin);
+    let is_joint = |area: &[(usize, usize)]| {
+        let widened = MOST_WIDENED * own_half;
+        ((area.len() as f32) < MOST_JOINED * own_half * own_half || is_long(of, area))
+            && area.iter().all(|(x, y)| f32::from(outside.at(*x, *y)) <= widened * widened)
+    };
     for start in pixels((of.width(), of.height())) {
         let area = take_area(&mut thick, start);
-        if area.len() < least {
+        if area.len() < least || is_joint(&area) {
             area.into_iter().for_each(|(x, y)| thin.set(x, y, true));
         }
     }
     thin
+}
+
+/// Half of the width of a drawing's lines, px: each has a pixel of rim for so many of its own.
+fn own_half_width(of: &Plane<u16>, thin: &Plane<bool>) -> f32 {
+    let lines = || pixels((of.width(), of.height())).filter(|(x, y)| thin.at(*x, *y));
+    let rim = lines().filter(|at| is_rim(of, *at)).count();
+    lines().count() as f32 / rim.max(1) as f32
 }
 
 /// The pixels of a set that are joined to one of it; they are taken out.
@@ -145,8 +192,8 @@ fn take_area(set: &mut Plane<bool>, start: (usize, usize)) -> Vec<(usize, usize)
     area
 }
 
-/// Whether different colors, or a color and nothing, lie on the two sides of a pixel of a line.
-fn is_between_areas(of: &Plane<u16>, (x, y): (usize, usize), reach: usize) -> bool {
+/// The different colors, or a color and nothing, that lie on the two sides of a pixel of a line.
+fn areas_beside(of: &Plane<u16>, (x, y): (usize, usize), reach: usize) -> Option<[u16; 2]> {
     let own = of.at(x, y);
     let side = |dx: i32, dy: i32| {
         (1..=reach as i32).find_map(|k| match of.get(x as i32 + k * dx, y as i32 + k * dy) {
@@ -154,6 +201,6 @@ fn is_between_areas(of: &Plane<u16>, (x, y): (usize, usize), reach: usize) -> bo
             Some(other) => (other != own && other != NONE).then_some(other),
         })
     };
-    let differ = |a: Option<u16>, b: Option<u16>| a.zip(b).is_some_and(|(a, b)| a != b);
-    differ(side(-1, 0), side(1, 0)) || differ(side(0, -1), side(0, 1))
+    let differ = |a: Option<u16>, b: Option<u16>| Some([a?, b?]).filter(|[a, b]| a != b);
+    differ(side(-1, 0), side(1, 0)).or_else(|| differ(side(0, -1), side(0, 1)))
 }

@@ -134,3 +134,72 @@ fn a_gap_between_two_lines_stays_open() {
         assert_eq!(together(&lifted, x, 60), [0; 4], "{x}");
     }
 }
+
+#[test]
+fn where_lines_run_into_each_other_they_are_ink_and_a_dark_area_is_none() {
+    // Two eyes that touch, a line between them, and a dark pupil in one of them.
+    let (side, ink) = (400usize, [30u8, 22, 28, 255]);
+    let within = |x: f32, y: f32, at: [f32; 2], radius: f32| {
+        ((x - at[0]).powi(2) + (y - at[1]).powi(2)).sqrt() < radius
+    };
+    let pixel = |i: usize| {
+        let (x, y) = ((i % side) as f32 + 0.5, (i / side) as f32 + 0.5);
+        let is_in = |radius: f32| {
+            within(x, y, [134.0, 200.0], radius) || within(x, y, [266.0, 200.0], radius)
+        };
+        match () {
+            _ if within(x, y, [134.0, 200.0], 20.0) => ink,
+            _ if is_in(64.0) => [240, 230, 200, 255],
+            _ if is_in(68.0) => ink,
+            _ if (198.0..202.0).contains(&x) && (100.0..300.0).contains(&y) => ink,
+            _ if within(x, y, [200.0, 200.0], 180.0) => [180, 120, 80, 255],
+            _ if within(x, y, [200.0, 200.0], 184.0) => ink,
+            _ => [0; 4],
+        }
+    };
+    let rgba: Vec<u8> = (0..side * side).flat_map(pixel).collect();
+    let lifted = LiftedInk::of(&TileGrid::from_straight_rgba(&rgba, side, side, 0, 0));
+    assert_eq!(lifted.flats.pixel(134, 200), ink, "the pupil is an area");
+    for y in 160..240 {
+        let flat = lifted.flats.pixel(200, y);
+        assert!(flat[0] > 100, "{y}: {flat:?} where the eyes touch");
+    }
+}
+
+#[test]
+fn bold_lines_are_ink_and_a_strap_is_an_area() {
+    // A face of four colors with lines of 2 % of its size; and a disc with a strap as wide.
+    let side = 400;
+    let ink = [30u8, 22, 28, 255];
+    let quarters = |i: usize| {
+        let (x, y) = ((i % side) as f32 - 199.5, (i / side) as f32 - 199.5);
+        let away = x.hypot(y);
+        match (away < 190.0, away > 182.0 || x.abs().min(y.abs()) < 4.0) {
+            (false, _) => [0; 4],
+            (true, true) => ink,
+            (true, false) if x < 0.0 && y < 0.0 => [200, 60, 40, 255],
+            (true, false) if x < 0.0 => [60, 170, 90, 255],
+            (true, false) if y < 0.0 => [240, 220, 180, 255],
+            (true, false) => [90, 120, 220, 255],
+        }
+    };
+    let strap = |i: usize| {
+        let (x, y) = ((i % side) as f32 - 199.5, (i / side) as f32 - 199.5);
+        match x.hypot(y) < 190.0 {
+            false => [0; 4],
+            true if x.abs() < 4.0 => ink,
+            true if x < 0.0 => [200, 60, 40, 255],
+            true => [60, 170, 90, 255],
+        }
+    };
+    let lift = |pixel: &dyn Fn(usize) -> [u8; 4]| {
+        let rgba: Vec<u8> = (0..side * side).flat_map(pixel).collect();
+        LiftedInk::of(&TileGrid::from_straight_rgba(&rgba, side, side, 0, 0))
+    };
+    let face = lift(&quarters);
+    for at in [(200, 60), (60, 200), (200, 200), (200, 12)] {
+        assert_eq!(face.lines.pixel(at.0, at.1), ink, "{at:?}");
+        assert!(face.flats.pixel(at.0, at.1)[..3] != ink[..3], "{at:?}");
+    }
+    assert!(lift(&strap).is_empty());
+}
