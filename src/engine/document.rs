@@ -73,7 +73,7 @@ pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
 pub use symmetry::{Symmetry, SymmetrySettings};
 
-use crate::paint::{EffectLight, Scene, Selection};
+use crate::paint::{ColorPalette, EffectLight, Scene, Selection};
 use crate::{math::Size, raster::Asset, surface::Surface};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -106,6 +106,8 @@ pub struct Document {
     pub assistants: Arc<Vec<Assistant>>,
     /// How new strokes repeat; not part of the picture.
     pub symmetry: SymmetrySettings,
+    /// Colors to paint it with; not part of the picture.
+    pub palette: Arc<ColorPalette>,
 }
 
 impl Document {
@@ -124,6 +126,7 @@ impl Document {
             effect_light: EffectLight::default(),
             assistants: Arc::default(),
             symmetry: SymmetrySettings::default(),
+            palette: Arc::default(),
         }
     }
 

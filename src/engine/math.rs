@@ -1,13 +1,16 @@
 //! Floor 0: numbers without pictures. Vectors are `glam`'s; a position and a direction are both
 //! `Vec2`, distinguished by name.
 
+pub mod cielab;
 pub mod conjugate_gradients;
 pub mod fast;
 pub mod hash;
+pub mod hsv;
 pub mod named;
 pub mod noise;
 pub(crate) mod number_settings;
 pub mod oklab;
+pub mod oklch;
 pub mod plane_map;
 pub mod range;
 pub mod rect;

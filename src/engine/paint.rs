@@ -6,6 +6,7 @@ pub mod adjustment;
 pub mod attachment;
 pub mod brush;
 pub mod brush_options;
+pub mod color_palette;
 mod curve;
 mod dab;
 mod dab_walker;
@@ -53,6 +54,7 @@ pub use brush::{Brush, BrushMode, ColorJitter, Stabilizer, StrokeFrame, Tip};
 pub use brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
 };
+pub use color_palette::{ColorPalette, NamedColor};
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;

@@ -19,6 +19,7 @@ pub mod json;
 pub mod machine;
 pub mod maps;
 pub mod open;
+pub mod palette;
 pub mod picture;
 pub mod pixels;
 pub mod project;

@@ -23,6 +23,7 @@
 //! | `selections` | selections |
 //! | `effects` | effects of layers, and their light |
 //! | `guides` | guides, assistants and symmetry |
+//! | `palettes` | the palette of a document |
 //! | `pictures` | the files that layers name, each decoded once |
 //! | `version` | which version a document needs |
 //! | `value` | the trait of values that replays write as recipes do |
@@ -41,6 +42,7 @@ mod looks;
 mod masks;
 mod materials;
 mod normals;
+mod palettes;
 pub mod parts;
 mod paths;
 mod pictures;
@@ -173,6 +175,7 @@ pub fn read_unshaped(
     let symmetry = root
         .get("symmetry")
         .map_or(Ok(SymmetrySettings::default()), |node| guides::read_symmetry(&node))?;
+    let palette = root.get("palette").map_or(Ok(Arc::default()), |node| palettes::read(&node))?;
     root.finish()?;
 
     let CanvasAndSurface { size, surface, files, notes: of_maps } =
@@ -222,6 +225,7 @@ pub fn read_unshaped(
         guides: Arc::new(guides),
         assistants: Arc::new(assistants),
         symmetry,
+        palette,
     };
     let document = match source.onto {
         _ if parts.is_empty() => bare,
@@ -387,7 +391,8 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
         || selections::is_needed(document, list)
         || has_unwrapped(document)
         || effects::is_needed(document)
-        || guides::is_needed(document);
+        || guides::is_needed(document)
+        || palettes::is_needed(document);
     out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     let mut surface = document.surface_source.as_deref().map(surface::write).unwrap_or_default();
@@ -398,5 +403,6 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
     selections::write(&mut out, document, list);
     effects::write_light(&mut out, document.effect_light);
     guides::write(&mut out, document);
+    palettes::write(&mut out, document);
     out
 }

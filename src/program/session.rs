@@ -9,6 +9,7 @@ pub mod brushes;
 pub mod drawing;
 pub mod memory;
 mod open_document;
+mod palettes;
 mod path;
 mod picture_part;
 pub mod property;
@@ -23,6 +24,7 @@ pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
 pub use open_document::{CloneSource, Edit, OpenDocument, is_same, is_same_look};
 pub use open_document::{labels, selected_layers};
+pub use palettes::PaletteShelf;
 pub use path::{LayerPath, LayerPaths};
 pub use picture_part::PicturePart;
 pub use property::Property;
@@ -62,6 +64,8 @@ pub struct Session {
     pub tools: ToolSettings,
     /// The last colors painted with, newest first.
     pub recent_colors: Vec<Color>,
+    /// The user's own palettes.
+    pub palettes: PaletteShelf,
     /// The outline of the selection is not drawn.
     pub hides_selection: bool,
     /// Balls that are painted in documents of their own.
@@ -120,6 +124,7 @@ impl Default for Session {
             preset: preset.into(),
             tools: ToolSettings::with_brush(brush.unwrap_or_default()),
             recent_colors: Vec::new(),
+            palettes: PaletteShelf::default(),
             hides_selection: false,
             balls: Vec::new(),
             writing: None,

@@ -1,6 +1,7 @@
 //! What a file dialog is opened for: its title, the files to choose from, and the name of a new
 //! one. Floor 7. Not here: asking (`files`).
 
+use crate::io::palette::PaletteFormat;
 use crate::session::PicturePart;
 use crate::session::brushes::EXTENSIONS;
 use crate::session::storage::{
@@ -15,6 +16,8 @@ pub enum FilePurpose {
     Place,
     ImportUnwrapped,
     Brush,
+    /// Colors of another program.
+    Palette,
     /// A table of colors.
     ColorTable,
     NormalMap,
@@ -27,6 +30,8 @@ pub enum FilePurpose {
     /// Maps of the shape, whose names begin with this one.
     ExportMaps,
     ExportUnwrapped,
+    /// The palette that is shown.
+    ExportPalette(PaletteFormat),
 }
 
 /// Extensions of maps of the shape.
@@ -42,6 +47,7 @@ impl FilePurpose {
             FilePurpose::Place => "Place an image",
             FilePurpose::ImportUnwrapped => "Import a picture of the unwrapped surface",
             FilePurpose::Brush => "Import a brush",
+            FilePurpose::Palette => "Import a palette",
             FilePurpose::ColorTable => "Color look-up table",
             FilePurpose::NormalMap => "Normal map",
             FilePurpose::DepthMap => "Depth map",
@@ -51,6 +57,7 @@ impl FilePurpose {
             FilePurpose::Export => "Export the picture",
             FilePurpose::ExportMaps => "Export maps of the shape",
             FilePurpose::ExportUnwrapped => "Export the unwrapped surface",
+            FilePurpose::ExportPalette(_) => "Export the palette",
         }
     }
 
@@ -61,6 +68,7 @@ impl FilePurpose {
                 | FilePurpose::Export
                 | FilePurpose::ExportMaps
                 | FilePurpose::ExportUnwrapped
+                | FilePurpose::ExportPalette(_)
         )
     }
 
@@ -74,6 +82,7 @@ impl FilePurpose {
                 ("Pictures and maps", pictures()),
             ],
             FilePurpose::Brush => vec![("Brushes", EXTENSIONS.to_vec())],
+            FilePurpose::Palette => vec![("Palettes", PaletteFormat::EXTENSIONS.to_vec())],
             FilePurpose::ColorTable => vec![("Tables", vec!["cube"])],
             FilePurpose::Place
             | FilePurpose::ImportUnwrapped
@@ -87,6 +96,7 @@ impl FilePurpose {
             FilePurpose::Export => vec![("Pictures", export_extensions().collect())],
             FilePurpose::ExportMaps => vec![("Maps", MAPS.to_vec())],
             FilePurpose::ExportUnwrapped => vec![("Pictures", Self::FLAT.to_vec())],
+            FilePurpose::ExportPalette(format) => vec![("Palettes", vec![format.extension()])],
         }
     }
 
@@ -100,6 +110,9 @@ impl FilePurpose {
             }
             FilePurpose::ExportUnwrapped => {
                 with_document_extension(file, Self::FLAT[0], &Self::FLAT)
+            }
+            FilePurpose::ExportPalette(format) => {
+                with_document_extension(file, format.extension(), &[format.extension()])
             }
             _ => file,
         }

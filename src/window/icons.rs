@@ -61,6 +61,8 @@ pub enum Icon {
     /// Panels.
     Sliders,
     Clock,
+    /// A painter's palette.
+    Palette,
     Frame,
     Stack,
     /// Three dots: a menu of what is needed less often.
@@ -245,6 +247,12 @@ impl Icon {
             Icon::Clock => {
                 &[Circle((8.0, 8.0), 6.0), Line(&[(8.0, 4.0), (8.0, 8.4), (11.0, 10.0)])]
             }
+            Icon::Palette => &[
+                Circle((8.0, 8.0), 6.2),
+                Dot((5.0, 6.8), 1.3),
+                Dot((8.2, 4.8), 1.3),
+                Dot((11.1, 7.2), 1.3),
+            ],
             Icon::Frame => &[
                 Closed(&[(1.8, 3.0), (14.2, 3.0), (14.2, 13.0), (1.8, 13.0)]),
                 Tint(&[(6.4, 6.4), (11.6, 6.4), (11.6, 10.6), (6.4, 10.6)], 0.8),

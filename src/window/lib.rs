@@ -95,6 +95,9 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
             if let Some(folder) = settings::brushes() {
                 window.keep_brushes_in(folder);
             }
+            if let Some(folder) = settings::palettes() {
+                window.keep_palettes_in(folder);
+            }
             window.begin(files);
             Ok(Box::new(window))
         };

@@ -2,6 +2,7 @@
 //! here: keeping it from run to run (`settings`).
 
 use super::icons::Icon;
+use super::panels::colors::Harmony;
 use crate::tools::ToolKind;
 
 rilievo_engine::named! {
@@ -10,6 +11,7 @@ rilievo_engine::named! {
     pub enum PanelKind {
         Color = "Color",
         Brushes = "Brushes",
+        Palettes = "Palettes",
         Properties = "Properties",
         Surface = "Surface",
         History = "History",
@@ -26,6 +28,7 @@ impl PanelKind {
         match self {
             PanelKind::Color => Icon::Tool(ToolKind::Eyedropper),
             PanelKind::Brushes => Icon::Tool(ToolKind::Brush),
+            PanelKind::Palettes => Icon::Palette,
             PanelKind::Properties => Icon::Sliders,
             PanelKind::Surface => Icon::Normals,
             PanelKind::History => Icon::Clock,
@@ -52,8 +55,12 @@ impl PanelKind {
 pub struct ColorView {
     /// A wheel of hues, not a bar.
     pub is_wheel: bool,
+    /// With bars of lightness, chroma and hue.
+    pub has_sliders: bool,
     /// With numbers and a palette.
     pub has_numbers: bool,
+    /// Which colors are shown with the current one.
+    pub harmony: Harmony,
 }
 
 /// The places of the panels.

@@ -24,6 +24,7 @@ pub mod menu;
 pub mod navigator;
 pub mod options;
 mod painter;
+pub mod palettes;
 pub mod path;
 pub mod properties;
 mod ramp;

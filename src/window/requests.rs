@@ -4,6 +4,7 @@
 use super::file_purpose::FilePurpose;
 use super::panel_layout::PanelKind;
 use super::preferences::PreferencePage;
+use crate::io::palette::PaletteFormat;
 use crate::paint::{ColorAdjustment, PictureFilter};
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, PasteTo};
@@ -65,6 +66,8 @@ pub enum WindowRequest {
     Say(String),
     /// Asks where to, for a file of this extension.
     Export(&'static str),
+    /// Asks where to, for the palette that is shown.
+    ExportPalette(PaletteFormat),
     ExportUnwrappedDialog,
     /// Asks where to.
     ExportUnwrapped,

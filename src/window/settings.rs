@@ -6,6 +6,7 @@ use super::brush_shelf::BrushShelf;
 use super::jobs;
 use super::keymap::{KeyPreset, Keymap};
 use super::panel_layout::{ColorView, PanelKind, PanelLayout, SIDES};
+use super::panels::colors::Harmony;
 use super::preferences::Preferences;
 use super::theme::Look;
 use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
@@ -108,7 +109,10 @@ impl Settings {
             "keys": self.keymap.to_json(),
             "aids": self.aids.to_value(),
             "kept share": self.kept_share,
-            "color": { "wheel": self.color.is_wheel, "numbers": self.color.has_numbers },
+            "color": {
+                "wheel": self.color.is_wheel, "sliders": self.color.has_sliders,
+                "numbers": self.color.has_numbers, "harmony": self.color.harmony.name(),
+            },
             "details": self.has_details,
             "preferences": self.preferences.to_json(),
             "colors": colors,
@@ -176,8 +180,13 @@ impl Settings {
             .map_or(USUAL_KEPT_SHARE, |share| share as f32);
         let kept_share = share.max(*KEPT_SHARE.start()).min(*KEPT_SHARE.end());
         let shown = object("color");
-        let color =
-            ColorView { is_wheel: flag(shown, "wheel"), has_numbers: flag(shown, "numbers") };
+        let harmony = shown.get("harmony").and_then(Value::as_str).and_then(Harmony::from_name);
+        let color = ColorView {
+            is_wheel: flag(shown, "wheel"),
+            has_sliders: flag(shown, "sliders"),
+            has_numbers: flag(shown, "numbers"),
+            harmony: harmony.unwrap_or_default(),
+        };
         let has_details = flag(value, "details");
         Self {
             recent,
@@ -239,9 +248,18 @@ pub fn file() -> Option<PathBuf> {
 
 /// The folder of the user's own brushes: `rilievo/brushes` in the user's folder for data.
 pub fn brushes() -> Option<PathBuf> {
+    data_folder("brushes")
+}
+
+/// The folder of the user's own palettes: `rilievo/palettes` there.
+pub fn palettes() -> Option<PathBuf> {
+    data_folder("palettes")
+}
+
+fn data_folder(name: &str) -> Option<PathBuf> {
     use etcetera::BaseStrategy;
     let base = etcetera::choose_base_strategy().ok()?;
-    Some(base.data_dir().join("rilievo").join("brushes"))
+    Some(base.data_dir().join("rilievo").join(name))
 }
 
 /// Keeps the file up to date.
@@ -310,7 +328,8 @@ mod tests {
             width_pt: 300.0,
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
-        let color = ColorView { is_wheel: true, has_numbers: true };
+        let (is_wheel, has_sliders, has_numbers) = (true, true, true);
+        let color = ColorView { is_wheel, has_sliders, has_numbers, harmony: Harmony::Triad };
         let keymap = Keymap::with_preset(KeyPreset::Krita);
         let preferences = Preferences { recent_files: 15, ..Preferences::default() };
         let (colors, bookmarks) = (vec![Color::WHITE], vec![PathBuf::from("/pictures")]);

@@ -339,7 +339,8 @@ pub fn swatch_at(ui: &Ui, label: &str, color: Color, rect: egui::Rect) -> Respon
     draw_swatch(ui, label, color, rect, response)
 }
 
-fn draw_swatch(
+/// The same where the response is known.
+pub fn draw_swatch(
     ui: &Ui,
     label: &str,
     color: Color,

@@ -228,6 +228,7 @@ impl Document {
                 self.assistants.iter().filter_map(|own| own.transformed(&change.map)).collect(),
             ),
             symmetry: self.symmetry.transformed(&change.map, [self.size, change.to]),
+            palette: self.palette.clone(),
         };
         let next =
             if parts.is_empty() { bare } else { bare.with_parts(parts).with_attachments_of(self) };

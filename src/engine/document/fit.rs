@@ -55,6 +55,7 @@ impl Document {
         });
         self.parts.list.iter().for_each(|part| total.add_part(part));
         total.values += selections::A_SELECTION * SelectionList::of(self).all().len();
+        total.values += marks::A_COLOR * self.palette.colors.len();
         let attachments = || self.attachments_fit();
         let values = || total.fits().map_err(|why| format!("{why}."));
         fit.and_then(|()| self.aids_fit())
@@ -73,6 +74,7 @@ impl Document {
             .fits()
             .and_then(|()| Assistant::all_fit(&self.assistants))
             .and_then(|()| self.symmetry.fits())
+            .and_then(|()| self.palette.fits())
             .map_err(|why| format!("{why}."))
     }
 

@@ -30,6 +30,7 @@ impl Document {
             })
             .or_else(|| (self.assistants != other.assistants).then(|| "the assistants".into()))
             .or_else(|| (self.symmetry != other.symmetry).then(|| "the symmetry".into()))
+            .or_else(|| (self.palette != other.palette).then(|| "the palette".into()))
     }
 }
 

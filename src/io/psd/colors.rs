@@ -2,7 +2,7 @@
 //! the channels (`channel`), profiles of RGB and gray (`picture`).
 
 use super::channel::ChannelValue;
-use crate::math::{Size, srgb};
+use crate::math::{Size, cielab, srgb};
 use crate::picture;
 use moxcms::{ColorProfile, DataColorSpace, Layout, RenderingIntent, TransformOptions};
 
@@ -233,23 +233,8 @@ fn ideal_press([c, m, y, k]: [u8; 4]) -> [u8; 3] {
 
 /// CIE Lab of D50 in bytes, a and b about 128, as sRGB bytes.
 fn lab_to_srgb([l, a, b]: [u8; 3]) -> [u8; 3] {
-    /// The connection space's white.
-    const WHITE: [f32; 3] = [0.9642, 1.0, 0.8249];
-    /// XYZ of D50 to linear sRGB, adapted by Bradford's matrix.
-    const TO_SRGB: [[f32; 3]; 3] = [
-        [3.133_856, -1.616_867, -0.490_615],
-        [-0.978_768, 1.916_142, 0.033_454],
-        [0.071_945, -0.228_991, 1.405_243],
-    ];
-    let y = (f32::from(l) * 100.0 / 255.0 + 16.0) / 116.0;
-    let (x, z) = (y + (f32::from(a) - 128.0) / 500.0, y - (f32::from(b) - 128.0) / 200.0);
-    let linear = |t: f32| {
-        if t > 6.0 / 29.0 { t * t * t } else { 3.0 * (6.0f32 / 29.0).powi(2) * (t - 4.0 / 29.0) }
-    };
-    let xyz = [linear(x) * WHITE[0], linear(y) * WHITE[1], linear(z) * WHITE[2]];
-    TO_SRGB.map(|row| {
-        srgb::quantize(srgb::encode((row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]).max(0.0)))
-    })
+    let lab = [f32::from(l) * 100.0 / 255.0, f32::from(a) - 128.0, f32::from(b) - 128.0];
+    cielab::to_linear(lab).map(|v| srgb::quantize(srgb::encode(v.max(0.0))))
 }
 
 /// A profile of four inks, made ready.

@@ -5,7 +5,7 @@ use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use crate::math::srgb::{self, Color};
-use crate::math::{Rect, Size, Vec2, vec2};
+use crate::math::{Rect, Size, Vec2, hsv, vec2};
 use crate::paint::RampStyle;
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 
@@ -84,7 +84,7 @@ pub fn color(said: &DescriptorObject, colors: &Colors) -> Option<Color> {
         return Some(in_mode(Mode::Rgb, [r, g, b, 0]));
     }
     if let Some([h, s, v]) = all(["H   ", "Strt", "Brgh"]) {
-        let [r, g, b] = of_hue(h, s / 100.0, v / 100.0).map(|v| byte(v, 1.0));
+        let [r, g, b] = hsv::to_rgb([h / 360.0, s / 100.0, v / 100.0]).map(|v| byte(v, 1.0));
         return Some(in_mode(Mode::Rgb, [r, g, b, 0]));
     }
     if let (Some(cmy), Some(k)) = (all(["Cyn ", "Mgnt", "Ylw "]), said.number("Blck")) {
@@ -121,14 +121,6 @@ pub fn xyz_color([x, y, z]: [f32; 3], colors: &Colors) -> Color {
     let f = |v: f32| if v > 0.008_856 { v.cbrt() } else { 7.787 * v + 16.0 / 116.0 };
     let [fx, fy, fz] = [f(x / 0.9642), f(y), f(z / 0.8249)];
     lab_color([116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)], colors)
-}
-
-/// Hue in degrees, saturation and brightness as shares.
-fn of_hue(h: f32, s: f32, v: f32) -> [f32; 3] {
-    [5.0, 3.0, 1.0].map(|n: f32| {
-        let k = (n + h / 60.0).rem_euclid(6.0);
-        v - v * s * k.min(4.0 - k).max(0.0).min(1.0)
-    })
 }
 
 /// A ramp and how it lies, as fills and effects say it; `None` of noise.

@@ -10,6 +10,7 @@ pub mod files;
 pub mod guides;
 pub mod hand;
 pub mod layers;
+pub mod palettes;
 pub mod parts;
 pub mod paths;
 pub mod pictures;
@@ -27,6 +28,7 @@ pub use files::FileAction;
 pub use guides::GuideAction;
 pub use hand::HandAction;
 pub use layers::{LayerAction, NewLayer};
+pub use palettes::PaletteAction;
 pub use parts::{NewPart, PartAction};
 pub use paths::PathAction;
 pub use pointer::PointerAction;
@@ -91,6 +93,7 @@ rooms! {
     "guide" Guide(GuideAction),
     "hand" Hand(HandAction),
     "layer" Layer(LayerAction),
+    "palette" Palette(PaletteAction),
     "part" Part(PartAction),
     "path" Path(PathAction),
     "pointer" Pointer(PointerAction),
@@ -113,6 +116,7 @@ impl Action {
             Action::Guide(action) => action.apply(session),
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
+            Action::Palette(action) => done = action.apply(session),
             Action::Part(action) => action.apply(session),
             Action::Path(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),

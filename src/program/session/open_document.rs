@@ -373,7 +373,8 @@ pub fn is_same(a: &Document, b: &Document) -> bool {
             .all(|(a, b)| a.name == b.name && Arc::ptr_eq(&a.selection, &b.selection));
     let same_aids =
         a.guides == b.guides && a.assistants == b.assistants && a.symmetry == b.symmetry;
-    same_active && same_kept && same_aids && is_same_look(a, b)
+    let same_palette = Arc::ptr_eq(&a.palette, &b.palette) || a.palette == b.palette;
+    same_active && same_kept && same_aids && same_palette && is_same_look(a, b)
 }
 
 /// Whether both show the same picture, whatever is selected.

@@ -5,6 +5,7 @@ mod closed;
 mod dialect;
 mod held;
 mod kept;
+mod palettes;
 mod pasting;
 mod paths;
 mod selecting;

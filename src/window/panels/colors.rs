@@ -1,17 +1,24 @@
 //! Color: a square of saturation and value next to a bar of hues, or a wheel of hues around it; the
-//! last colors used, numbers and a palette. Floor 7. `wheel` draws the areas.
+//! last colors used, those that go with the current one, bars of lightness, chroma and hue, numbers
+//! and a palette. Floor 7. `wheel` draws the areas.
 
+mod harmony;
+mod sliders;
 mod wheel;
 
+pub use harmony::Harmony;
+
 use crate::icons::{Icon, icon_button};
-use crate::math::srgb::Color;
+use crate::math::hsv;
+use crate::math::srgb::{Color, quantize};
 use crate::panel_layout::{ColorView, PanelKind};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::widgets::{NumberField, ValueChange, check, set_accessible_name, swatch};
 use eframe::egui::{
-    self, Id, Popup, PopupCloseBehavior, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2, vec2,
+    self, Button, Id, Popup, PopupCloseBehavior, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2,
+    vec2,
 };
 
 /// Sides of a swatch of the row, points, and the gap between two.
@@ -36,11 +43,16 @@ pub fn show_area(
     const LABEL: &str = "Current color";
     let color = session.tools.color;
     let size = vec2(ui.available_width(), area_pt);
-    let mut changed = area(ui, LABEL, color, size, view.is_wheel);
+    let look = if view.is_wheel { AreaLook::Wheel(view.harmony) } else { AreaLook::Square };
+    let mut changed = area(ui, LABEL, color, size, look);
     row(ui, session, view, requests);
+    companions(ui, LABEL, color, view.harmony, requests);
+    if view.has_sliders {
+        changed = sliders::sliders(ui, LABEL, color).or(changed);
+    }
     if view.has_numbers {
         changed = numbers(ui, LABEL, color).or(changed);
-        palette(ui, requests);
+        palette(ui, session, requests);
     }
     if let Some(changed) = changed {
         requests.act(Action::Hand(HandAction::Color { color: changed.to }));
@@ -76,17 +88,47 @@ fn row(ui: &mut Ui, session: &Session, view: &mut ColorView, requests: &mut UiRe
     });
 }
 
+/// The colors that go with the current one.
+fn companions(ui: &mut Ui, label: &str, color: Color, harmony: Harmony, requests: &mut UiRequests) {
+    if harmony == Harmony::None {
+        return;
+    }
+    let now = known_hsv(ui, label, color);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP_PT;
+        ui.weak(harmony.label());
+        for (other, i) in harmony.colors(now).zip(1..) {
+            let size = vec2(1.6 * SWATCH_PT, SWATCH_PT);
+            if swatch(ui, &format!("Harmony {i}"), other, size).clicked() {
+                requests.act(Action::Hand(HandAction::Color { color: other }));
+            }
+        }
+    });
+}
+
 /// What the panel shows, and where.
 fn menu(ui: &mut Ui, view: &mut ColorView, requests: &mut UiRequests) {
     let dots = icon_button(ui, Icon::Dots, "Color", false)
-        .on_hover_text("Wheel, numbers and palette, window of its own");
+        .on_hover_text("Wheel, sliders, harmony, numbers and palette, window of its own");
     let stays = PopupCloseBehavior::CloseOnClickOutside;
     Popup::menu(&dots).close_behavior(stays).show(|ui| {
         let hint = "A wheel of hues around the square";
         view.is_wheel = check(ui, "Wheel", hint, view.is_wheel).unwrap_or(view.is_wheel);
+        let hint = "Lightness, chroma and hue of OKLCH, with the edge of sRGB";
+        let sliders = check(ui, "Lightness, chroma, hue", hint, view.has_sliders);
+        view.has_sliders = sliders.unwrap_or(view.has_sliders);
         let hint = "Hue, saturation, value, red, green, blue, hex, and a palette";
         let numbers = check(ui, "Numbers and palette", hint, view.has_numbers);
         view.has_numbers = numbers.unwrap_or(view.has_numbers);
+        ui.menu_button("Harmony", |ui| {
+            for (harmony, label) in Harmony::LABELS {
+                let row = Button::selectable(view.harmony == harmony, label);
+                if ui.add(row).on_hover_text(harmony.hint()).clicked() {
+                    view.harmony = harmony;
+                    ui.close();
+                }
+            }
+        });
         if ui.button("In a window of its own, or back").clicked() {
             requests.request(WindowRequest::Float(PanelKind::Color));
             ui.close();
@@ -94,64 +136,37 @@ fn menu(ui: &mut Ui, view: &mut ColorView, requests: &mut UiRequests) {
     });
 }
 
-/// Colors to select by a click.
-fn palette(ui: &mut Ui, requests: &mut UiRequests) {
+/// Colors to select by a click: those of the palette that is shown, as far as there is room.
+fn palette(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    /// Larger palettes have a panel of their own.
+    const MOST: usize = 48;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(GAP_PT, GAP_PT);
-        for [r, g, b] in PALETTE {
-            let color = Color { r, g, b, a: 255 };
-            if swatch(ui, "Palette", color, vec2(SWATCH_PT, SWATCH_PT)).clicked() {
-                requests.act(Action::Hand(HandAction::Color { color }));
+        for named in session.choice_of_colors().colors.iter().take(MOST) {
+            let label = if named.name.is_empty() { "Palette" } else { &named.name };
+            if swatch(ui, label, named.color, vec2(SWATCH_PT, SWATCH_PT)).clicked() {
+                requests.act(Action::Hand(HandAction::Color { color: named.color }));
             }
         }
     });
 }
 
-/// Grays and earths, then a few clear hues: a start, not a choice.
-const PALETTE: [[u8; 3]; 14] = [
-    [0, 0, 0],
-    [64, 64, 64],
-    [128, 128, 128],
-    [192, 192, 192],
-    [255, 255, 255],
-    [92, 58, 38],
-    [176, 120, 78],
-    [232, 196, 150],
-    [190, 40, 40],
-    [236, 150, 40],
-    [244, 214, 84],
-    [76, 150, 84],
-    [56, 116, 190],
-    [120, 72, 156],
-];
-
 /// The color of a hue, a saturation and a value, each in `[0, 1]`, of the encoded numbers.
-fn srgb([h, s, v]: [f32; 3], a: u8) -> Color {
-    let channel = |offset: f32| {
-        let t = ((h + offset).rem_euclid(1.0) * 6.0 - 3.0).abs() - 1.0;
-        crate::math::srgb::quantize(v * (1.0 - s + s * t.clamp(0.0, 1.0)))
-    };
-    Color { r: channel(0.0), g: channel(2.0 / 3.0), b: channel(1.0 / 3.0), a }
+fn srgb(color: [f32; 3], a: u8) -> Color {
+    let [r, g, b] = hsv::to_rgb(color).map(quantize);
+    Color { r, g, b, a }
 }
 
 /// The inverse of [`srgb`]; a gray has hue 0.
-fn hsv(color: Color) -> [f32; 3] {
+fn hsv_of(color: Color) -> [f32; 3] {
     let [r, g, b, _] = color.to_f32();
-    let (high, low) = (r.max(g).max(b), r.min(g).min(b));
-    let span = high - low;
-    let hue = match span {
-        0.0 => 0.0,
-        _ if high == r => ((g - b) / span).rem_euclid(6.0),
-        _ if high == g => (b - r) / span + 2.0,
-        _ => (r - g) / span + 4.0,
-    };
-    [hue / 6.0, if high > 0.0 { span / high } else { 0.0 }, high]
+    hsv::from_rgb([r, g, b])
 }
 
 /// The hue, saturation and value of a color; `label` keeps the hue while the color is gray.
 fn known_hsv(ui: &Ui, label: &str, color: Color) -> [f32; 3] {
     let kept = ui.data(|data| data.get_temp::<(Color, [f32; 3])>(hue_id(label)));
-    kept.filter(|(seen, _)| *seen == color).map_or_else(|| hsv(color), |(_, hsv)| hsv)
+    kept.filter(|(seen, _)| *seen == color).map_or_else(|| hsv_of(color), |(_, hsv)| hsv)
 }
 
 fn hue_id(label: &str) -> Id {
@@ -168,8 +183,16 @@ fn put(ui: &Ui, label: &str, hsv: [f32; 3], a: u8, done: bool) -> ValueChange<Co
 /// The picker with its numbers; `label` names it for tests.
 pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>> {
     let width = ui.available_width().min(240.0);
-    let changed = area(ui, label, color, vec2(width, (0.55 * width).max(60.0)), false);
+    let size = vec2(width, (0.55 * width).max(60.0));
+    let changed = area(ui, label, color, size, AreaLook::Square);
     numbers(ui, label, color).or(changed)
+}
+
+/// How the area looks.
+#[derive(Clone, Copy)]
+enum AreaLook {
+    Square,
+    Wheel(Harmony),
 }
 
 /// The area where a color is chosen by eye.
@@ -178,12 +201,12 @@ fn area(
     label: &str,
     color: Color,
     size: Vec2,
-    is_wheel: bool,
+    look: AreaLook,
 ) -> Option<ValueChange<Color>> {
     let now = known_hsv(ui, label, color);
-    let changed = match is_wheel {
-        true => wheel::wheel(ui, label, now, size),
-        false => wheel::square_and_bar(ui, label, now, size),
+    let changed = match look {
+        AreaLook::Wheel(harmony) => wheel::wheel(ui, label, now, size, harmony),
+        AreaLook::Square => wheel::square_and_bar(ui, label, now, size),
     };
     changed.map(|changed| put(ui, label, changed.to, color.a, changed.done))
 }
@@ -258,21 +281,4 @@ pub fn button(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Colo
             out = picker(ui, label, color);
         });
     out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_color_survives_hue_saturation_and_value() {
-        for r in (0..=255).step_by(15) {
-            for g in (0..=255).step_by(15) {
-                for b in (0..=255).step_by(15) {
-                    let color = Color { r: r as u8, g: g as u8, b: b as u8, a: 255 };
-                    assert_eq!(srgb(hsv(color), 255), color);
-                }
-            }
-        }
-    }
 }

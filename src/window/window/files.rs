@@ -9,6 +9,7 @@ use crate::document::parts::drawing::DrawingTraits;
 use crate::file_purpose::FilePurpose;
 use crate::files::{self, FileAnswer};
 use crate::io::maps::ImportedSurface;
+use crate::io::palette::PaletteFormat;
 use crate::io::{Budget, Overwrite};
 use crate::jobs::{JobKind, JobResult, PastePlace, PictureUse, PinPosition, short};
 use crate::math::Vec2;
@@ -16,11 +17,11 @@ use crate::paint::ColorAdjustment;
 use crate::paint::adjustment::ColorLookup;
 use crate::raster::Picture;
 use crate::session::actions::LayerAction;
-use crate::session::actions::pictures;
 use crate::session::actions::placing::{place, read_picture};
-use crate::session::actions::{ClipboardAction, FileAction, PastedPicture};
+use crate::session::actions::{ClipboardAction, FileAction, PaletteAction, PastedPicture};
+use crate::session::actions::{palettes, pictures};
 use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
-use crate::session::{Action, PicturePart, Property, Session, brushes};
+use crate::session::{Action, PaletteShelf, PicturePart, Property, Session, brushes};
 use eframe::egui;
 use std::path::{Path, PathBuf};
 
@@ -137,6 +138,17 @@ impl MainWindow {
         });
     }
 
+    /// The user's own palettes are kept here from now on; existing ones are added to the list.
+    pub fn keep_palettes_in(&mut self, folder: PathBuf) {
+        self.jobs.start("Reading palettes".into(), JobKind::Working, move |_| {
+            let (shelf, notes) = PaletteShelf::load(&folder);
+            JobResult::then(|window: &mut Self, _| {
+                window.session.palettes = shelf;
+                window.messages.extend(notes);
+            })
+        });
+    }
+
     /// Reads a picture for the selected layer.
     fn read_part(&mut self, part: PicturePart, file: PathBuf) {
         let Some((key, layer)) =
@@ -211,6 +223,9 @@ impl MainWindow {
                 self.apply(&Action::File(FileAction::ImportBrush { file }));
             }
             FilePurpose::Part(part) => self.read_part(part, file),
+            FilePurpose::Palette => {
+                self.apply(&Action::Palette(PaletteAction::Import { file }));
+            }
             FilePurpose::ColorTable => self.read_color_table(&file),
             FilePurpose::NormalMap | FilePurpose::DepthMap | FilePurpose::MaskMap => {
                 if let Some(import) = self.import() {
@@ -218,7 +233,10 @@ impl MainWindow {
                 }
             }
             FilePurpose::ExportMaps => self.export_maps_to(file),
-            FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportUnwrapped => {
+            FilePurpose::Save
+            | FilePurpose::Export
+            | FilePurpose::ExportUnwrapped
+            | FilePurpose::ExportPalette(_) => {
                 self.write_chosen_file(purpose, file);
             }
         }
@@ -240,11 +258,26 @@ impl MainWindow {
         let named = purpose.final_name(file.clone(), self.export.extension);
         let was_asked = named == file && named.exists();
         let over = if was_asked { Overwrite::Anything } else { Overwrite::Nothing };
-        if purpose == FilePurpose::Save {
+        if let FilePurpose::ExportPalette(format) = purpose {
+            self.export_palette(named, format, over);
+        } else if purpose == FilePurpose::Save {
             let then = self.after_saving.take();
             self.save_to(named, over, false, then);
         } else {
             self.export_to(named, over, purpose == FilePurpose::ExportUnwrapped);
+        }
+    }
+
+    /// The palette that is shown; it takes no time.
+    fn export_palette(&mut self, file: PathBuf, format: PaletteFormat, over: Overwrite) {
+        let palette = self.session.palettes.shown.clone();
+        let done = palettes::export(&self.session, palette.as_deref(), &file, format, over);
+        match done {
+            Ok(()) => {
+                let format = Some(format);
+                self.did(|| Action::Palette(PaletteAction::Export { palette, file, format }));
+            }
+            Err(error) => self.messages.extend([with_advice(&error)]),
         }
     }
 
@@ -273,6 +306,11 @@ impl MainWindow {
         let stem = storage::without_ending(&title);
         if purpose == FilePurpose::ExportUnwrapped {
             return format!("{stem}-unwrapped.png");
+        }
+        if let FilePurpose::ExportPalette(format) = purpose {
+            let name = self.session.shown_palette().map(|palette| palette.name.as_str());
+            let name = name.filter(|name| !name.is_empty()).unwrap_or(stem);
+            return format!("{}.{}", name.replace(['/', '\\'], "-"), format.extension());
         }
         let extension = match purpose {
             FilePurpose::Export => self.export.extension,

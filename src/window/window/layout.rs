@@ -232,6 +232,7 @@ impl MainWindow {
                 let shown = (&mut self.swatches, &mut self.settings.shelf);
                 panels::brushes::show(ui, &self.session, shown, requests)
             }
+            PanelKind::Palettes => panels::palettes::show(ui, &self.session, requests),
             PanelKind::Properties => {
                 panels::properties::show(ui, &self.session, &mut self.thumbnails.moods, requests)
             }

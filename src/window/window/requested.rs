@@ -42,6 +42,9 @@ impl MainWindow {
                 self.export.extension = extension;
                 self.ask_where(FilePurpose::Export);
             }
+            WindowRequest::ExportPalette(format) => {
+                self.ask_where(FilePurpose::ExportPalette(format))
+            }
             WindowRequest::ExportUnwrappedDialog => {
                 self.dialogs.push(Dialog::Unwrapped(self.unwrapped.clone()))
             }

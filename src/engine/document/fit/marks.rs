@@ -24,6 +24,8 @@ use std::sync::Arc;
 /// The most values that things take in a description.
 pub const AN_ANCHOR: usize = 14;
 pub const A_STOP: usize = 4;
+/// An object with a color and a name.
+pub const A_COLOR: usize = 10;
 /// Its own list and seven numbers.
 pub const A_NODE: usize = 16;
 const A_STROKE: usize = 60;

@@ -181,7 +181,7 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
 
 /// What saving and exporting may replace besides the document's own file: nothing, since nobody can
 /// be asked, or all if the user said so beforehand.
-fn unless_forced(session: &Session) -> Overwrite {
+pub(super) fn unless_forced(session: &Session) -> Overwrite {
     if session.replaces_unasked { Overwrite::Forced } else { Overwrite::Nothing }
 }
 

@@ -36,6 +36,7 @@ pub fn show(ui: &mut Ui, context: &mut DialogContext) {
     let places = [
         ("Settings", settings::file()),
         ("Own brushes", settings::brushes()),
+        ("Own palettes", settings::palettes()),
         ("Recovery", crate::io::recovery::folder()),
     ];
     Grid::new("places").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {

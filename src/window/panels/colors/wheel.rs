@@ -1,7 +1,7 @@
 //! Where a color is chosen by eye: a square of saturation and value, with a bar of hues beside it or
 //! a wheel of hues around it. Floor 7.
 
-use super::srgb;
+use super::{Harmony, srgb};
 use crate::theme::color32;
 use crate::widgets::ValueChange;
 use eframe::egui::{
@@ -38,8 +38,14 @@ pub fn square_and_bar(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<
     .inner
 }
 
-/// The hues around a square of saturation and value.
-pub fn wheel(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<ValueChange<Hsv>> {
+/// The hues around a square of saturation and value; those that go with the current one are marked.
+pub fn wheel(
+    ui: &mut Ui,
+    label: &str,
+    now: Hsv,
+    size: Vec2,
+    harmony: Harmony,
+) -> Option<ValueChange<Hsv>> {
     let [h, s, v] = now;
     let radius = 0.5 * size.x.min(size.y);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
@@ -47,7 +53,11 @@ pub fn wheel(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<ValueChan
     let (center, painter) = (rect.center(), ui.painter());
     draw_ring(painter, center, radius);
     let middle = 0.5 * (1.0 + RING) * radius;
-    ring_mark(painter, center + at_hue(h) * middle, 0.5 * (1.0 - RING) * radius);
+    let thick = 0.5 * (1.0 - RING) * radius;
+    ring_mark(painter, center + at_hue(h) * middle, thick);
+    for turn in harmony.turns() {
+        ring_mark(painter, center + at_hue(h + turn) * middle, 0.55 * thick);
+    }
     let square = Rect::from_center_size(center, Vec2::splat(2.0 * WITHIN * RING * radius));
     draw_square(painter, square, now);
     let at = response.interact_pointer_pos()?;
@@ -63,9 +73,20 @@ pub fn wheel(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<ValueChan
         let by = at - center;
         let turned = by.x.atan2(-by.y) / std::f32::consts::TAU;
         let held = pick(&response, rect)?;
-        return Some(held.map(|_| [turned.rem_euclid(1.0).min(0.9999), s, v]));
+        let hue = turned.rem_euclid(1.0);
+        let hue = if is_begun { nearest_mark(hue, h, harmony) } else { hue };
+        return Some(held.map(|_| [hue.min(0.9999), s, v]));
     }
     pick(&response, square).map(|c| c.map(|[x, y]| [h, x, 1.0 - y]))
+}
+
+/// The hue of a mark that was pressed, else the hue itself.
+fn nearest_mark(hue: f32, current: f32, harmony: Harmony) -> f32 {
+    /// Turns from a mark that still hit it.
+    const NEAR: f32 = 0.015;
+    let mut marks = harmony.turns().iter().map(|turn| (current + turn).rem_euclid(1.0));
+    let off = |mark: f32| (mark - hue + 0.5).rem_euclid(1.0) - 0.5;
+    marks.find(|mark| off(*mark).abs() < NEAR).unwrap_or(hue)
 }
 
 /// The direction of a hue: red at the top, clockwise.

@@ -241,6 +241,7 @@ impl Roll for String {
         let known = match (dice.word, dice.field) {
             (_, "part") => facts.parts.iter().map(|part| part.id.clone()).collect(),
             ("preset" | "drawn with", _) => facts.presets.clone(),
+            (_, "palette") => facts.palettes.clone(),
             ("keep" | "take" | "forget", _) => ["a", "b", "sky"].map(str::to_owned).to_vec(),
             ("overlay", _) => facts.views.clone(),
             ("look", _) => LiveLook::keys().map(str::to_owned).collect(),

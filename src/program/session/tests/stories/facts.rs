@@ -19,6 +19,7 @@ pub struct Facts {
     pub strokes: usize,
     pub documents: usize,
     pub presets: Vec<String>,
+    pub palettes: Vec<String>,
     /// The views of a surface.
     pub views: Vec<String>,
     pub files: Arc<StoryFiles>,
@@ -34,10 +35,18 @@ pub fn no_layer() -> LayerPath {
 impl Facts {
     pub fn of(session: &Session, files: &Arc<StoryFiles>) -> Self {
         let presets = session.presets.iter().map(|preset| preset.key.clone()).collect();
+        let palettes = session.palettes.names().map(str::to_owned).collect();
         let views = SurfaceView::ALL.iter().map(|(_, name)| (*name).to_owned()).collect();
         let (files, documents) = (files.clone(), session.open_documents.len());
-        let none =
-            Facts { size: vec2(90.0, 60.0), presets, views, files, documents, ..Facts::default() };
+        let none = Facts {
+            size: vec2(90.0, 60.0),
+            presets,
+            palettes,
+            views,
+            files,
+            documents,
+            ..Facts::default()
+        };
         let Some(open) = session.active() else { return none };
         let document = open.document();
         let walk = document.walk();
@@ -100,6 +109,8 @@ impl StoryFiles {
             ("open", _) => found(&|name| {
                 [".ora", ".psd", ".json", ".png"].iter().any(|end| name.ends_with(end))
             }),
+            ("export file", _) => new(&["out.gpl", "out.ase", "out.kpl", "out.pal"]),
+            ("import file", _) => found(&|name| name.ends_with(".gpl") || name.ends_with(".kpl")),
             ("import brush", _) => found(&|name| name.starts_with("picture")),
             _ => found(&|name| {
                 name.starts_with("picture") || name.starts_with("normal") || name == "gray.png"

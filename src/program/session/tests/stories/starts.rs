@@ -52,6 +52,7 @@ fn assets() -> &'static [(String, Vec<u8>)] {
     ASSETS.get_or_init(|| {
         let mut files = pictures();
         files.push(("recipe.json".into(), RECIPE.as_bytes().to_vec()));
+        files.push(("colors.gpl".into(), b"GIMP Palette\n1 2 3\tNight\n200 90 40\n".to_vec()));
         let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/seeds/files");
         for name in ["im-layers16.psd", "im-rgb8.psd", "pt-RGB-ZIP.psd"] {
             files.extend(std::fs::read(seeds.join(name)).map(|bytes| (name.to_owned(), bytes)));

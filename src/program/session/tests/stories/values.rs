@@ -14,8 +14,8 @@ use crate::paint::adjustment::{
 };
 use crate::paint::effect::{EffectField, EffectPattern};
 use crate::paint::{
-    Adjust, BrushMode, ColorAdjustment, DrawingHand, EffectKind, EffectLight, GradientStop,
-    LayerEffect, PictureFilter, Placement, Text, TextAlign, TextStyle,
+    Adjust, BrushMode, ColorAdjustment, ColorPalette, DrawingHand, EffectKind, EffectLight,
+    GradientStop, LayerEffect, NamedColor, PictureFilter, Placement, Text, TextAlign, TextStyle,
 };
 use crate::raster::{Picture, Resampling};
 use crate::session::actions::clipboard::PastedPicture;
@@ -141,6 +141,18 @@ impl Roll for PictureFilter {
         let mut filter = dice.one_of(&PictureFilter::all());
         filter.visit(&mut ParameterDice(dice));
         filter
+    }
+}
+
+/// Mostly a few colors, at times with a name that is not tidy.
+impl Roll for ColorPalette {
+    fn roll(dice: &mut Dice) -> Self {
+        let name = String::roll(dice);
+        let count = dice.below(5);
+        let mut color = || NamedColor::new(Color::roll(dice), "é");
+        let mut palette = ColorPalette { columns: 3, ..Self::of_colors(&name, &[]) };
+        palette.colors.extend((0..count).map(|_| color()));
+        palette
     }
 }
 

@@ -17,6 +17,7 @@ const WEIGHTS: &[(&str, &str, u32)] = &[
     ("Action", "clipboard", 8),
     ("Action", "stroke", 10),
     ("Action", "guide", 4),
+    ("Action", "palette", 4),
     ("Action", "view", 2),
     // The pen's own actions make sense in gestures alone, and are drawn there.
     ("Action", "pointer", 1),
