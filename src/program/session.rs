@@ -7,6 +7,7 @@ pub mod autosave;
 mod balls;
 pub mod brushes;
 pub mod drawing;
+pub mod exporting;
 pub mod memory;
 mod open_document;
 mod palettes;
@@ -22,6 +23,7 @@ pub mod view;
 pub use actions::Action;
 pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
+pub use exporting::{ExportSettings, ExportSize, ExportedFile};
 pub use open_document::{CloneSource, Edit, OpenDocument, is_same, is_same_look};
 pub use open_document::{labels, selected_layers};
 pub use palettes::PaletteShelf;
@@ -68,6 +70,8 @@ pub struct Session {
     pub palettes: PaletteShelf,
     /// The outline of the selection is not drawn.
     pub hides_selection: bool,
+    /// The picture is shown in grays of its luminance.
+    pub shows_values: bool,
     /// Balls that are painted in documents of their own.
     balls: Vec<balls::BallLink>,
     /// The text that the text tool was last pressed on.
@@ -126,6 +130,7 @@ impl Default for Session {
             recent_colors: Vec::new(),
             palettes: PaletteShelf::default(),
             hides_selection: false,
+            shows_values: false,
             balls: Vec::new(),
             writing: None,
             copied: None,

@@ -201,6 +201,7 @@ impl Canvas {
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
         self.magnify(view.zoom * ui.ctx().pixels_per_point(), open.document().size, size);
+        self.show_values(session.shows_values);
 
         let painter = ui.painter_at(rect);
         let canvas = size.rect();
@@ -248,6 +249,13 @@ impl Canvas {
         self.whole.magnify(scale, size_px);
         self.draft.magnify(scale, size_px);
         self.sheet.shown.magnify(scale, sheet_px);
+    }
+
+    /// Shows the pictures in grays of their luminance, or in colors.
+    fn show_values(&mut self, on: bool) {
+        for sheet in [&mut self.whole, &mut self.draft, &mut self.sheet.shown] {
+            sheet.show_values(on);
+        }
     }
 
     /// Whether the picture is seen wobbling, or has just ended to: the event that ended it does

@@ -170,7 +170,7 @@ impl Dialog {
             Dialog::Canvas(canvas) => canvas.show(ui, requests),
             Dialog::ImageSize(image) => image.show(ui, requests),
             Dialog::Turn(turn) => turn.show(ui, requests),
-            Dialog::Export(export) => export.show(ui, session, *preview),
+            Dialog::Export(export) => export.show(ui, session, &mut settings.exports, *preview),
             Dialog::Unwrapped(unwrapped) => unwrapped.show(ui, session),
             Dialog::Import(import) => import.show(ui),
             Dialog::Recovery(recovery) => recovery.show(ui),

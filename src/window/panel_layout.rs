@@ -1,8 +1,8 @@
 //! The layout of the panels: on which side, which in front, which in separate windows. Floor 7. Not
 //! here: keeping it from run to run (`settings`).
 
+use super::harmony::Harmony;
 use super::icons::Icon;
-use super::panels::colors::Harmony;
 use crate::tools::ToolKind;
 
 rilievo_engine::named! {

@@ -3,10 +3,10 @@
 
 use crate::document::Document;
 use crate::document::view::UnwrapOptions;
-use crate::io::export::ExportOptions;
 use crate::io::export::shape::{ShapeMap, ShapeOptions};
 use crate::io::save::EncodedDocument;
 use crate::io::{Overwrite, Terms};
+use crate::session::ExportSettings;
 use std::path::{Path, PathBuf};
 
 /// A document that is to be saved.
@@ -27,9 +27,11 @@ pub struct Saving {
 
 /// A picture, or a document for another program, that is to be exported.
 pub struct Exporting {
+    /// Of the open document.
+    pub key: usize,
     pub document: Document,
     pub file: PathBuf,
-    pub options: ExportOptions,
+    pub settings: ExportSettings,
     /// As it lies on the unwrapped surface.
     pub unwrapped: Option<UnwrapOptions>,
     pub terms: Terms,

@@ -55,6 +55,8 @@ pub enum WindowRequest {
     Save,
     SaveAs,
     ExportDialog,
+    /// As the document was exported last.
+    ExportAgain,
     ExportMapsDialog,
     /// Asks where to, for the maps of the shape.
     ExportMaps,

@@ -16,8 +16,8 @@ pub enum WriteResult {
     Saved(Box<Saving>, FileStamp),
     /// It is not yet saved: the user must first know what the format cannot hold.
     Loses(Box<Saving>),
-    /// What the format cannot hold.
-    Exported(PathBuf, Vec<String>),
+    /// With what the format cannot hold.
+    Exported(Box<Exporting>, Vec<String>),
     ExportedMaps(Vec<PathBuf>),
     /// Something would be lost that the user was not asked about; why.
     Refused(Pending, String),
@@ -88,11 +88,11 @@ impl Exporting {
                 unwrapped::export(&self.document, &self.file, options, terms, progress)
                     .map(|()| Vec::new())
             }
-            None => export(&self.document, &self.file, &self.options, terms, progress),
+            None => export(&self.document, &self.file, &self.settings, terms, progress),
         };
         match written {
             Ok(_) if progress.is_canceled() => WriteResult::Canceled,
-            Ok(notes) => WriteResult::Exported(self.file, notes),
+            Ok(notes) => WriteResult::Exported(Box::new(self), notes),
             Err(error) => refuse(error, || Pending::Export(Box::new(self))),
         }
     }

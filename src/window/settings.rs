@@ -3,10 +3,11 @@
 //! never keeps the program from starting. Floor 7. Not here: replacing the file (`io::replace`).
 
 use super::brush_shelf::BrushShelf;
+use super::export_memory::ExportMemory;
+use super::harmony::Harmony;
 use super::jobs;
 use super::keymap::{KeyPreset, Keymap};
 use super::panel_layout::{ColorView, PanelKind, PanelLayout, SIDES};
-use super::panels::colors::Harmony;
 use super::preferences::Preferences;
 use super::theme::Look;
 use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
@@ -53,6 +54,8 @@ pub struct Settings {
     /// Folders that the user marked in the window's own file dialog.
     pub bookmarks: Vec<PathBuf>,
     pub shelf: BrushShelf,
+    /// How documents were exported, and presets for that.
+    pub exports: ExportMemory,
 }
 
 impl Default for Settings {
@@ -72,6 +75,7 @@ impl Default for Settings {
             colors: Vec::new(),
             bookmarks: Vec::new(),
             shelf: BrushShelf::default(),
+            exports: ExportMemory::default(),
         }
     }
 }
@@ -118,6 +122,7 @@ impl Settings {
             "colors": colors,
             "bookmarks": paths(&self.bookmarks),
             "brushes": self.shelf.to_json(),
+            "exports": self.exports.to_json(),
         })
     }
 
@@ -203,6 +208,7 @@ impl Settings {
             colors,
             bookmarks,
             shelf: BrushShelf::from_json(object("brushes")),
+            exports: ExportMemory::from_json(object("exports")),
         }
     }
 

@@ -298,7 +298,7 @@ impl MainWindow {
         };
         let answer = dialog.show(ctx, context);
         match dialog {
-            Dialog::Export(export) => self.export = export.clone(),
+            Dialog::Export(export) => self.export = export.without_estimate(),
             Dialog::Maps(maps) => self.maps = maps.clone(),
             _ => {}
         }

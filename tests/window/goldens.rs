@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// The panels above the layers.
-const PANELS: [&str; 6] = ["Color", "Brushes", "Properties", "Surface", "History", "Navigator"];
+const PANELS: [&str; 7] =
+    ["Color", "Brushes", "Palettes", "Properties", "Surface", "History", "Navigator"];
 
 /// Commands that make a layer, whose properties are then shown.
 const LAYERS: [&str; 32] = [

@@ -4,6 +4,7 @@ mod brush_options;
 mod brushes;
 mod busy;
 mod canvas;
+mod colors;
 mod documents;
 mod goldens;
 mod keyboard;

@@ -3,6 +3,7 @@
 
 use super::LimitArgs;
 use crate::document::Document;
+use crate::session::exporting;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -23,15 +24,5 @@ pub fn scale_document(
     limits: &LimitArgs,
     document: Document,
 ) -> Result<Document> {
-    if factor == 1.0 {
-        return Ok(document);
-    }
-    let size = document.size.scaled(factor);
-    limits.budget().size(file, size.width.into(), size.height.into())?;
-    // A surface is made again from normals, depth and coverage; layers are copied.
-    let a_pixel = if document.surface.is_some() { 40 } else { 8 };
-    let shape = document.shape_bytes(&document.parts.list) as f64 * f64::from(factor * factor);
-    let bytes = (size.area() as u64 * a_pixel).max(shape as u64);
-    limits.budget().room(file, &format!("a canvas of {size} pixels"), bytes)?;
-    document.scaled(factor).map_err(|error| Error::invalid(file, "--scale", error))
+    exporting::scale_document(file, &document, factor, &limits.budget())
 }

@@ -6,6 +6,7 @@ pub mod labels;
 pub mod selected_layers;
 mod target;
 
+use super::exporting::ExportedFile;
 use super::stored_preview::StoredPreview;
 use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind, Part};
@@ -56,6 +57,8 @@ pub struct OpenDocument {
     pub reads: Vec<PathBuf>,
     /// Whether the user was told what the format of that file cannot hold.
     pub knows_losses: bool,
+    /// What it was exported to last.
+    pub exported: Option<ExportedFile>,
     /// The document as the file holds it.
     saved: Document,
     /// `None` until the window has shown it.
@@ -122,6 +125,7 @@ impl OpenDocument {
             stamp: None,
             reads: Vec::new(),
             knows_losses: false,
+            exported: None,
             name: name.into(),
             view: None,
             unwrapped: None,

@@ -3,6 +3,7 @@
 mod canvas;
 mod closed;
 mod dialect;
+mod exporting;
 mod held;
 mod kept;
 mod palettes;

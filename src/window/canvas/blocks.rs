@@ -1,7 +1,7 @@
 //! The picture on the graphics card: blocks below any driver's texture limit; only changed parts
 //! are uploaded. Floor 7.
 
-use crate::math::{Affine2, Rect, Size, vec2};
+use crate::math::{Affine2, Rect, Size, srgb, vec2};
 use crate::raster::{TILE, TileAt, TileGrid};
 use eframe::egui::{
     self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle,
@@ -42,6 +42,8 @@ pub struct TextureBlocks {
     size: Option<Size>,
     textures: BTreeMap<(i32, i32), TextureHandle>,
     magnification: Magnification,
+    /// In grays.
+    shows_values: bool,
 }
 
 impl TextureBlocks {
@@ -80,12 +82,13 @@ impl TextureBlocks {
             match self.textures.get_mut(&block) {
                 Some(texture) => {
                     let at = [(area.x0 - whole.x0) as usize, (area.y0 - whole.y0) as usize];
-                    texture.set_partial(at, image(grid, area, size), options);
+                    let image = image(grid, area, size, self.shows_values);
+                    texture.set_partial(at, image, options);
                 }
                 None if !whole.intersect(size.rect()).is_empty() => {
                     let texture = ctx.load_texture(
                         format!("canvas {block:?}"),
-                        image(grid, whole, size),
+                        image(grid, whole, size, self.shows_values),
                         options,
                     );
                     self.textures.insert(block, texture);
@@ -103,7 +106,18 @@ impl TextureBlocks {
         for (&block, texture) in &mut self.textures {
             let whole = block_rect(block);
             let tile = Rect::new(whole.x0, whole.y0, whole.x0 + 1, whole.y0 + 1);
-            texture.set_partial([0, 0], image(grid, tile, size), options);
+            texture.set_partial([0, 0], image(grid, tile, size, self.shows_values), options);
+        }
+    }
+
+    /// In grays of the luminance, or in colors. What is on the graphics card is sent again.
+    pub fn show_values(&mut self, on: bool, grid: &TileGrid) {
+        if std::mem::replace(&mut self.shows_values, on) == on {
+            return;
+        }
+        let (Some(size), options) = (self.size, self.options()) else { return };
+        for (&block, texture) in &mut self.textures {
+            texture.set(image(grid, block_rect(block), size, on), options);
         }
     }
 
@@ -164,7 +178,7 @@ fn block_rect((col, row): (i32, i32)) -> Rect {
 /// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right
 /// and lower edge its last pixels are repeated once, so that interpolation mixes nothing else into
 /// the rim.
-fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
+fn image(grid: &TileGrid, rect: Rect, canvas: Size, shows_values: bool) -> ColorImage {
     let (width, height) = (rect.width(), rect.height());
     let mut pixels = vec![Color32::TRANSPARENT; width * height];
     for at in TileAt::covering(rect) {
@@ -174,7 +188,8 @@ fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
             let from = ((y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
             let to = (y - rect.y0) as usize * width + (area.x0 - rect.x0) as usize;
             let texels = tile.bytes()[from..from + area.width() * 4].as_chunks::<4>().0;
-            for (pixel, &[r, g, b, a]) in pixels[to..].iter_mut().zip(texels) {
+            for (pixel, &texel) in pixels[to..].iter_mut().zip(texels) {
+                let [r, g, b, a] = if shows_values { value_of(texel) } else { texel };
                 *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
             }
         }
@@ -191,16 +206,42 @@ fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
     ColorImage::new([width, height], pixels)
 }
 
+/// The gray of the same luminance and opacity; both premultiplied.
+fn value_of([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    if a == 0 {
+        return [0; 4];
+    }
+    let opacity = f32::from(a) / 255.0;
+    let light = |channel: u8| match a {
+        255 => srgb::decode_u8(channel),
+        _ => srgb::decode((f32::from(channel) / f32::from(a)).min(1.0)),
+    };
+    let gray = srgb::encode(srgb::luminance(light(r), light(g), light(b)));
+    let gray = srgb::quantize(gray * opacity);
+    [gray, gray, gray, a]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn grays_stay_and_colors_become_the_gray_of_their_luminance() {
+        for v in 0..=255 {
+            assert_eq!(value_of([v, v, v, 255]), [v, v, v, 255]);
+        }
+        assert_eq!(value_of([255, 0, 0, 255]), [127, 127, 127, 255]);
+        assert_eq!(value_of([0, 255, 0, 255]), [220, 220, 220, 255]);
+        assert_eq!(value_of([0, 128, 0, 128]), [110, 110, 110, 128], "half of it is seen");
+        assert_eq!(value_of([0; 4]), [0; 4]);
+    }
 
     #[test]
     fn the_rim_of_the_canvas_is_repeated_once_beyond_it() {
         let canvas = Size::new(3, 2);
         let bytes: Vec<u8> = (0..6u8).flat_map(|i| [i * 40, 9, 9, 255]).collect();
         let grid = TileGrid::from_straight_rgba(&bytes, 3, 2, 0, 0);
-        let image = image(&grid, Rect::new(0, 0, 5, 4), canvas);
+        let image = image(&grid, Rect::new(0, 0, 5, 4), canvas, false);
         let reds: Vec<u8> = image.pixels.iter().map(|pixel| pixel.r()).collect();
         assert_eq!(
             reds,

@@ -88,6 +88,11 @@ impl TileSheet {
         self.blocks.magnify(magnification, &self.grid);
     }
 
+    /// In grays of its luminance, or in its colors.
+    pub fn show_values(&mut self, on: bool) {
+        self.blocks.show_values(on, &self.grid);
+    }
+
     /// Draws it where the canvas lies, as large as the canvas.
     pub fn draw(&self, painter: &egui::Painter, screen_from_canvas: Affine2, canvas: Size) {
         let Some(size) = self.size else { return };

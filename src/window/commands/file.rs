@@ -2,7 +2,8 @@
 //! Floor 7.
 
 use super::row::{
-    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, row,
+    LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_alt_shift, ctrl_shift, has_document,
+    has_surface, row,
 };
 use crate::file_purpose::FilePurpose;
 use crate::requests::WindowRequest;
@@ -52,6 +53,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         "The finished picture as PNG, EXR, JPEG or WebP, or the layers for Photoshop",
         has_document,
         |_, requests| requests.request(WindowRequest::ExportDialog),
+    ),
+    row(
+        "Export again",
+        &[ctrl_alt_shift(Key::E)],
+        "Replaces the file that the document was exported to last, in the same way",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ExportAgain),
     ),
     row(
         "Export maps…",

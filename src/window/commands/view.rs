@@ -100,6 +100,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     .ticked(|session, _| {
         session.active().is_some_and(|open| open.view.is_some_and(|view| view.mirrored))
     }),
+    row(
+        "Show values",
+        &[],
+        "The picture in grays, to judge light and dark; the document does not change",
+        has_document,
+        |session, requests| view(requests, ViewAction::Values { on: !session.shows_values }),
+    )
+    .ticked(|session, _| session.shows_values),
     LINE,
     submenu("Show the surface", SURFACE),
     row(

@@ -1,33 +1,50 @@
-//! The export dialog: format and background, then the file.
-//! Floor 7.
+//! The export dialog: format, size, background and presets, then the file. It begins as the document
+//! was exported last. Floor 7.
+
+mod estimate;
 
 use super::{DialogAnswer, buttons};
+use crate::document::Document;
+use crate::export_memory::{ExportMemory, ExportPreset};
 use crate::io::export::ExportFormat;
 use crate::math::{Size, srgb::Color};
 use crate::requests::WindowRequest;
-use crate::session::Session;
+use crate::session::{ExportSettings, ExportSize, ExportedFile, Session};
 use crate::theme;
-use crate::widgets::{check_box, radio};
+use crate::widgets::{NumberField, check_box, radio, segment, segments, set_accessible_name};
 use eframe::egui::{
-    Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Button, Color32, ComboBox, Id, Rect, Role, Sense, Slider, TextEdit, TextureId, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
 };
+use estimate::{SizeEstimate, size_text};
 use std::path::Path;
 
 /// The choices, kept for the next time.
-#[derive(Clone)]
 pub struct ExportDialog {
     pub extension: &'static str,
-    pub background: Option<Color>,
-    pub quality: u8,
-    /// Bits per channel; the format's default if it cannot have these.
-    pub bits: Option<u8>,
+    /// Its bits are ignored by formats that cannot have these.
+    pub settings: ExportSettings,
+    estimate: SizeEstimate,
 }
 
 impl Default for ExportDialog {
     fn default() -> Self {
-        Self { extension: "png", background: None, quality: 92, bits: None }
+        Self {
+            extension: "png",
+            settings: ExportSettings::default(),
+            estimate: SizeEstimate::default(),
+        }
     }
 }
+
+/// Factors to choose by a click.
+const SCALES: [(f32, &str, &str); 3] = [
+    (0.5, "½×", "Half as large"),
+    (1.0, "1×", "As large as the canvas"),
+    (2.0, "2×", "Twice as large"),
+];
+/// The formats whose size depends on what is in the picture so much that it is worth knowing.
+const MEASURED: [&str; 2] = ["jpg", "webp"];
 
 const FORMATS: [(&str, &str); 6] = [
     ("png", "PNG: keeps transparency"),
@@ -39,43 +56,153 @@ const FORMATS: [(&str, &str); 6] = [
 ];
 
 impl ExportDialog {
+    /// The same choices in another dialog; what is computed for this one ends with it.
+    pub fn without_estimate(&self) -> Self {
+        Self { estimate: SizeEstimate::default(), ..*self }
+    }
+
+    /// Chooses what a file was exported with.
+    pub fn take(&mut self, last: &ExportedFile) {
+        let ending = last.file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        self.take_extension(match ending.as_str() {
+            "jpeg" => "jpg",
+            "tiff" => "tif",
+            other => other,
+        });
+        self.settings = last.settings;
+    }
+
+    fn take_extension(&mut self, extension: &str) {
+        let known = FORMATS.iter().find(|(known, _)| *known == extension);
+        self.extension = known.map_or(self.extension, |(known, _)| known);
+    }
+
     /// `preview`: the picture, small.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,
+        memory: &mut ExportMemory,
         preview: Option<TextureId>,
     ) -> DialogAnswer {
-        ui.set_width(320.0);
+        ui.set_width(340.0);
         ui.heading("Export the picture");
-        if let (Some(preview), Some(document)) = (preview, session.shown_document()) {
+        self.presets(ui, memory);
+        let document = session.shown_document();
+        if let (Some(preview), Some(document)) = (preview, document) {
             self.preview(ui, preview, document.size);
         }
-        if let Some(document) = session.shown_document() {
-            ui.weak(format!("{} pixels", document.size));
+        if let Some(document) = document {
+            self.size(ui, document);
         }
         for (extension, about) in FORMATS {
             radio(ui, &mut self.extension, extension, about);
         }
         self.depth(ui);
-        let mut opaque = self.background.is_some() || self.extension == "jpg";
+        let mut opaque = self.settings.background.is_some() || self.extension == "jpg";
         let can_choose = !["jpg", "psd"].contains(&self.extension);
         ui.add_enabled_ui(can_choose, |ui| check_box(ui, &mut opaque, "Lay it on white"));
-        self.background = opaque.then_some(Color::WHITE);
+        self.settings.background = opaque.then_some(Color::WHITE);
         ui.add_enabled_ui(self.extension == "jpg", |ui| {
-            ui.add(Slider::new(&mut self.quality, 1..=100).text("Quality"));
+            ui.add(Slider::new(&mut self.settings.quality, 1..=100).text("Quality"));
         });
-        match buttons(ui, "Export…", session.shown_document().is_some()) {
+        if let Some(document) = document.filter(|_| MEASURED.contains(&self.extension)) {
+            self.bytes(ui, document);
+        }
+        match buttons(ui, "Export…", document.is_some()) {
             Some(true) => DialogAnswer::Ask(WindowRequest::Export(self.extension)),
             Some(false) => DialogAnswer::Close,
             None => DialogAnswer::Open,
         }
     }
 
-    /// The bits per channel for a file of this name, if they are not the format's default.
-    pub fn bits_for(&self, file: &Path) -> Option<u8> {
-        let format = ExportFormat::of(file).ok()?;
-        self.bits.filter(|bits| format.depths().contains(bits))
+    /// Those that the user named, and a field that names another.
+    fn presets(&mut self, ui: &mut Ui, memory: &mut ExportMemory) {
+        let id = Id::unique("export preset name");
+        let mut name = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
+        ui.horizontal(|ui| {
+            let mut chosen = None;
+            ui.add_enabled_ui(!memory.presets.is_empty(), |ui| {
+                let list = ComboBox::from_id_salt("export presets").selected_text("Presets");
+                let list = list.width(96.0).show_ui(ui, |ui| {
+                    for preset in &memory.presets {
+                        if ui.button(&preset.name).clicked() {
+                            chosen = Some(preset.clone());
+                        }
+                    }
+                });
+                set_accessible_name(&list.response, "Presets");
+            });
+            if let Some(preset) = chosen {
+                self.take_extension(&preset.extension);
+                self.settings = preset.settings;
+                name = preset.name;
+            }
+            let field = TextEdit::singleline(&mut name).hint_text("Name").desired_width(96.0);
+            set_accessible_name(&ui.add(field.char_limit(40)), "Name of the preset");
+            let trimmed = name.trim().to_owned();
+            let keep = ui.add_enabled(!trimmed.is_empty(), Button::new("Keep"));
+            if keep.on_hover_text("Keeps these settings as a preset").clicked() {
+                let (extension, settings) = (self.extension.to_owned(), self.settings);
+                memory.keep(ExportPreset { name: trimmed.clone(), extension, settings });
+            }
+            let is_known = memory.presets.iter().any(|preset| preset.name == trimmed);
+            let remove = ui.add_enabled(is_known, Button::new("Remove"));
+            if remove.on_hover_text("Removes the preset of this name").clicked() {
+                memory.remove(&trimmed);
+            }
+        });
+        ui.data_mut(|data| data.insert_temp(id, name));
+    }
+
+    /// The scale or the width, and the part.
+    fn size(&mut self, ui: &mut Ui, document: &Document) {
+        let settings = &mut self.settings;
+        let pixels = settings.pixels(document);
+        ui.horizontal(|ui| {
+            ui.label("Size");
+            segments(ui, |ui| {
+                for (factor, label, hint) in SCALES {
+                    let is_on = settings.size == ExportSize::Scale(factor);
+                    if segment(ui, label, hint, is_on).clicked() {
+                        settings.size = ExportSize::Scale(factor);
+                    }
+                }
+            });
+            let field = NumberField::new("Width", 1.0..=32_768.0, "Of the picture").decimals(0);
+            if let Some(changed) = field.field(ui, pixels.width as f32) {
+                settings.size = ExportSize::Width(changed.to as u32);
+            }
+            ui.weak(format!("{pixels} pixels"));
+        });
+        let can_choose = document.active_selection.is_some() && self.extension != "psd";
+        ui.add_enabled_ui(can_choose, |ui| {
+            check_box(ui, &mut settings.selection, "Only the box around the selection")
+        });
+    }
+
+    /// How many bytes the file will have.
+    fn bytes(&mut self, ui: &mut Ui, document: &Document) {
+        let ctx = ui.ctx().clone();
+        let settings = ExportSettings { bits: None, ..self.settings };
+        let text = match self.estimate.bytes(&ctx, document, self.extension, settings) {
+            Some(Ok(bytes)) => format!("File size {}", size_text(bytes)),
+            Some(Err(why)) => why,
+            None => "File size …".to_owned(),
+        };
+        ui.weak(text);
+    }
+
+    /// How a file of this name is written: without what its format cannot hold.
+    pub fn settings_for(&self, file: &Path) -> ExportSettings {
+        let format = ExportFormat::of(file).ok();
+        let depths = format.map_or(&[][..], ExportFormat::depths);
+        ExportSettings {
+            bits: self.settings.bits.filter(|bits| depths.contains(bits)),
+            // What is no picture holds the whole canvas.
+            selection: self.settings.selection && format.is_some(),
+            ..self.settings
+        }
     }
 
     /// Shown if the format can have more than one depth.
@@ -88,9 +215,10 @@ impl ExportDialog {
                 ui.label("Bits a channel");
                 for &depth in depths {
                     let is_chosen =
-                        self.bits.filter(|bits| depths.contains(bits)).or(usual) == Some(depth);
+                        self.settings.bits.filter(|bits| depths.contains(bits)).or(usual)
+                            == Some(depth);
                     if ui.radio(is_chosen, format!("{depth} bits")).clicked() {
-                        self.bits = Some(depth);
+                        self.settings.bits = Some(depth);
                     }
                 }
             });
@@ -109,9 +237,9 @@ impl ExportDialog {
         painter.rect_filled(
             rect,
             0.0,
-            if self.background.is_some() { Color32::WHITE } else { theme::CHECKER[0] },
+            if self.settings.background.is_some() { Color32::WHITE } else { theme::CHECKER[0] },
         );
-        if self.background.is_none() {
+        if self.settings.background.is_none() {
             const SQUARE_PT: f32 = 8.0;
             let (columns, rows) =
                 ((side.x / SQUARE_PT).ceil() as u32, (side.y / SQUARE_PT).ceil() as u32);

@@ -2,12 +2,10 @@
 //! last colors used, those that go with the current one, bars of lightness, chroma and hue, numbers
 //! and a palette. Floor 7. `wheel` draws the areas.
 
-mod harmony;
 mod sliders;
 mod wheel;
 
-pub use harmony::Harmony;
-
+use crate::harmony::Harmony;
 use crate::icons::{Icon, icon_button};
 use crate::math::hsv;
 use crate::math::srgb::{Color, quantize};

@@ -6,7 +6,6 @@ use crate::clipboard::{self, PastedContent};
 use crate::dialogs::{Dialog, losses, replace, shape};
 use crate::document::{Document, Progress};
 use crate::file_purpose::FilePurpose;
-use crate::io::export::ExportOptions;
 use crate::io::replace::FileStamp;
 use crate::io::{Budget, Overwrite, Terms};
 use crate::jobs::{JobKind, JobResult, JobWindow, PastePlace, PictureUse, short};
@@ -18,7 +17,7 @@ use crate::saving::WriteResult;
 use crate::session::actions::canvas::forget_places;
 use crate::session::actions::parts::FirstShape;
 use crate::session::actions::{ClipboardAction, PartAction, PasteTo};
-use crate::session::{Action, Edit, storage};
+use crate::session::{Action, Edit, ExportSettings, ExportedFile, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
 use std::path::{Path, PathBuf};
@@ -93,9 +92,10 @@ impl MainWindow {
             WriteResult::Loses(saving) => {
                 self.dialogs.push(Dialog::Losses(losses::Losses::new(saving)));
             }
-            WriteResult::Exported(file, notes) => {
-                self.jobs.say(format!("Exported {}", file.display()));
+            WriteResult::Exported(exporting, notes) => {
+                self.jobs.say(format!("Exported {}", exporting.file.display()));
                 self.messages.extend(notes);
+                self.remember_export(*exporting);
             }
             WriteResult::ExportedMaps(files) => {
                 let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
@@ -125,23 +125,66 @@ impl MainWindow {
 
     /// `over`: what may be replaced. `is_flat`: as on the unwrapped surface.
     pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite, is_flat: bool) {
+        let settings = self.export.settings_for(&file);
+        self.export_as(file, over, settings, is_flat);
+    }
+
+    fn export_as(
+        &mut self,
+        file: PathBuf,
+        over: Overwrite,
+        settings: ExportSettings,
+        is_flat: bool,
+    ) {
         let Some(open) = self.session.active() else { return };
         let document = if is_flat { open.drawn_document() } else { open.document().clone() };
+        let (key, terms) = (open.key, Terms::export(over, self.session.reads()));
         let unwrapped = is_flat.then(|| self.unwrapped.options(self.session.unwrap_settings()));
-        let options = ExportOptions {
-            background: self.export.background,
-            quality: self.export.quality,
-            bits: self.export.bits_for(&file),
-            ..ExportOptions::default()
-        };
-        let terms = Terms::export(over, self.session.reads());
         self.put(Pending::Export(Box::new(Exporting {
+            key,
             document,
             file,
-            options,
+            settings,
             unwrapped,
             terms,
         })));
+    }
+
+    /// What the document in front was exported to last, in this run or an earlier one.
+    pub(super) fn last_export(&self) -> Option<ExportedFile> {
+        let open = self.session.active()?;
+        let stored = || self.settings.exports.of_document(open.file.as_deref()?).cloned();
+        open.exported.clone().or_else(stored)
+    }
+
+    /// Writes that file again as it is now, or asks how.
+    pub(super) fn export_again(&mut self) {
+        match self.last_export() {
+            Some(ExportedFile { file, settings }) => {
+                self.export_as(file, Overwrite::Anything, settings, false);
+            }
+            None => self.ask_how_to_export(),
+        }
+    }
+
+    /// The dialog, as the document was exported last.
+    pub(super) fn ask_how_to_export(&mut self) {
+        if let Some(last) = self.last_export() {
+            self.export.take(&last);
+        }
+        self.dialogs.push(Dialog::Export(self.export.without_estimate()));
+    }
+
+    fn remember_export(&mut self, exporting: Exporting) {
+        let Exporting { key, file, settings, unwrapped: None, .. } = exporting else { return };
+        let exported = ExportedFile { file, settings };
+        let mut documents = self.session.open_documents.iter_mut();
+        if let Some(open) = documents.find(|open| open.key == key) {
+            open.exported = Some(exported.clone());
+            if let Some(document) = open.file.clone() {
+                self.settings.exports.remember(document, exported);
+            }
+        }
     }
 
     /// Files whose names begin with this one.

@@ -8,18 +8,44 @@ pub use maps::{add_maps, replace_maps};
 use crate::document::view::UnwrapOptions;
 use crate::document::{Content, Document, Highlights, Layer, Progress};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
-use crate::io::export::{ExportOptions, Output, OutputFile};
+use crate::io::export::{Output, OutputFile};
 use crate::io::{Budget, Overwrite, Terms, save};
 use crate::math::{Size, Vec2, srgb::Color};
 use crate::session::actions::placing::{place, read_picture};
 use crate::session::actions::{pictures, unwrapped};
-use crate::session::replay::{actions, names};
+use crate::session::exporting::{ExportSettings, ExportSize, ExportedFile};
+use crate::session::replay::{ReplayValue, actions, names, record};
 use crate::session::{OpenDocument, PicturePart, Session, brushes, storage};
 use crate::{Error, Result};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 names!(ShapeMap);
+record!(ExportSettings { background, quality, bits, size, selection });
+
+/// `{ "scale": factor }` or `{ "width": pixels }`.
+impl ReplayValue for ExportSize {
+    fn to_value(&self) -> Value {
+        match self {
+            ExportSize::Scale(factor) => json!({ "scale": factor.to_value() }),
+            ExportSize::Width(width) => json!({ "width": width }),
+        }
+    }
+
+    fn read(value: &Value) -> Result<Self, String> {
+        let read = match (value.get("scale"), value.get("width")) {
+            (Some(factor), None) => f32::read(factor).map(ExportSize::Scale)?,
+            (None, Some(width)) => u32::read(width).map(ExportSize::Width)?,
+            _ => return Err("must be an object of “scale” or of “width”".into()),
+        };
+        let is_known = match read {
+            ExportSize::Scale(factor) => ExportSize::SCALE.contains(&factor),
+            ExportSize::Width(width) => width > 0,
+        };
+        is_known.then_some(read).ok_or_else(|| "must be a scale from 0.01 to 16, or a width".into())
+    }
+}
 
 actions! {
     /// Paths are those of the user's own files.
@@ -39,8 +65,14 @@ actions! {
         /// One of the user's own, by its key, is removed.
         "remove brush" RemoveBrush { name: String }
         "save" Save { file: PathBuf }
-        /// `bits`: per channel; if absent, the format's default.
-        "export" Export { file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8> }
+        /// `bits`: per channel; if absent, the format's default. `size`: if absent, that of the
+        /// canvas. `selection`: only the box around it.
+        "export" Export {
+            file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8>, size: Option<ExportSize>,
+            selection: Option<bool>,
+        }
+        /// The document in front once more, to the same file, which is replaced.
+        "export again" ExportAgain {}
         /// The maps of the shape as files whose names begin with this one's, as PNG, or as EXR if
         /// it ends in that.
         "export maps" ExportMaps { file: PathBuf, maps: Vec<ShapeMap>, directx: bool, bits: u8 }
@@ -93,6 +125,7 @@ impl FileAction {
             FileAction::KeepBrush { name } => brushes::keep(session, name)?,
             FileAction::RemoveBrush { name } => brushes::remove(session, name)?,
             FileAction::Save { file } => save_in_front(session, file)?,
+            FileAction::ExportAgain {} => export_again(session)?,
             FileAction::Export { .. }
             | FileAction::ExportMaps { .. }
             | FileAction::ExportUnwrapped { .. } => self.export(session)?,
@@ -134,12 +167,15 @@ impl FileAction {
         let Some(open) = session.active() else { return Ok(()) };
         let terms = Terms::export(unless_forced(session), session.reads());
         match self {
-            FileAction::Export { file, background, quality, bits } => {
-                let (background, quality, bits) = (*background, *quality, *bits);
-                let options =
-                    ExportOptions { background, quality, bits, ..ExportOptions::default() };
-                let notes = export(open.document(), file, &options, terms, &Progress::default())?;
-                session.notes.extend(notes);
+            FileAction::Export { file, background, quality, bits, size, selection } => {
+                let settings = ExportSettings {
+                    background: *background,
+                    quality: *quality,
+                    bits: *bits,
+                    size: size.unwrap_or(ExportSettings::default().size),
+                    selection: selection.unwrap_or(false),
+                };
+                export_in_front(session, ExportedFile { file: file.clone(), settings }, terms)?;
             }
             FileAction::ExportMaps { file, maps, directx, bits } => {
                 let is_exr =
@@ -158,6 +194,26 @@ impl FileAction {
         }
         Ok(())
     }
+}
+
+/// Exports the document in front, which remembers how.
+fn export_in_front(session: &mut Session, to: ExportedFile, terms: Terms) -> Result<()> {
+    let Some(open) = session.active_mut() else { return Ok(()) };
+    let (document, progress) = (open.document().clone(), Progress::default());
+    let notes = export(&document, &to.file, &to.settings, terms, &progress)?;
+    open.exported = Some(to);
+    session.notes.extend(notes);
+    Ok(())
+}
+
+fn export_again(session: &mut Session) -> Result<()> {
+    let Some(to) = session.active().and_then(|open| open.exported.clone()) else {
+        session.say("The document was not exported yet.");
+        return Ok(());
+    };
+    // It was written here before.
+    let terms = Terms::export(Overwrite::Anything, session.reads());
+    export_in_front(session, to, terms)
 }
 
 /// Saves the document in front.
@@ -190,16 +246,17 @@ pub(super) fn unless_forced(session: &Session) -> Overwrite {
 pub fn export(
     document: &Document,
     file: &Path,
-    options: &ExportOptions,
+    settings: &ExportSettings,
     terms: Terms,
     progress: &Progress,
 ) -> Result<Vec<String>> {
-    let target = OutputFile::new(file, terms)?;
+    let (target, budget) = (OutputFile::new(file, terms)?, Budget::of_this_machine());
+    let (document, options) = settings.prepare(document, file, &budget)?;
     if let Output::Picture(_) = Output::of(file)? {
-        target.write_document(document, options, &Budget::of_this_machine(), progress)?;
+        target.write_document(&document, &options, &budget, progress)?;
         return Ok(Vec::new());
     }
-    let Some(encoded) = save::encode(document, file, progress)? else { return Ok(Vec::new()) };
+    let Some(encoded) = save::encode(&document, file, progress)? else { return Ok(Vec::new()) };
     target.replace(&encoded.bytes)?;
     Ok(encoded.notes.into_iter().map(|note| format!("{}: {note}", file.display())).collect())
 }

@@ -20,6 +20,8 @@ actions! {
         /// A view of the surface over the picture, by its name, or none.
         "overlay" Overlay { view: Option<String> }
         "overlay opacity" OverlayOpacity { to: f32 }
+        /// The picture in grays of its luminance, or in its colors.
+        "values" Values { on: bool }
         /// The surface unwrapped instead of the picture, as the current operator says. The pen's
         /// points are then those of the sheet.
         "unwrapped" Unwrapped { on: bool }
@@ -32,6 +34,7 @@ impl ViewAction {
         match self {
             ViewAction::Overlay { view } => session.overlay.clone_from(view),
             ViewAction::OverlayOpacity { to } => session.overlay_opacity = to.max(0.0).min(1.0),
+            ViewAction::Values { on } => session.shows_values = *on,
             ViewAction::Unwrapped { on } => unwrap(session, *on),
             _ => {
                 if let Some(open) = session.active_mut() {
@@ -60,6 +63,7 @@ impl ViewAction {
             ViewAction::LookAt { center } => CanvasView { center: *center, ..view },
             ViewAction::Overlay { .. }
             | ViewAction::OverlayOpacity { .. }
+            | ViewAction::Values { .. }
             | ViewAction::Unwrapped { .. } => view,
         }
     }

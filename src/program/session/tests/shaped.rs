@@ -57,9 +57,11 @@ fn read_picture(file: &Path) -> Vec<u8> {
 /// again.
 fn everywhere(document: &Document, folder: &Path) -> [Vec<u8>; 4] {
     let at = |name: &str| -> PathBuf { folder.join(name) };
-    let (options, terms) =
-        (io::export::ExportOptions::default(), io::Terms::export(Overwrite::Forced, Vec::new()));
-    files::export(document, &at("a.png"), &options, terms, &Progress::default()).unwrap();
+    let (settings, terms) = (
+        crate::session::ExportSettings::default(),
+        io::Terms::export(Overwrite::Forced, Vec::new()),
+    );
+    files::export(document, &at("a.png"), &settings, terms, &Progress::default()).unwrap();
     storage::save(&at("a.ora"), document, Overwrite::Forced, &Progress::default())
         .unwrap()
         .unwrap();

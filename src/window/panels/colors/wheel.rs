@@ -1,7 +1,8 @@
 //! Where a color is chosen by eye: a square of saturation and value, with a bar of hues beside it or
 //! a wheel of hues around it. Floor 7.
 
-use super::{Harmony, srgb};
+use super::srgb;
+use crate::harmony::Harmony;
 use crate::theme::color32;
 use crate::widgets::ValueChange;
 use eframe::egui::{

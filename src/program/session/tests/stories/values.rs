@@ -18,6 +18,7 @@ use crate::paint::{
     GradientStop, LayerEffect, NamedColor, PictureFilter, Placement, Text, TextAlign, TextStyle,
 };
 use crate::raster::{Picture, Resampling};
+use crate::session::ExportSize;
 use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
 use crate::shading::{
@@ -141,6 +142,15 @@ impl Roll for PictureFilter {
         let mut filter = dice.one_of(&PictureFilter::all());
         filter.visit(&mut ParameterDice(dice));
         filter
+    }
+}
+
+impl Roll for ExportSize {
+    fn roll(dice: &mut Dice) -> Self {
+        match dice.is(70) {
+            true => Self::Scale(dice.one_of(&[1.0, 0.5, 2.0, 0.3])),
+            false => Self::Width(1 + dice.below(120) as u32),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
-//! Colors that go with the current one: marks on the wheel, and a row to take them from. Floor 7.
+//! Colors that go with another one. Floor 7. Not here: where they are shown (`panels::colors`).
 
-use super::srgb;
-use crate::math::srgb::Color;
+use crate::math::hsv;
+use crate::math::srgb::{Color, quantize};
 
 rilievo_engine::named! {
     /// Which hues go with a hue, on the wheel of the picker.
@@ -31,9 +31,12 @@ impl Harmony {
         }
     }
 
-    /// The other colors, of the same saturation and value.
+    /// The other colors, of the same saturation and value, all in `[0, 1]`.
     pub fn colors(self, [h, s, v]: [f32; 3]) -> impl Iterator<Item = Color> {
-        self.turns().iter().map(move |turn| srgb([h + turn, s, v], 255))
+        self.turns().iter().map(move |turn| {
+            let [r, g, b] = hsv::to_rgb([h + turn, s, v]).map(quantize);
+            Color::rgb(r, g, b)
+        })
     }
 }
 
