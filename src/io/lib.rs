@@ -20,6 +20,7 @@ pub mod machine;
 pub mod maps;
 pub mod open;
 pub mod palette;
+pub mod path_svg;
 pub mod picture;
 pub mod pixels;
 pub mod project;

@@ -64,6 +64,8 @@ pub enum WindowRequest {
     Wobble,
     /// The share of the machine's memory that may be kept for speed.
     KeptShare(f32),
+    /// Puts a text into the clipboard.
+    CopyText(String),
     /// A sentence in the status bar.
     Say(String),
     /// Asks where to, for a file of this extension.

@@ -3,6 +3,7 @@
 
 mod drawing;
 mod figure;
+mod fit;
 mod flatten;
 mod live_path;
 mod nodes;
@@ -11,6 +12,7 @@ mod subpath;
 
 pub use drawing::PathDrawing;
 pub use figure::{Figure, FigureKind};
+pub use fit::fit_closed;
 pub use flatten::FlatLine;
 pub use live_path::{LivePath, PathCap, PathGeometry, PathJoin, PathRule};
 pub use nodes::{NodeHandle, PathPlace};

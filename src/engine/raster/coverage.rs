@@ -5,6 +5,7 @@
 pub mod contour;
 pub mod edges;
 pub mod shapes;
+pub mod trace;
 
 use super::bits::{TileBits, bytes_of};
 use super::grid::Grid;

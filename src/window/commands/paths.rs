@@ -2,9 +2,10 @@
 
 use super::row::{MenuCommand, row};
 use crate::document::Content;
+use crate::io::path_svg;
 use crate::paint::LivePath;
 use crate::raster::coverage::SelectionMode;
-use crate::requests::UiRequests;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::PathAction;
 use crate::session::{Action, LayerPath, Session};
 use std::sync::Arc;
@@ -23,6 +24,10 @@ fn has_path(session: &Session) -> bool {
 
 fn has_figure(session: &Session) -> bool {
     selected_path(session).is_some_and(|path| path.figure().is_some())
+}
+
+fn has_selection(session: &Session) -> bool {
+    session.active().is_some_and(|open| open.document().active_selection.is_some())
 }
 
 fn act(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPath) -> PathAction) {
@@ -53,6 +58,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         },
     ),
     row(
+        "Path from selection",
+        &[],
+        "Draws a path around what is selected",
+        has_selection,
+        |_, requests| requests.act(Action::Path(PathAction::FromSelection {})),
+    ),
+    row(
         "Stroke path with brush",
         &[],
         "Paints along the path with the brush in hand: on the paint layer that is selected with it, or on strokes \
@@ -61,6 +73,18 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| {
             let onto = painted_beside(session);
             act(session, requests, |layer| PathAction::Stroke { layer, onto });
+        },
+    ),
+    row(
+        "Copy as SVG",
+        &[],
+        "Puts the path into the clipboard as SVG, for other programs",
+        has_path,
+        |session, requests| {
+            let text = selected_path(session).map(|path| path_svg::write(path));
+            if let Some(text) = text {
+                requests.request(WindowRequest::CopyText(text));
+            }
         },
     ),
     row(

@@ -29,7 +29,11 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         let kind = choice(ui, "Kind of figure", settings.figure.kind, &FigureKind::LABELS);
         let with = |figure: Figure| PathSettings { figure, ..settings };
         push(kind.map(|kind| with(Figure { kind, ..settings.figure })));
-        let number = figure_numbers(settings.figure, |field, value| field.inline(ui, value, 60.0));
+        // New ones lie level.
+        let names = settings.figure.kind.numbers().iter().copied();
+        let names: Vec<&str> = names.filter(|name| *name != "rotation").collect();
+        let number =
+            figure_numbers(settings.figure, &names, |field, value| field.inline(ui, value, 60.0));
         push(number.map(|changed| with(changed.to)));
     }
     let fill = check(ui, "Fill", "New ones are filled with the first color", settings.fills);
@@ -46,21 +50,23 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.weak(session.tool.hint());
 }
 
-/// The numbers that a figure of its kind has; the changed figure.
+/// Some numbers of a figure, by their names; the changed figure.
 fn figure_numbers(
     figure: Figure,
+    names: &[&str],
     mut show: impl FnMut(NumberField<'static>, f32) -> Option<ValueChange<f32>>,
 ) -> Option<ValueChange<Figure>> {
     let mut changed = None;
     for setting in Figure::SETTINGS {
-        if !figure.kind.numbers().contains(&setting.name) {
+        if !names.contains(&setting.name) {
             continue;
         }
         let range = setting.range.clone();
         let field =
             |most: f32| NumberField::new(setting.label, *range.start()..=most, setting.hint);
         let field = match setting.name {
-            "rotation" => NumberField::new(setting.label, -180.0..=180.0, setting.hint).degrees(),
+            // The rotation of the placement is beneath it.
+            "rotation" => NumberField::new("Turn", -180.0..=180.0, setting.hint).degrees(),
             "sides" => field(24.0).decimals(0),
             _ if setting.is_length => field(200.0).pixels(),
             _ => field(*range.end()),
@@ -107,7 +113,8 @@ fn show_figure(ui: &mut Ui, path: &LivePath, figure: &Figure, setter: &mut Layer
     let with = |figure: Figure| LivePath { geometry: figure.into(), ..path.clone() };
     let kind = choice_row(ui, "Kind", figure.kind, &FigureKind::LABELS);
     set(setter, kind.map(|kind| with(Figure { kind, ..*figure })));
-    let number = figure_numbers(*figure, |field, value| field.row(ui, value));
+    let names = figure.kind.numbers();
+    let number = figure_numbers(*figure, names, |field, value| field.row(ui, value));
     take(setter, number.map(|changed| changed.map(with)));
     let hint = "Its corners become nodes, which the path tool moves";
     if ui.button("To nodes").on_hover_text(hint).clicked() {

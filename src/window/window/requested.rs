@@ -37,6 +37,7 @@ impl MainWindow {
             WindowRequest::ExportMapsDialog => self.dialogs.push(Dialog::Maps(self.maps.clone())),
             WindowRequest::ExportMaps => self.ask_where(FilePurpose::ExportMaps),
             WindowRequest::KeptShare(share) => self.settings.kept_share = share,
+            WindowRequest::CopyText(text) => ctx.copy_text(text),
             WindowRequest::Say(sentence) => self.jobs.say(sentence),
             WindowRequest::Wobble => self.canvas.wobble(ctx, &self.session),
             WindowRequest::Export(extension) => {

@@ -25,6 +25,8 @@ actions! {
         "end" End {}
         /// The node that was set last, or that is selected, is taken away.
         "back" Back {}
+        /// The edge of the selection as a layer of a path.
+        "from selection" FromSelection {}
         /// What lies inside is selected.
         "select" Select { layer: LayerPath, how: SelectionMode }
         /// The brush in hand goes along it, on another layer, or on strokes above it.
@@ -45,6 +47,10 @@ impl PathAction {
             PathAction::Settings { path } => return session.tools.path = path.clamp_to_ranges(),
             PathAction::End {} => return session.tools.path_node.line = None,
             PathAction::Back {} => return step_back(session),
+            PathAction::FromSelection {} => {
+                let made = from_selection(session);
+                return session.said.extend(made.err());
+            }
             PathAction::Stroke { layer, onto } => {
                 let stroked = stroke(session, layer, onto.as_ref());
                 return session.said.extend(stroked.err());
@@ -60,6 +66,7 @@ impl PathAction {
             PathAction::Settings { .. }
             | PathAction::End {}
             | PathAction::Back {}
+            | PathAction::FromSelection {}
             | PathAction::Stroke { .. } => Ok(()),
         };
         if let Err(why) = done {
@@ -108,6 +115,18 @@ fn select(open: &mut OpenDocument, layer: &LayerPath, how: SelectionMode) -> Res
     }
     open.commit("Select path", document.with_combined(Selection::new(inside), how));
     Ok(())
+}
+
+/// Draws a path around what is selected.
+fn from_selection(session: &mut Session) -> Result<(), String> {
+    let colors = [session.tools.color, session.tools.second_color];
+    let settings = session.tools.path.clamp_to_ranges();
+    let open = session.active_mut().ok_or("There is no document.")?;
+    open.forget_preview();
+    let selected = open.document().active_coverage().ok_or("Nothing is selected.")?;
+    let path = along::around(selected, &settings, colors)
+        .ok_or("The selection has no edge that a path could follow.")?;
+    draw(open, &path)
 }
 
 /// Paints along a path with the brush in hand.

@@ -79,6 +79,23 @@ fn the_inside_of_a_path_is_selected_and_the_brush_goes_along_it() {
 }
 
 #[test]
+fn a_path_around_a_selection_selects_it_again() {
+    let all = r#"{"in":"selection","do":"none"}"#;
+    let select = r#"{"in":"path","do":"select","layer":"0","how":"replace"}"#;
+    let ellipse = DRAW.replace("rectangle", "ellipse");
+    let made = r#"{"in":"path","do":"from selection"}"#;
+    let again = r#"{"in":"path","do":"select","layer":"1","how":"replace"}"#;
+    let before = play(&[&ellipse, select]);
+    let after = play(&[&ellipse, select, made, all, again]);
+    let area = |session: &Session| document(session).active_coverage().unwrap().area_px();
+    let (before, now) = (area(&before), area(&after));
+    assert!((before - now).abs() < 0.004 * before, "{before} {now}");
+    let layer = &document(&after).layers[1];
+    let path = crate::tools::path::of_layer(layer).unwrap().source.path().unwrap();
+    assert!(path.count_nodes() < 16, "{}", path.count_nodes());
+}
+
+#[test]
 fn what_is_no_path_says_so() {
     let add = r#"{"in":"layer","do":"add","kind":"paint"}"#;
     for action in [

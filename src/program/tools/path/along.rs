@@ -1,18 +1,34 @@
-//! What else a path is good for: the selection of its inside, and strokes of the brush along it.
+//! What else a path is good for: the selection of its inside and the other way round, and strokes of
+//! the brush along it.
 //! Floor 5.
 
-use super::{of_layer, to_canvas};
+use super::{PathSettings, of_layer, to_canvas};
 use crate::document::{Document, LayerId};
-use crate::math::Vec2;
-use crate::paint::path::FlatLine;
-use crate::paint::{PathRule, Sample};
+use crate::math::{Vec2, srgb::Color};
+use crate::paint::path::{FlatLine, fit_closed};
+use crate::paint::{LivePath, PathRule, Sample, Subpath};
 use crate::raster::CoverageGrid;
-use crate::raster::coverage::shapes;
+use crate::raster::coverage::{shapes, trace};
 use crate::tools::{Outcome, PenSample, ToolContext, ToolKind, press};
 
 /// How far the pen goes from sample to sample, px, and in a second.
 const STEP_PX: f32 = 2.0;
 const SPEED_PX: f32 = 500.0;
+
+/// How far a path may run from the edge of the selection that it is made from, px.
+const ERROR_PX: f32 = 0.6;
+
+/// The path around what is selected; `None` where nothing is, or no file could hold it.
+pub fn around(
+    selected: &CoverageGrid,
+    settings: &PathSettings,
+    colors: [Color; 2],
+) -> Option<LivePath> {
+    let lines = trace::trace(selected);
+    let lines: Vec<Subpath> = lines.iter().map(|line| fit_closed(line, ERROR_PX)).collect();
+    let path = settings.path(lines, colors);
+    (path.count_nodes() > 0 && path.fits().is_ok()).then_some(path)
+}
 
 /// What lies inside of the path of a layer, where it is seen before it is bent; `None` for a layer
 /// that is no path.

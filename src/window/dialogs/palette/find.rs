@@ -30,7 +30,7 @@ const BRUSH: [(&str, &str); 8] = [
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 72] = [
+const SYNONYMS: [(&str, &[&str]); 79] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
@@ -98,6 +98,13 @@ const SYNONYMS: [(&str, &[&str]); 72] = [
     ("clipping", &["clip to layer below"]),
     ("ruler", &["rulers", "guides", "assistants"]),
     ("symmetry", &["assistants"]),
+    ("vector", &["path", "figure"]),
+    ("bezier", &["path"]),
+    ("polygon", &["figure", "lasso"]),
+    ("star", &["figure"]),
+    ("arrow", &["figure"]),
+    ("trace", &["path from selection"]),
+    ("vectorize", &["path from selection"]),
     ("inflate", &["give it a shape", "puff up"]),
     ("3d", &["give it a shape", "open maps"]),
     ("theme", &["dark, gray or light"]),
