@@ -1,7 +1,7 @@
 //! Outlines whose width differs from node to node: the area that a disc covers that runs along the
 //! line and grows and shrinks on its way. Floor 3.
 
-use super::subpath::{Subpath, point_at};
+use super::subpath::{Subpath, even_point_at};
 use crate::math::Vec2;
 use tiny_skia::{Path, PathBuilder};
 
@@ -23,7 +23,7 @@ pub fn of_lines(lines: &[Subpath], width: f32, scale: f32) -> Option<Path> {
             let steps = count_steps(curve, scale);
             for step in 0..=steps {
                 let t = step as f32 / steps as f32;
-                let disc = (point_at(curve, t), a + (b - a) * t);
+                let disc = (even_point_at(curve, t), a + (b - a) * t);
                 push_disc(&mut path, disc);
                 if let Some(before) = last {
                     push_side(&mut path, before, disc);

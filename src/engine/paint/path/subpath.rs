@@ -87,6 +87,12 @@ pub(super) fn point_at([a, b, c, d]: [Vec2; 4], t: f32) -> Vec2 {
     s * s * s * a + 3.0 * s * s * t * b + 3.0 * s * t * t * c + t * t * t * d
 }
 
+/// As [`point_at`], at an even speed where the curve is straight for lack of handles.
+pub(super) fn even_point_at(curve: [Vec2; 4], t: f32) -> Vec2 {
+    let [a, b, c, d] = curve;
+    if a == b && c == d { a.lerp(d, t) } else { point_at(curve, t) }
+}
+
 /// The two halves of a curve that is cut at `t`.
 pub(super) fn split_at([a, b, c, d]: [Vec2; 4], t: f32) -> [[Vec2; 4]; 2] {
     let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
