@@ -43,8 +43,6 @@ fn a_preset_of_keys_counts_at_once_and_in_the_next_run() {
     key(&mut harness, Modifiers::NONE, Key::P);
     assert_eq!(session(&harness).tool, ToolKind::Eyedropper);
     // Settings are written after a pause.
-    std::thread::sleep(std::time::Duration::from_millis(2100));
-    super::until(&mut harness, |_| file.exists());
     let written = || std::fs::read_to_string(&file).is_ok_and(|text| text.contains("\"krita\""));
     super::until(&mut harness, |_| written());
     let mut next = window_at(1.0, Some(file.clone()));
