@@ -217,7 +217,8 @@ impl MainWindow {
         self.hear_keys(ui.ctx(), &mut requests);
         self.take_dropped(ui.ctx());
         self.lay_out(ui, &mut requests);
-        self.second_view.show(ui.ctx(), &self.canvas, &self.session);
+        let keymap = &self.settings.keymap;
+        self.second_view.show(ui.ctx(), &self.canvas, &self.session, keymap, &mut requests);
         self.show_dialog(ui.ctx(), &mut requests);
         self.show_editing(ui.ctx());
         self.guard_leaving(ui.ctx());

@@ -2,7 +2,10 @@
 //! or a detail on another screen. It is looked at, not painted in. Floor 7.
 
 use super::Canvas;
+use crate::keymap::Keymap;
+use crate::keys;
 use crate::math::{Affine2, Vec2, vec2};
+use crate::requests::UiRequests;
 use crate::session::{CanvasView, Session};
 use crate::theme;
 use eframe::egui::{
@@ -29,8 +32,16 @@ impl SecondView {
         (self.is_open, self.view) = (!self.is_open, None);
     }
 
-    /// Shows it, where the system has windows, as one of its own.
-    pub fn show(&mut self, ctx: &Context, canvas: &Canvas, session: &Session) {
+    /// Shows it, where the system has windows, as one of its own, in which the keys of commands and
+    /// tools count, too.
+    pub fn show(
+        &mut self,
+        ctx: &Context,
+        canvas: &Canvas,
+        session: &Session,
+        keymap: &Keymap,
+        requests: &mut UiRequests,
+    ) {
         if !self.is_open {
             return;
         }
@@ -47,6 +58,8 @@ impl SecondView {
             let is_alone = ui.ctx().viewport_id() == id;
             if is_alone && close(ui) {
                 self.is_open = false;
+            } else if is_alone {
+                keys::listen(ui.ctx(), session, keymap, requests);
             }
         });
     }

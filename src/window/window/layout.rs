@@ -3,6 +3,7 @@
 
 use super::MainWindow;
 use crate::jobs::JobKind;
+use crate::keys;
 use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
 use crate::panels;
@@ -10,7 +11,9 @@ use crate::panels::start::StartPictures;
 use crate::requests::UiRequests;
 use crate::theme::ACCENT;
 use crate::widgets::{tab, tab_width_pt};
-use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, Ui};
+use eframe::egui::{
+    self, CentralPanel, Frame, Id, Margin, Panel, Ui, ViewportBuilder, ViewportId, WindowLevel,
+};
 
 /// The height that the layers take at first, if there is room: more than six of them.
 const LAYERS_PT: f32 = 384.0;
@@ -84,12 +87,18 @@ impl MainWindow {
             PanelSide::Left => Panel::left("panels left"),
             PanelSide::Right => Panel::right("panels right"),
             PanelSide::Floating => {
-                let window =
-                    egui::Window::new("Panels").id(Id::unique("panels apart")).constrain(true);
-                let corner = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
-                let window = window.default_pos(corner).min_size([230.0, 300.0]);
-                let window = window.default_size([self.settings.layout.width_pt, 640.0]);
-                return drop(window.show(ui.ctx(), |ui| self.show_panels(ui, requests)));
+                let size_pt = [self.settings.layout.width_pt, 640.0];
+                let place = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
+                let apart = ApartWindow { name: "Panels", size_pt, place };
+                let mut is_open = true;
+                apart.show(ui.ctx(), &mut is_open, |ui, is_own| {
+                    self.show_panels(ui, requests);
+                    self.hear_keys_apart(ui, is_own, requests);
+                });
+                if !is_open {
+                    self.settings.layout.side = PanelSide::Right;
+                }
+                return;
             }
         };
         let beside = beside.default_size(self.settings.layout.width_pt).size_range(WIDTHS_PT);
@@ -253,27 +262,67 @@ impl MainWindow {
     /// The panels in windows of their own; closing one puts it back.
     fn show_floating(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         for (i, front) in self.settings.layout.floating.clone().into_iter().enumerate() {
-            let mut is_open = true;
             // Over the canvas, so that none covers its former place.
-            let corner = ctx.content_rect().center()
+            let place = ctx.content_rect().center()
                 + egui::vec2(-160.0, -220.0)
                 + egui::Vec2::splat(26.0 * i as f32);
-            let window = egui::Window::new(front.name()).id(Id::unique(("panel", front.name())));
-            let window = window
-                .default_size([268.0, 340.0])
-                .min_size([230.0, 160.0])
-                .default_pos(corner)
-                .open(&mut is_open);
-            let area = |ui: &mut Ui| {
+            let apart = ApartWindow { name: front.name(), size_pt: [268.0, 340.0], place };
+            let mut is_open = true;
+            apart.show(ctx, &mut is_open, |ui, is_own| {
                 let area =
                     egui::ScrollArea::vertical().id_salt(front.name()).auto_shrink([false, false]);
                 area.show(ui, |ui| self.panel(ui, front, requests));
-            };
-            window.show(ctx, area);
+                self.hear_keys_apart(ui, is_own, requests);
+            });
             if !is_open {
                 self.settings.layout.floating.retain(|other| *other != front);
             }
         }
+    }
+
+    /// The keys of commands and tools count in the system's windows of panels, too.
+    fn hear_keys_apart(&self, ui: &Ui, is_own: bool, requests: &mut UiRequests) {
+        if is_own {
+            keys::listen(ui.ctx(), &self.session, &self.settings.keymap, requests);
+        }
+    }
+}
+
+/// A window of its own for panels.
+struct ApartWindow {
+    name: &'static str,
+    size_pt: [f32; 2],
+    /// Where it opens in this window, if the system has no others.
+    place: egui::Pos2,
+}
+
+impl ApartWindow {
+    const LEAST_PT: [f32; 2] = [230.0, 160.0];
+
+    /// Shows it as a window of the system, which goes to another screen, or else over the canvas;
+    /// `add` is told whether it is the system's. Closing it clears `is_open`.
+    fn show(self, ctx: &egui::Context, is_open: &mut bool, mut add: impl FnMut(&mut Ui, bool)) {
+        let ApartWindow { name, size_pt, place } = self;
+        if ctx.embed_viewports() {
+            let window = egui::Window::new(name).id(Id::unique(("panel", name))).constrain(true);
+            let window = window.default_size(size_pt).min_size(Self::LEAST_PT).default_pos(place);
+            window.open(is_open).show(ctx, |ui| add(ui, false));
+            return;
+        }
+        // Above the picture, and beneath other programs while they are used.
+        let is_used = ctx.input(|i| i.raw.viewports.values().any(|one| one.focused == Some(true)));
+        let level = if is_used { WindowLevel::AlwaysOnTop } else { WindowLevel::Normal };
+        let builder = ViewportBuilder::default()
+            .with_title(name)
+            .with_inner_size(size_pt)
+            .with_min_inner_size(Self::LEAST_PT)
+            .with_minimize_button(false)
+            .with_taskbar(false)
+            .with_window_level(level);
+        ctx.show_viewport_immediate(ViewportId::from_hash_of(("panel", name)), builder, |ui, _| {
+            CentralPanel::default().show(ui, |ui| add(ui, true));
+            *is_open &= !ui.input(|i| i.viewport().close_requested());
+        });
     }
 }
 
