@@ -31,7 +31,7 @@ const SMALLEST_PT: f32 = 19.0;
 const PAIRED_PT: f32 = 24.0;
 /// Between two buttons, and between two groups.
 const GAP_PT: f32 = 1.0;
-const GROUP_GAP_PT: f32 = 9.0;
+const GROUP_GAP_PT: f32 = 6.0;
 /// The height of the colors beneath the tools, points.
 const COLORS_PT: f32 = 54.0;
 
