@@ -217,7 +217,7 @@ impl MainWindow {
         self.hear_keys(ui.ctx(), &mut requests);
         self.take_dropped(ui.ctx());
         self.lay_out(ui, &mut requests);
-        let keymap = &self.settings.keymap;
+        let keymap = self.is_free_for_keys().then_some(&self.settings.keymap);
         self.second_view.show(ui.ctx(), &self.canvas, &self.session, keymap, &mut requests);
         self.show_dialog(ui.ctx(), &mut requests);
         self.show_editing(ui.ctx());

@@ -32,14 +32,14 @@ impl SecondView {
         (self.is_open, self.view) = (!self.is_open, None);
     }
 
-    /// Shows it, where the system has windows, as one of its own, in which the keys of commands and
-    /// tools count, too.
+    /// Shows it, where the system has windows, as one of its own, in which the keys of `keymap` count,
+    /// too.
     pub fn show(
         &mut self,
         ctx: &Context,
         canvas: &Canvas,
         session: &Session,
-        keymap: &Keymap,
+        keymap: Option<&Keymap>,
         requests: &mut UiRequests,
     ) {
         if !self.is_open {
@@ -58,7 +58,7 @@ impl SecondView {
             let is_alone = ui.ctx().viewport_id() == id;
             if is_alone && close(ui) {
                 self.is_open = false;
-            } else if is_alone {
+            } else if let Some(keymap) = keymap.filter(|_| is_alone) {
                 keys::listen(ui.ctx(), session, keymap, requests);
             }
         });

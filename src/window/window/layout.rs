@@ -89,7 +89,12 @@ impl MainWindow {
             PanelSide::Floating => {
                 let size_pt = [self.settings.layout.width_pt, 640.0];
                 let place = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
-                let apart = ApartWindow { name: "Panels", size_pt, place };
+                let apart = ApartWindow {
+                    name: "Panels",
+                    size_pt,
+                    place,
+                    is_enabled: self.dialogs.is_empty(),
+                };
                 let mut is_open = true;
                 apart.show(ui.ctx(), &mut is_open, |ui, is_own| {
                     self.show_panels(ui, requests);
@@ -266,7 +271,12 @@ impl MainWindow {
             let place = ctx.content_rect().center()
                 + egui::vec2(-160.0, -220.0)
                 + egui::Vec2::splat(26.0 * i as f32);
-            let apart = ApartWindow { name: front.name(), size_pt: [268.0, 340.0], place };
+            let apart = ApartWindow {
+                name: front.name(),
+                size_pt: [268.0, 340.0],
+                place,
+                is_enabled: self.dialogs.is_empty(),
+            };
             let mut is_open = true;
             apart.show(ctx, &mut is_open, |ui, is_own| {
                 let area =
@@ -282,7 +292,7 @@ impl MainWindow {
 
     /// The keys of commands and tools count in the system's windows of panels, too.
     fn hear_keys_apart(&self, ui: &Ui, is_own: bool, requests: &mut UiRequests) {
-        if is_own {
+        if is_own && self.is_free_for_keys() {
             keys::listen(ui.ctx(), &self.session, &self.settings.keymap, requests);
         }
     }
@@ -294,6 +304,8 @@ struct ApartWindow {
     size_pt: [f32; 2],
     /// Where it opens in this window, if the system has no others.
     place: egui::Pos2,
+    /// Behind a dialog it is not.
+    is_enabled: bool,
 }
 
 impl ApartWindow {
@@ -302,7 +314,7 @@ impl ApartWindow {
     /// Shows it as a window of the system, which goes to another screen, or else over the canvas;
     /// `add` is told whether it is the system's. Closing it clears `is_open`.
     fn show(self, ctx: &egui::Context, is_open: &mut bool, mut add: impl FnMut(&mut Ui, bool)) {
-        let ApartWindow { name, size_pt, place } = self;
+        let ApartWindow { name, size_pt, place, is_enabled } = self;
         if ctx.embed_viewports() {
             let window = egui::Window::new(name).id(Id::unique(("panel", name))).constrain(true);
             let window = window.default_size(size_pt).min_size(Self::LEAST_PT).default_pos(place);
@@ -320,7 +332,12 @@ impl ApartWindow {
             .with_taskbar(false)
             .with_window_level(level);
         ctx.show_viewport_immediate(ViewportId::from_hash_of(("panel", name)), builder, |ui, _| {
-            CentralPanel::default().show(ui, |ui| add(ui, true));
+            CentralPanel::default().show(ui, |ui| {
+                if !is_enabled {
+                    ui.disable();
+                }
+                add(ui, true);
+            });
             *is_open &= !ui.input(|i| i.viewport().close_requested());
         });
     }

@@ -175,6 +175,12 @@ impl MainWindow {
         keys::listen(ctx, &self.session, &self.settings.keymap, requests);
     }
 
+    /// Whether keys in other windows than this one are done at once: behind a dialog and during an
+    /// edit they are not.
+    pub(super) fn is_free_for_keys(&self) -> bool {
+        self.dialogs.is_empty() && !self.jobs.is_awaiting_dialog() && self.jobs.editing().is_none()
+    }
+
     /// After the requests of a frame: whether a dialog came, or will.
     pub(super) fn expect_dialog(&mut self, dialogs_before: usize) {
         if self.jobs.is_awaiting_dialog() || self.dialogs.len() > dialogs_before {
