@@ -5,7 +5,7 @@
 use std::{fs, path::Path};
 
 /// `docs/ARCHITECTURE.md` shows the same table.
-const FLOORS: [(&str, u32); 14] = [
+const FLOORS: [(&str, u32); 15] = [
     ("error", 0),
     ("math", 0),
     ("memory", 0),
@@ -20,6 +20,7 @@ const FLOORS: [(&str, u32); 14] = [
     ("session", 6),
     ("window", 7),
     ("cli", 7),
+    ("web", 8),
 ];
 
 /// The modules of `std` that floors 0–4 may not name. Rayon is allowed there: it gets its threads from outside.
@@ -143,7 +144,7 @@ fn arrows_between_floors_point_down_only() {
                     wrong.push(format!("{file}: {here} (floor {at}) names {named} (floor {other})"))
                 }
                 // A crate of one floor names its own modules.
-                None if ["io", "window"].contains(&here) => {}
+                None if ["io", "window", "web"].contains(&here) => {}
                 None => wrong.push(format!("{file}: names {named}, which stands on no floor")),
             }
         }
@@ -175,6 +176,44 @@ fn the_lower_floors_touch_neither_files_nor_clocks_nor_threads() {
             // An error may wrap what the operating system said.
             let is_wrapped = file == "src/engine/error.rs" && word == "io";
             assert!(is_wrapped || !OUTSIDE_WORLD.contains(&word), "{file} names std::{word}");
+        }
+    }
+}
+
+/// What names the standard library where a browser has something else: `io::platform` itself, the
+/// disk, what one system alone knows, and the command line.
+const ON_DESKTOPS: [&str; 7] = [
+    "src/io/platform",
+    "src/io/fs/",
+    "src/io/machine/",
+    "src/program/cli",
+    "src/window/clipboard/x11.rs",
+    "src/window/event_loop.rs",
+    "src/window/files/system.rs",
+];
+
+#[test]
+fn what_a_browser_does_in_its_own_way_is_asked_of_the_platform() {
+    for (file, code) in sources() {
+        let is_test = file.contains("tests") || file.ends_with("memory.rs");
+        if is_test || is_root(&file) || ON_DESKTOPS.iter().any(|part| file.starts_with(part)) {
+            continue;
+        }
+        let own = code.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
+        for name in named_beneath(own, "std::") {
+            assert!(
+                !["fs", "env", "process", "thread"].contains(&name),
+                "{file} names std::{name}: ask io::platform"
+            );
+        }
+        for name in named_beneath(own, "std::time::") {
+            assert!(
+                !["Instant", "SystemTime"].contains(&name),
+                "{file} names std::time::{name}: ask io::platform"
+            );
+        }
+        for method in [".exists()", ".recv_timeout("] {
+            assert!(!own.contains(method), "{file} calls {method}: ask io::platform");
         }
     }
 }

@@ -5,12 +5,12 @@
 #![warn(missing_docs)]
 
 use super::Budget;
+use crate::platform::files as fs;
 use crate::raster::Asset;
 use crate::{Error, Result};
 use std::{
     cell::RefCell,
     collections::{BTreeMap, HashMap},
-    fs,
     io::Read,
     path::{Path, PathBuf},
 };
@@ -208,6 +208,7 @@ pub fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn folder_with_a_file() -> (tempfile::TempDir, RecipeFolder) {
         let outer = tempfile::tempdir().unwrap();

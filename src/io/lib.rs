@@ -23,6 +23,7 @@ pub mod palette;
 pub mod path_svg;
 pub mod picture;
 pub mod pixels;
+pub mod platform;
 pub mod project;
 pub mod psd;
 pub mod recipe;

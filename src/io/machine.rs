@@ -1,14 +1,18 @@
 //! How much memory this machine has left for the program, according to the system. Floor 5. Only the
 //! files here ask the system; floors beneath are passed figures.
 
-#[cfg(not(windows))]
+#[cfg(not(any(windows, target_family = "wasm")))]
 mod linux;
+#[cfg(target_family = "wasm")]
+mod web;
 #[cfg(windows)]
 mod windows;
 
-#[cfg(not(windows))]
+#[cfg(not(any(windows, target_family = "wasm")))]
 use linux as system;
 use std::sync::atomic::{AtomicU64, Ordering};
+#[cfg(target_family = "wasm")]
+use web as system;
 #[cfg(windows)]
 use windows as system;
 

@@ -19,6 +19,7 @@ mod tests;
 pub use sessions::{LostSession, RecoveredDocument, count_held_by_others, read, sessions};
 
 use super::fs::{FileLock, Fs};
+use super::platform::{self, Instant, SystemTime, Thread, UNIX_EPOCH};
 use super::replace::FileStamp;
 use crate::document::Document;
 use crate::{Error, Result};
@@ -28,8 +29,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 /// Appended edits are flushed after this time at the latest; with the flush itself it stays below
 /// five seconds.
@@ -42,7 +42,7 @@ const FLUSH_AFTER: Duration = Duration::from_secs(3);
 pub struct RecoveryLog {
     tasks: Option<Sender<RecoveryTask>>,
     given_up: Arc<AtomicBool>,
-    worker: Option<JoinHandle<()>>,
+    worker: Option<Thread>,
     trouble: Arc<Mutex<Option<String>>>,
     fs: Arc<dyn Fs>,
     path: PathBuf,
@@ -91,11 +91,9 @@ impl RecoveryLog {
         let given_up = journal.given_up.clone();
         let (tasks, received) = channel();
         let trouble = Arc::default();
-        let worker = std::thread::Builder::new().name("recovery".into());
         let shared_trouble = Arc::clone(&trouble);
-        let worker = worker
-            .spawn(move || work(journal, &received, &shared_trouble))
-            .map_err(|e| Error::io(folder, e))?;
+        let work = move || work(journal, &received, &shared_trouble);
+        let worker = platform::spawn("recovery", work).map_err(|e| Error::io(folder, e))?;
         let recovery = Self {
             tasks: Some(tasks),
             given_up,
@@ -126,7 +124,7 @@ impl RecoveryLog {
         let (done, is_done) = channel();
         self.send(RecoveryTask::Tell(done, false));
         // The worker signals by dropping the sender, which also happens if it ends.
-        !matches!(is_done.recv_timeout(patience), Err(RecvTimeoutError::Timeout))
+        !matches!(platform::recv_timeout(&is_done, patience), Err(RecvTimeoutError::Timeout))
     }
 
     /// Waits until everything recorded is on the disk, where a power cut cannot lose it.
@@ -159,7 +157,7 @@ impl RecoveryLog {
     fn stop(&mut self) {
         self.tasks = None;
         if let Some(worker) = self.worker.take() {
-            let _ = worker.join();
+            let _ = worker.has_finished_well();
         }
     }
 }
@@ -186,10 +184,7 @@ impl Drop for RecoveryLog {
 /// The folder of sessions: `rilievo/recovery` in the user's folder for state; `None` if the system
 /// has none.
 pub fn folder() -> Option<PathBuf> {
-    use etcetera::BaseStrategy;
-    let base = etcetera::choose_base_strategy().ok()?;
-    let state = base.state_dir().unwrap_or_else(|| base.data_dir());
-    Some(state.join("rilievo").join("recovery"))
+    Some(platform::state_folder()?.join("rilievo").join("recovery"))
 }
 
 /// A name that no session has, and the lock that makes it ours. The name begins with the time, so
@@ -197,7 +192,7 @@ pub fn folder() -> Option<PathBuf> {
 fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn FileLock>)> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
     for attempt in 0..1000 {
-        let path = folder.join(format!("{now:016x}-{}-{attempt}.log", std::process::id()));
+        let path = folder.join(format!("{now:016x}-{}-{attempt}.log", platform::process_id()));
         let is_free = fs.find(&path).map_err(|e| Error::io(&path, e))?.is_none();
         if let Some(lock) =
             fs.lock(&path.with_extension("lock")).map_err(|e| Error::io(&path, e))?
@@ -227,7 +222,7 @@ fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Op
     loop {
         let patience = waiting_since
             .map_or(Duration::MAX, |since| FLUSH_AFTER.saturating_sub(since.elapsed()));
-        match next.take().map_or_else(|| tasks.recv_timeout(patience), Ok) {
+        match next.take().map_or_else(|| platform::recv_timeout(tasks, patience), Ok) {
             Ok(RecoveryTask::Record(version)) => {
                 next = tasks.try_recv().ok();
                 if matches!(next, Some(RecoveryTask::Record(_))) {

@@ -2,6 +2,7 @@
 //! for last first. Floor 7. Not here: how they are made (`io::thumbnail`).
 
 use crate::io::Budget;
+use crate::io::platform::files;
 use crate::io::thumbnail::thumbnail;
 use crate::jobs;
 use crate::memory::catch_out_of_memory;
@@ -94,7 +95,7 @@ fn make_all(coming: &Receiver<PathBuf>, finished: &Sender<FilePicture>, waker: &
 }
 
 fn make(file: &Path) -> Option<ColorImage> {
-    if std::fs::metadata(file).ok()?.len() > LARGEST_BYTES {
+    if files::metadata(file).ok()?.len() > LARGEST_BYTES {
         return None;
     }
     let small = thumbnail(file, SIDE_PX, &Budget::of_this_machine()).ok()?;

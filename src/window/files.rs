@@ -1,14 +1,18 @@
-//! File dialogs: the system's own, or the window's if the system has none.
-//! Floor 7.
+//! File dialogs: the system's own, or the window's if the system has none. Floor 7. `system` asks the
+//! desktop, `page` the browser.
+
+#[cfg(target_family = "wasm")]
+mod page;
+#[cfg(not(target_family = "wasm"))]
+mod system;
 
 use super::file_purpose::FilePurpose;
 use super::jobs::{JobKind, JobResult, JobWindow, Jobs};
+#[cfg(target_family = "wasm")]
+use page::system_dialog;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
-
-/// A dialog that returns this soon without a result was never shown, because there is no portal.
-/// Nobody cancels that fast.
-const NEVER_SHOWN: Duration = Duration::from_millis(500);
+#[cfg(not(target_family = "wasm"))]
+use system::system_dialog;
 
 /// The result of the system's dialog.
 pub enum FileAnswer {
@@ -33,27 +37,4 @@ pub fn request<W: JobWindow>(
         let answer = if by_itself { FileAnswer::Nowhere } else { system_dialog(purpose, &name) };
         JobResult::then(|window, _| then(window, answer))
     });
-}
-
-fn system_dialog(purpose: FilePurpose, name: &str) -> FileAnswer {
-    // Except on Windows and macOS, the dialog is another program's, reached over the session bus.
-    let is_own = cfg!(any(target_os = "windows", target_os = "macos"));
-    if !is_own && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none() {
-        return FileAnswer::Nowhere;
-    }
-    let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
-    for (label, extensions) in purpose.filters() {
-        dialog = dialog.add_filter(label, &extensions);
-    }
-    let asked = Instant::now();
-    let file = if purpose.is_saving() {
-        dialog.set_file_name(name).save_file()
-    } else {
-        dialog.pick_file()
-    };
-    match file {
-        Some(file) => FileAnswer::File(file),
-        None if asked.elapsed() < NEVER_SHOWN => FileAnswer::Nowhere,
-        None => FileAnswer::Canceled,
-    }
 }

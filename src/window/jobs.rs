@@ -2,6 +2,7 @@
 //! window never waits. Floor 7.
 
 use crate::document::Progress;
+use crate::io::platform::{self, Instant};
 use crate::math::Vec2;
 use crate::memory;
 use crate::session::actions::PasteTo;
@@ -10,7 +11,7 @@ use eframe::egui;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The result of a job: what is done with it in the window `W`, as soon as it may be.
 pub struct JobResult<W> {
@@ -242,6 +243,5 @@ pub fn short(file: &Path) -> String {
 
 /// Starts a thread. Fails if the system cannot start one, with an error that names the purpose.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
-    let started = std::thread::Builder::new().name("rilievo".into()).spawn(work);
-    started.map(drop).map_err(|error| Error::io(name, error))
+    platform::spawn("rilievo", work).map(drop).map_err(|error| Error::io(name, error))
 }

@@ -19,8 +19,6 @@ pub use events::WindowPen;
 #[cfg(test)]
 pub use recorded::RecordedPen;
 pub use report_filter::{FilteredReport, ReportFilter};
-// For the platforms that tell the meaning of a device's axes.
-#[cfg_attr(not(all(unix, not(target_os = "macos"))), allow(unused_imports))]
 pub use tablet::{AxisMeaning, PenAxes, PenAxis, SharedTablet};
 
 /// One report.
@@ -81,7 +79,7 @@ pub fn devices<T>(events: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn Pe
 }
 
 /// What the platform of the window knows about pens beyond its events.
-#[cfg(not(all(unix, not(target_os = "macos"))))]
+#[cfg(any(windows, target_os = "macos"))]
 pub fn devices<T>(_: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn PenDevices>> {
     None
 }

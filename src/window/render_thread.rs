@@ -9,6 +9,7 @@ mod pass;
 mod ready;
 
 use crate::document::Document;
+use crate::io::platform::{self, Instant};
 use crate::math::{Rect, Size};
 use crate::memory::{self, OutOfMemory};
 use crate::raster::{Tile, TileAt};
@@ -16,7 +17,7 @@ use draft::{DraftRender, Readiness};
 use pass::RenderPass;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A request: what to show.
 pub struct RenderRequest {
@@ -93,9 +94,9 @@ impl RenderThread {
         let shared = Arc::new(SharedRequest::default());
         let (sender, painted) = channel();
         let for_thread = shared.clone();
-        std::thread::Builder::new()
-            .name("painter".into())
-            .spawn(move || work(&for_thread, &sender, &done))?;
+        platform::spawn("painter", move || {
+            work(&for_thread, &sender, &done);
+        })?;
         Ok(Self { shared, painted })
     }
 
@@ -116,7 +117,7 @@ impl RenderThread {
             };
             let batch = match left.is_zero() {
                 true => self.painted.try_recv().ok(),
-                false => self.painted.recv_timeout(left).ok(),
+                false => platform::recv_timeout(&self.painted, left).ok(),
             }?;
             is_settled = batch.is_settled;
             Some(batch)

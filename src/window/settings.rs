@@ -13,6 +13,7 @@ use super::theme::Look;
 use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
 use crate::document::Progress;
 use crate::io::fs::Disk;
+use crate::io::platform::{self, Instant};
 use crate::io::replace::{Overwrite, replace};
 use crate::math::srgb::Color;
 use crate::session::replay::ReplayValue;
@@ -20,7 +21,7 @@ use crate::tools::snap::ViewAids;
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The most bookmarks that are read.
 const BOOKMARKS: usize = 100;
@@ -215,7 +216,7 @@ impl Settings {
     /// Reads a settings file; a missing one counts as empty. Fails if it is not JSON or cannot be
     /// read.
     pub fn read(file: &Path) -> Result<Self> {
-        let bytes = match std::fs::metadata(file) {
+        let bytes = match platform::files::metadata(file) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Ok(Self::default());
             }
@@ -223,7 +224,7 @@ impl Settings {
             Ok(found) if found.len() > LARGEST_BYTES => {
                 return Err(Error::too_large(file, "it is not a settings file"));
             }
-            Ok(_) => std::fs::read(file).map_err(|error| Error::io(file, error))?,
+            Ok(_) => platform::files::read(file).map_err(|error| Error::io(file, error))?,
         };
         let value: Value =
             serde_json::from_slice(&bytes).map_err(|error| Error::decode(file, error))?;
@@ -236,7 +237,7 @@ impl Settings {
     /// Replaces the file atomically.
     pub fn write(&self, file: &Path) -> Result<()> {
         if let Some(folder) = file.parent() {
-            std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
+            platform::files::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         }
         let text = format!("{:#}\n", self.to_json());
         replace(&Disk, file, text.as_bytes(), &Overwrite::Anything.into(), &Progress::default())
@@ -247,9 +248,7 @@ impl Settings {
 /// The settings file: `rilievo/settings.json` in the user's folder for them; `None` if the system
 /// has none.
 pub fn file() -> Option<PathBuf> {
-    use etcetera::BaseStrategy;
-    let base = etcetera::choose_base_strategy().ok()?;
-    Some(base.config_dir().join("rilievo").join("settings.json"))
+    Some(platform::config_folder()?.join("rilievo").join("settings.json"))
 }
 
 /// The folder of the user's own brushes: `rilievo/brushes` in the user's folder for data.
@@ -263,9 +262,7 @@ pub fn palettes() -> Option<PathBuf> {
 }
 
 fn data_folder(name: &str) -> Option<PathBuf> {
-    use etcetera::BaseStrategy;
-    let base = etcetera::choose_base_strategy().ok()?;
-    Some(base.data_dir().join("rilievo").join(name))
+    Some(platform::data_folder()?.join("rilievo").join(name))
 }
 
 /// Keeps the file up to date.

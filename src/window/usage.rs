@@ -3,12 +3,13 @@
 //! counting and freeing are one walk (`session::memory`), on a thread of its own.
 
 use crate::io::machine;
+use crate::io::platform::Instant;
 use crate::jobs::spawn;
 use crate::math::Range;
 use crate::session::Session;
 use crate::session::memory::DocumentMemory;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The share of the machine's memory that documents may keep for speed.
 pub const KEPT_SHARE: Range = 0.05..=0.75;

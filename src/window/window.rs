@@ -23,9 +23,9 @@ use super::panels::menu::MenuState;
 use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
-use super::sample::SAMPLES;
+use super::sample::{SAMPLES, StartSample};
 use super::sample_pictures::SamplePictures;
-use super::settings::{Settings, SettingsFile};
+use super::settings::{self, Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::theme;
 use super::thumbnails::Thumbnails;
@@ -150,6 +150,27 @@ impl MainWindow {
         }
     }
 
+    /// The window of a user, with what is stored for them, and these files, or the start screen if
+    /// there are none.
+    ///
+    /// * `tablet`: hears of the pen before the window does.
+    pub fn of_user(ctx: &egui::Context, tablet: SharedTablet, files: Vec<PathBuf>) -> Self {
+        theme::install(ctx);
+        let mut window = Self::remembering(ctx, settings::file());
+        window.draw_on(tablet);
+        if let Some(folder) = crate::io::recovery::folder() {
+            window.keep_recovery_in(folder);
+        }
+        if let Some(folder) = settings::brushes() {
+            window.keep_brushes_in(folder);
+        }
+        if let Some(folder) = settings::palettes() {
+            window.keep_palettes_in(folder);
+        }
+        window.begin(files);
+        window
+    }
+
     /// A window that always uses its own file dialogs.
     pub fn asking_itself(self) -> Self {
         Self { asks_itself: true, ..self }
@@ -192,6 +213,12 @@ impl MainWindow {
         if !files.is_empty() {
             self.open_files(files, None);
         }
+    }
+
+    /// Opens the sample of a name, or the first one if none has it.
+    pub fn open_sample_named(&mut self, name: &str) {
+        let is_it = |sample: &StartSample| sample.name.eq_ignore_ascii_case(name);
+        self.open_sample(SAMPLES.iter().position(is_it).unwrap_or(0));
     }
 
     fn open_sample(&mut self, index: usize) {

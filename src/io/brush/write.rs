@@ -71,7 +71,7 @@ pub fn pictures_beside(file: &Path, preset: &BrushPreset) -> impl Iterator<Item 
 pub fn remove(file: &Path, preset: &BrushPreset) -> Result<()> {
     // The preset first: what is left then is named by nobody.
     for file in std::iter::once(file.to_owned()).chain(pictures_beside(file, preset)) {
-        match std::fs::remove_file(&file) {
+        match crate::platform::files::remove_file(&file) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
                 return Err(Error::io(file, error));
             }

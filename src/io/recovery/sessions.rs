@@ -7,6 +7,7 @@ use super::state::LastState;
 use crate::Budget;
 use crate::document::Progress;
 use crate::fs::{FileLock, Fs};
+use crate::platform::{self, SystemTime, UNIX_EPOCH};
 use crate::project::Cancelable;
 use crate::replace::FileStamp;
 use crate::{Error, Result};
@@ -14,7 +15,7 @@ use serde_json::Value;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 /// A session that no process holds any more. While this value lives, no other window takes it.
 pub struct LostSession {
@@ -53,7 +54,7 @@ pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<LostSession> {
 /// How many sessions below a folder other processes hold: open windows, and for a moment a killed
 /// one, whose locks the system releases only when its last thread has ended.
 pub fn count_held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
-    let ours = format!("-{}-", std::process::id());
+    let ours = format!("-{}-", platform::process_id());
     let is_log = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "log");
     let is_theirs = |path: &&PathBuf| {
         path.file_name().is_some_and(|name| !name.to_string_lossy().contains(&ours))

@@ -4,6 +4,7 @@
 
 use super::Session;
 use crate::io::brush::{self, ImportedBrush, plain};
+use crate::io::platform::files;
 use crate::io::recipe::{BrushPreset, PresetGroup, load_preset};
 use crate::io::{Budget, Overwrite, Terms, files::read_file, picture};
 use crate::math::srgb::Color;
@@ -91,7 +92,7 @@ fn add(session: &mut Session, mut preset: BrushPreset) -> Result<String> {
     preset.key = free_key(session, &preset.key);
     preset.group = PresetGroup::Imported;
     if let Some(folder) = &session.brush_folder {
-        std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
+        files::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         let encoded = brush::encode(&file_of(folder, &preset.key), &preset)?;
         // The name is free, or was a moment ago.
         encoded.write(&Terms::export(Overwrite::Nothing, Vec::new()))?;
@@ -120,8 +121,7 @@ fn file_of(folder: &Path, key: &str) -> PathBuf {
 /// The user's own brushes in a folder, by name, and a sentence for each that cannot be read.
 pub fn load_brushes(folder: &Path) -> (Vec<BrushPreset>, Vec<String>) {
     // A folder that does not exist yet holds none.
-    let entries =
-        std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let entries = files::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut files: Vec<PathBuf> =
         entries.filter(|file| file.extension().is_some_and(|e| e == "json")).collect();
     files.sort();
@@ -162,7 +162,7 @@ fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<BrushPreset
 
 /// A key that no other brush has, and no file of the folder, such as one that could not be read.
 fn free_key(session: &Session, key: &str) -> String {
-    let entries = session.brush_folder.iter().flat_map(std::fs::read_dir).flatten().flatten();
+    let entries = session.brush_folder.iter().flat_map(files::read_dir).flatten().flatten();
     let stem =
         |name: std::ffi::OsString| name.to_string_lossy().split('.').next().map(str::to_owned);
     let files: Vec<String> = entries.filter_map(|entry| stem(entry.file_name())).collect();
@@ -287,6 +287,7 @@ mod tests {
 
     #[test]
     fn the_brush_in_hand_is_changed_by_what_a_recipe_would_say_and_keeps_its_pictures() {
+        use crate::io::platform::files;
         use crate::io::recipe::brush_to_json;
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pen.gbr");

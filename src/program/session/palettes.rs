@@ -7,6 +7,7 @@ use crate::document::Progress;
 use crate::io::brush::plain;
 use crate::io::fs::Disk;
 use crate::io::palette::{self, PaletteFormat};
+use crate::io::platform::{self, files};
 use crate::io::replace::replace;
 use crate::io::{Budget, Overwrite, Terms, files::read_file};
 use crate::paint::ColorPalette;
@@ -39,7 +40,7 @@ impl PaletteShelf {
     /// The palettes of a folder, by name, and a sentence for each file that cannot be read. A
     /// folder that does not exist yet holds none.
     pub fn load(folder: &Path) -> (Self, Vec<String>) {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let entries = files::read_dir(folder).into_iter().flatten().flatten();
         let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
         files.retain(|file| file.extension().is_some_and(|ending| ending == "gpl"));
         files.sort();
@@ -85,7 +86,8 @@ impl PaletteShelf {
         let base = plain_name.unwrap_or_else(|| "palette".into());
         let stem = first_free(&base, '-', |stem| {
             let file = self.folder.as_deref().map(|folder| file_of(folder, stem));
-            self.own.iter().any(|own| own.stem == stem) || file.is_some_and(|file| file.exists())
+            self.own.iter().any(|own| own.stem == stem)
+                || file.is_some_and(|file| platform::is_file(&file))
         });
         let palette = ColorPalette { name: name.clone(), ..palette };
         self.write(&stem, &palette)?;
@@ -126,7 +128,7 @@ impl PaletteShelf {
         };
         if let Some(folder) = &self.folder {
             let file = file_of(folder, &self.own[at].stem);
-            match std::fs::remove_file(&file) {
+            match files::remove_file(&file) {
                 Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
                     return Err(Error::io(file, error));
                 }
@@ -140,7 +142,7 @@ impl PaletteShelf {
 
     fn write(&self, stem: &str, palette: &ColorPalette) -> Result<()> {
         let Some(folder) = &self.folder else { return Ok(()) };
-        std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
+        files::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         let file = file_of(folder, stem);
         let bytes = palette::write(&file, palette, PaletteFormat::Gimp)?;
         let terms = Terms::export(Overwrite::Anything, Vec::new());

@@ -2,12 +2,13 @@
 //! full one, and a smaller one during drags. Floor 7.
 
 use super::blocks::{Magnification, TextureBlocks};
+use crate::io::platform::Instant;
 use crate::math::{Affine2, Size, vec2};
 use crate::raster::{Tile, TileAt, TileGrid};
 use crate::render_thread::RenderedTileBatch;
 use eframe::egui;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 #[derive(Default)]
 pub struct TileSheet {

@@ -13,6 +13,7 @@ use crate::document::SurfaceSource;
 use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
 use crate::file_purpose::FilePurpose;
 use crate::io::maps::{self, ImportedSurface};
+use crate::io::platform;
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedFile};
 use crate::widgets::{check_box, choice_row, sentence, set_accessible_name};
@@ -69,7 +70,7 @@ impl ImportDialog {
         let is_there = |source: &&SurfaceSource| {
             let normal = source.normal.as_ref().map(|map| &map.file);
             let file = normal.or(source.depth.as_ref().map(|map| &map.file));
-            file.is_some_and(|file| Path::new(file).is_file())
+            file.is_some_and(|file| platform::is_file(Path::new(file)))
         };
         let becomes = MapsBecome::ItsMaps;
         Self {

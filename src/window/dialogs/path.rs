@@ -4,13 +4,13 @@
 use super::{DialogAnswer, DialogContext, buttons};
 use crate::file_pictures::FilePictures;
 use crate::file_purpose::FilePurpose;
+use crate::io::platform;
 use crate::settings::Settings;
 use crate::widgets::{set_accessible_name, title};
 use eframe::egui::{
     self, Align, Button, Image, Key, Layout, Response, ScrollArea, TextEdit, Ui,
     load::SizedTexture, vec2,
 };
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The height of the list, and the width of the folders beside it, points.
@@ -84,9 +84,9 @@ impl PathDialog {
         self.field(ui);
         // A whole path replaces the folder.
         let typed = self.folder.join(self.name.trim());
-        let is_folder = typed.is_dir() && !self.name.trim().is_empty();
+        let is_folder = platform::is_folder(&typed) && !self.name.trim().is_empty();
         let can = !self.name.trim().is_empty()
-            && (is_folder || self.purpose.is_saving() || typed.is_file());
+            && (is_folder || self.purpose.is_saving() || platform::is_file(&typed));
         let is_warned = self.replaces.as_ref() == Some(&typed);
         if is_warned {
             ui.colored_label(ui.visuals().warn_fg_color, "This file already exists.");
@@ -229,10 +229,10 @@ impl PathDialog {
         let Some(at) = self.name.rfind(std::path::is_separator) else { return };
         let (typed, rest) = self.name.split_at(at + 1);
         let folder = match typed.strip_prefix('~').filter(|rest| rest.starts_with('/')) {
-            Some(within) => etcetera::home_dir().map(|home| home.join(&within[1..])).ok(),
+            Some(within) => platform::home_folder().map(|home| home.join(&within[1..])),
             None => Some(self.folder.join(typed)),
         };
-        let Some(folder) = folder.filter(|folder| folder.is_dir()) else { return };
+        let Some(folder) = folder.filter(|folder| platform::is_folder(folder)) else { return };
         let rest = rest.to_owned();
         (self.folder, self.name) = (folder, rest);
     }
@@ -258,7 +258,10 @@ impl PathDialog {
     fn choose(&mut self, file: PathBuf) -> DialogAnswer {
         // With its final name, so that the question is about the file that would be lost.
         let file = self.purpose.final_name(file, self.extension);
-        if self.purpose.is_saving() && file.is_file() && self.replaces.as_ref() != Some(&file) {
+        if self.purpose.is_saving()
+            && platform::is_file(&file)
+            && self.replaces.as_ref() != Some(&file)
+        {
             self.name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             self.folder = file.parent().map_or_else(|| self.folder.clone(), Path::to_owned);
             self.replaces = Some(file);
@@ -287,11 +290,11 @@ fn row(ui: &mut Ui, file: &str, is_on: bool, path: &Path, pictures: &mut FilePic
 
 /// The folders that systems have for a user, as far as they exist.
 fn places() -> Vec<(String, PathBuf)> {
-    let Ok(home) = etcetera::home_dir() else { return Vec::new() };
+    let Some(home) = platform::home_folder() else { return Vec::new() };
     let within = ["Desktop", "Documents", "Pictures", "Downloads"];
     let mut places = vec![("Home".to_owned(), home.clone())];
     places.extend(within.map(|name| (name.to_owned(), home.join(name))));
-    places.retain(|(_, folder)| folder.is_dir());
+    places.retain(|(_, folder)| platform::is_folder(folder));
     places
 }
 
@@ -300,13 +303,13 @@ impl FolderListing {
         let extensions: Vec<&str> =
             purpose.filters().into_iter().flat_map(|(_, extensions)| extensions).collect();
         let mut listed = Self { folder: folder.into(), ..Self::default() };
-        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        for entry in platform::files::read_dir(folder).into_iter().flatten().flatten() {
             let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
             let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
             if name.starts_with('.') {
                 continue;
             }
-            if path.is_dir() {
+            if platform::is_folder(&path) {
                 listed.folders.push(name);
             } else if extensions.contains(&extension.as_str()) {
                 listed.files.push(name);

@@ -2,10 +2,11 @@
 //! for later. Floor 7.
 
 use super::DialogAnswer;
+use crate::io::platform::SystemTime;
 use crate::io::recovery::LostSession;
 use crate::widgets::list;
 use eframe::egui::{RichText, Ui};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 pub struct RecoveryDialog {
     /// Oldest first, each with whether its deletion was already confirmed once.

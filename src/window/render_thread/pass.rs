@@ -3,12 +3,13 @@
 
 use super::RenderedTileBatch;
 use crate::document::{Document, PreparedDocument, Progress, diff};
+use crate::io::platform::Instant;
 use crate::math::{Rect, Size};
 use crate::raster::{Tile, TileAt};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A picture that is being painted.
 #[derive(Default)]

@@ -1,6 +1,7 @@
 //! Makes a small surface in the background, while the render thread keeps painting. Floor 7.
 
 use crate::document::{ReducedSurface, SurfaceReduction};
+use crate::io::platform;
 use crate::memory;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -35,7 +36,7 @@ impl SurfaceJob {
                 let _ = sender.send(made);
             }
         };
-        std::thread::Builder::new().name("small surface".into()).spawn(job).ok()?;
+        platform::spawn("small surface", job).ok()?;
         Some(Self { of, made })
     }
 

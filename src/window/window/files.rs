@@ -10,6 +10,7 @@ use crate::file_purpose::FilePurpose;
 use crate::files::{self, FileAnswer};
 use crate::io::maps::ImportedSurface;
 use crate::io::palette::PaletteFormat;
+use crate::io::platform;
 use crate::io::{Budget, Overwrite};
 use crate::jobs::{JobKind, JobResult, PastePlace, PictureUse, PinPosition, short};
 use crate::math::Vec2;
@@ -256,7 +257,7 @@ impl MainWindow {
 
     fn write_chosen_file(&mut self, purpose: FilePurpose, file: PathBuf) {
         let named = purpose.final_name(file.clone(), self.export.extension);
-        let was_asked = named == file && named.exists();
+        let was_asked = named == file && platform::is_file(&named);
         let over = if was_asked { Overwrite::Anything } else { Overwrite::Nothing };
         if let FilePurpose::ExportPalette(format) = purpose {
             self.export_palette(named, format, over);
@@ -333,9 +334,11 @@ impl MainWindow {
             .recent
             .first()
             .map(PathBuf::as_path));
-        let folder =
-            beside.and_then(Path::parent).filter(|folder| folder.is_dir()).map(Path::to_owned);
-        folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
+        let folder = beside
+            .and_then(Path::parent)
+            .filter(|folder| platform::is_folder(folder))
+            .map(Path::to_owned);
+        folder.or_else(|| platform::current_folder().ok()).unwrap_or_default()
     }
 
     pub(super) fn recent_is(&mut self, file: Option<PathBuf>) {

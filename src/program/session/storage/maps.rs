@@ -7,6 +7,7 @@ use crate::Result;
 use crate::document::Progress;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::io::maps::pairs::{self, MapPart};
+use crate::io::platform::files;
 use crate::io::{Budget, UserFiles, files::read_file, inspect, maps, picture};
 use crate::raster::Picture;
 use std::path::{Path, PathBuf};
@@ -71,7 +72,7 @@ pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     let Some((name, _)) = part else { return source };
     let beside = file
         .parent()
-        .and_then(|folder| std::fs::read_dir(folder).ok())
+        .and_then(|folder| files::read_dir(folder).ok())
         .into_iter()
         .flatten()
         .flatten();

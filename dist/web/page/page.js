@@ -1,0 +1,158 @@
+// The page's own thread: it holds the canvas, hears the user, and starts the workers. The program runs in
+// one of them (worker.js) and may wait there; nothing here ever does.
+
+import { answerQuestion, handOut, notePaste } from "./files.js";
+import { listen } from "./input.js";
+
+const welcome = document.getElementById("welcome");
+const progress = document.getElementById("progress");
+const note = document.getElementById("note");
+
+/** Shows a sentence instead of the program. */
+function refuse(sentence) {
+  welcome.hidden = false;
+  progress.hidden = true;
+  note.textContent = sentence;
+}
+
+/**
+ * Threads share memory only in a page that is isolated from others. A server says so by two headers
+ * (docs/INSTALL.md); where it does not, a service worker of the page adds them, and the page is loaded again.
+ * Returns whether it goes on now.
+ */
+async function isIsolated() {
+  if (crossOriginIsolated) {
+    return true;
+  }
+  const tried = sessionStorage.getItem("isolated");
+  if (!navigator.serviceWorker || tried) {
+    refuse("This browser does not let the page use threads. A newer one does, over https.");
+    return false;
+  }
+  sessionStorage.setItem("isolated", "tried");
+  await navigator.serviceWorker.register("isolate.js");
+  await navigator.serviceWorker.ready;
+  location.reload();
+  return false;
+}
+
+/** Compiles the program while it is loaded, and shows how far that is. */
+async function compiled() {
+  const response = await fetch("rilievo_bg.wasm");
+  if (!response.ok) {
+    throw new Error(`rilievo_bg.wasm: ${response.status} ${response.statusText}`);
+  }
+  const total = Number(response.headers.get("content-length"));
+  let loaded = 0;
+  const counted = new TransformStream({
+    transform(chunk, controller) {
+      loaded += chunk.byteLength;
+      if (total > 0 && loaded <= total) {
+        progress.max = total;
+        progress.value = loaded;
+      }
+      controller.enqueue(chunk);
+    },
+  });
+  const headers = { "content-type": "application/wasm" };
+  return WebAssembly.compileStreaming(new Response(response.body.pipeThrough(counted), { headers }));
+}
+
+/** A number for this page that no other open one has: it is held as a lock, so that others know it lives. */
+function pageId() {
+  const id = crypto.getRandomValues(new Uint32Array(1))[0] >>> 1;
+  navigator.locks?.request(`rilievo-${id}`, () => new Promise(() => {}));
+  return id;
+}
+
+async function livingPages() {
+  const held = (await navigator.locks?.query())?.held ?? [];
+  return held.map(({ name }) => /^rilievo-(\d+)$/.exec(name)?.[1]).filter(Boolean);
+}
+
+/** What the worker of stored files holds: a list of [path, bytes]. */
+function storedFiles(storage, living) {
+  return new Promise((resolve) => {
+    storage.onmessage = ({ data }) => resolve(data);
+    storage.postMessage({ kind: "load", living });
+  });
+}
+
+/** The document that the address names: `?open=URL`. */
+async function namedFiles() {
+  const address = new URLSearchParams(location.search).get("open");
+  if (!address) {
+    return [];
+  }
+  const response = await fetch(address);
+  if (!response.ok) {
+    throw new Error(`${address}: ${response.status} ${response.statusText}`);
+  }
+  const name = decodeURIComponent(new URL(address, location).pathname.split("/").pop()) || "document";
+  return [[`/documents/${name}`, new Uint8Array(await response.arrayBuffer())]];
+}
+
+async function start() {
+  if (!(await isIsolated())) {
+    return;
+  }
+  const canvas = document.getElementById("canvas");
+  const [id, living] = [pageId(), await livingPages()];
+  const storage = new Worker("storage.js", { type: "module" });
+  const [module, stored, opened] = await Promise.all([
+    compiled(),
+    storedFiles(storage, living),
+    namedFiles(),
+  ]);
+  let memory;
+  const thread = () => {
+    const worker = new Worker("worker.js", { type: "module", name: "thread" });
+    worker.onmessage = hear;
+    worker.onerror = fail;
+    worker.postMessage({ kind: "thread", module, memory, id });
+  };
+  const program = new Worker("worker.js", { type: "module", name: "program" });
+  const tell = (message, transfer = []) => program.postMessage(message, transfer);
+  const told = {
+    memory: (data) => (memory = data.memory),
+    thread,
+    painted: () => {
+      welcome.hidden = true;
+      document.body.dataset.state = "ready";
+    },
+    store: (data) => storage.postMessage(data, [data.bytes.buffer]),
+    rename: (data) => storage.postMessage(data),
+    remove: (data) => storage.postMessage(data),
+    handOut: (data) => handOut(data.path, data.bytes),
+    ask: async (data) => {
+      const { text, bytes } = await answerQuestion(data);
+      if (data.number) {
+        tell({ kind: "answer", number: data.number, text, bytes: bytes ?? new Uint8Array() });
+      }
+    },
+    cursor: (data) => (canvas.style.cursor = data.name),
+    title: (data) => (document.title = data.title),
+    address: (data) => window.open(data.address, "_blank", "noopener"),
+    editText: (data) => input.editText(data),
+    endText: () => input.endText(),
+    failed: (data) => refuse(data.sentence),
+  };
+  const hear = ({ data }) => told[data.kind](data);
+  const fail = (event) => refuse(`The program has stopped: ${event.message}. What you drew comes back when the page is loaded again.`);
+  program.onmessage = hear;
+  program.onerror = fail;
+  const input = listen(canvas, document.getElementById("typed"), tell, notePaste);
+  const offscreen = canvas.transferControlToOffscreen();
+  const sample = new URLSearchParams(location.hash.slice(1)).get("sample") ?? "";
+  const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
+  const threads = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, 8));
+  const files = [...stored, ...opened];
+  tell(
+    { kind: "start", module, canvas: offscreen, id, threads, isMac, files, open: opened.map(([path]) => path), sample },
+    [offscreen, ...files.map(([, bytes]) => bytes.buffer)],
+  );
+  input.resize();
+  canvas.focus();
+}
+
+start().catch((error) => refuse(`Rilievo cannot start here: ${error.message}.`));

@@ -1,0 +1,71 @@
+//! The standard library's files and threads, and the folders that the system names. Floor 5.
+
+use etcetera::BaseStrategy;
+use std::io;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+/// Files of the disk.
+pub mod files {
+    pub use std::fs::{
+        File, Metadata, create_dir_all, metadata, read, read_dir, remove_file, symlink_metadata,
+    };
+}
+
+/// A thread that was started.
+#[derive(Debug)]
+pub struct Thread(std::thread::JoinHandle<()>);
+
+impl Thread {
+    /// Waits until it ends; whether it did so without a panic.
+    pub fn has_finished_well(self) -> bool {
+        self.0.join().is_ok()
+    }
+}
+
+/// Starts a thread. Fails if the system cannot start one.
+pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<Thread> {
+    std::thread::Builder::new().name(name.into()).spawn(work).map(Thread)
+}
+
+/// Lets this thread rest.
+pub fn sleep(time: Duration) {
+    std::thread::sleep(time);
+}
+
+/// What a channel receives within some time.
+pub fn recv_timeout<T>(from: &Receiver<T>, patience: Duration) -> Result<T, RecvTimeoutError> {
+    from.recv_timeout(patience)
+}
+
+/// A number that no other running program has.
+pub fn process_id() -> u32 {
+    std::process::id()
+}
+
+/// The user's own folder.
+pub fn home_folder() -> Option<PathBuf> {
+    etcetera::home_dir().ok()
+}
+
+/// The user's folder for settings.
+pub fn config_folder() -> Option<PathBuf> {
+    Some(etcetera::choose_base_strategy().ok()?.config_dir())
+}
+
+/// The user's folder for data of programs.
+pub fn data_folder() -> Option<PathBuf> {
+    Some(etcetera::choose_base_strategy().ok()?.data_dir())
+}
+
+/// The user's folder for what programs keep between two starts.
+pub fn state_folder() -> Option<PathBuf> {
+    let base = etcetera::choose_base_strategy().ok()?;
+    Some(base.state_dir().unwrap_or_else(|| base.data_dir()))
+}
+
+/// The folder that relative paths begin in.
+pub fn current_folder() -> io::Result<PathBuf> {
+    std::env::current_dir()
+}

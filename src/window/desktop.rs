@@ -1,0 +1,51 @@
+//! The window on a desktop. Floor 7. Its event loop is `event_loop`.
+
+use crate::pen::SharedTablet;
+use crate::{Error, MainWindow, Result, event_loop, program_icon};
+use eframe::egui;
+use std::cell::Cell;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+/// Opens the window with these files, or with the sample if there are none; returns when it is
+/// closed.
+///
+/// Fails with a sentence if there is no display.
+pub fn run(files: Vec<PathBuf>) -> Result<()> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Rilievo")
+        .with_app_id("rilievo")
+        .with_inner_size([1280.0, 820.0])
+        .with_min_inner_size([720.0, 480.0])
+        .with_drag_and_drop(true);
+    let viewport = match program_icon::program_icon() {
+        Some(icon) => viewport.with_icon(icon),
+        None => viewport,
+    };
+    // Clipboard shortcuts arrive as keys: see `clipboard`. Nothing is drawn in more than eight
+    // bits, so there is nothing to dither, and dithering takes time at every pixel of every frame.
+    let options = eframe::NativeOptions {
+        viewport,
+        clipboard_shortcuts: false,
+        dithering: false,
+        ..Default::default()
+    };
+    let (tablet, is_open) = (SharedTablet::default(), Rc::new(Cell::new(false)));
+    let (pen, opened) = (tablet.clone(), is_open.clone());
+    let start =
+        move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {
+            opened.set(true);
+            Ok(Box::new(MainWindow::of_user(&cc.egui_ctx, pen, files)))
+        };
+    let wrong = match event_loop::run(options, tablet, Box::new(start)) {
+        Ok(()) if is_open.get() => return Ok(()),
+        // The windowing library does not report the reason.
+        Ok(()) => "the display has no OpenGL to draw with".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    // Only the reason, without the library's context.
+    let wrong = wrong.rsplit(": ").next().unwrap_or(&wrong).trim_end_matches(['.', ')']);
+    let reason =
+        format!("no window can be opened here ({wrong}); “rilievo render” paints without one");
+    Err(Error::unsupported_file("display", reason))
+}
