@@ -1,6 +1,6 @@
 //! The operations that saving and recovery need from a disk, as a trait, so that failing disks and
-//! power cuts can be tested. Floor 5. [`Disk`] is the real one; in a browser it is the page's files. Tests have one in memory that
-//! fails, or forgets what was not synced.
+//! power cuts can be tested. Floor 5. [`Disk`] is the real one; in a browser it is the page's files.
+//! Tests have one in memory that fails, or forgets what was not synced.
 
 #[cfg(not(target_family = "wasm"))]
 mod disk;
@@ -12,7 +12,7 @@ mod page;
 #[cfg(not(target_family = "wasm"))]
 pub use disk::Disk;
 #[cfg(target_family = "wasm")]
-pub use page::Disk;
+pub use page::PageDisk as Disk;
 
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};

@@ -14,6 +14,8 @@ mod web;
 pub use native::*;
 use std::path::Path;
 #[cfg(target_family = "wasm")]
+pub use web::PageThread as Thread;
+#[cfg(target_family = "wasm")]
 pub use web::*;
 
 /// The clock: the system's, or the page's.
@@ -27,4 +29,10 @@ pub fn is_file(path: &Path) -> bool {
 /// Whether there is a folder.
 pub fn is_folder(path: &Path) -> bool {
     files::metadata(path).is_ok_and(|found| found.is_dir())
+}
+
+/// Threads that work together and are nobody else's. Fails if the system cannot start them.
+pub fn thread_pool(count: usize) -> Result<rayon::ThreadPool, rayon::ThreadPoolBuildError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count);
+    pool.spawn_handler(|thread| spawn("pool", move || thread.run()).map(drop)).build()
 }

@@ -93,7 +93,7 @@ pub fn tidy(file: &Path) {
 /// Uses half the processors: the other half is for painting meanwhile.
 fn in_own_threads<T: Send>(file: &Path, work: impl FnOnce() -> T + Send) -> Result<T> {
     let threads = (rayon::current_num_threads() / 2).max(1);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = crate::platform::thread_pool(threads);
     Ok(pool.map_err(|e| Error::io(file, io::Error::other(e)))?.install(work))
 }
 

@@ -72,6 +72,7 @@ impl Program {
         files: Vec<String>,
         sample: &str,
     ) -> Result<Program, JsValue> {
+        std::panic::set_hook(Box::new(|panic| page::error(&panic.to_string())));
         start_threads(threads).map_err(|error| JsValue::from_str(&error))?;
         let painter = painter(&canvas)?;
         let ctx = Context::default();
@@ -208,7 +209,8 @@ impl Program {
     }
 
     /// Paints a frame, if one is due at this time of the page's clock; whether it did.
-    pub fn frame(&mut self, now_ms: f64) -> bool {
+    #[wasm_bindgen(js_name = tryFrame)]
+    pub fn try_frame(&mut self, now_ms: f64) -> bool {
         if !self.next.is_due(page_ms()) {
             return false;
         }

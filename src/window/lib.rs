@@ -32,6 +32,7 @@ mod part_pictures;
 mod pen;
 mod pending;
 mod preferences;
+#[cfg(not(target_family = "wasm"))]
 mod program_icon;
 mod recovery;
 mod render_thread;

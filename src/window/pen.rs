@@ -65,6 +65,7 @@ pub trait PenSource {
 }
 
 /// Reports which pen moves the pointer.
+#[cfg(not(target_family = "wasm"))]
 pub trait PenDevices {
     /// The axes of the device that moves the pointer now, if they changed since the last call.
     fn change(&mut self) -> Option<PenAxes>;

@@ -32,7 +32,7 @@ let program;
 let isShown = false;
 
 function paint(now) {
-  const isPainted = program.frame(now);
+  const isPainted = program.tryFrame(now);
   if (isPainted && !isShown) {
     isShown = true;
     send({ kind: "painted" });

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// The one that every part of the program sees.
-pub struct Disk;
+pub struct PageDisk;
 
 impl FileHandle for File {
     fn sync(&mut self) -> io::Result<()> {
@@ -23,7 +23,7 @@ impl FileHandle for File {
 
 impl FileLock for File {}
 
-impl Fs for Disk {
+impl Fs for PageDisk {
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         Ok(Box::new(File::create_new(path)?))
     }

@@ -25,9 +25,9 @@ pub const DOCUMENTS: &str = "/documents";
 
 /// A thread that was started.
 #[derive(Debug)]
-pub struct Thread(Receiver<()>);
+pub struct PageThread(Receiver<()>);
 
-impl Thread {
+impl PageThread {
     /// Waits until it ends; whether it did so without a panic.
     pub fn has_finished_well(self) -> bool {
         self.0.recv().is_ok()
@@ -35,13 +35,13 @@ impl Thread {
 }
 
 /// Starts a thread: a worker that waits for work, or a new one that the page starts.
-pub fn spawn(_name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<Thread> {
+pub fn spawn(_name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<PageThread> {
     let (done, is_done) = channel();
     tasks::run(Box::new(move || {
         work();
         let _ = done.send(());
     }));
-    Ok(Thread(is_done))
+    Ok(PageThread(is_done))
 }
 
 /// Lets this thread rest.

@@ -325,6 +325,7 @@ impl FolderListing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_typed_folder_is_shown_and_the_rest_stays_the_name() {

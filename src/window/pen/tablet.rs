@@ -21,6 +21,7 @@ const FARTHEST_DEGREES: f64 = 60.0;
 /// The meaning of one axis of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisMeaning {
+    /// From nothing to the hardest.
     Pressure,
     /// Degrees from upright, to the right.
     TiltX,
@@ -31,8 +32,11 @@ pub enum AxisMeaning {
 /// One axis of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PenAxis {
+    /// Its number, by the platform.
     pub number: u32,
+    /// What its values mean.
     pub reads: AxisMeaning,
+    /// The least and the greatest value.
     pub range: (f64, f64),
     /// Its value when the device was found.
     pub value: f64,
@@ -66,6 +70,7 @@ impl PenAxis {
 pub struct PenAxes {
     /// The device, by the platform's number.
     pub device: u32,
+    /// What it reports besides the place.
     pub axes: Vec<PenAxis>,
     /// Whether the device is the eraser end of a pen.
     pub is_eraser: bool,

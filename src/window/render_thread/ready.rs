@@ -29,7 +29,7 @@ impl SurfaceJob {
         let job = move || {
             // Threads of its own: those that paint tiles finish what they have begun before they
             // start anything new.
-            let own = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+            let own = platform::thread_pool(1);
             let make = || memory::catch_out_of_memory(|| work.make());
             let made = own.map_or_else(|_| make(), |own| own.install(make));
             if let Ok(Ok(made)) = made {
