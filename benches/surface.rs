@@ -14,7 +14,7 @@ use rilievo::{Anchor, Bend, Maps, Operator, Size, Surface};
 use rilievo_engine::paint::{FormDrawing, FormPattern};
 use rilievo_engine::surface::deformation::DeformedRect;
 use rilievo_engine::surface::form_lines::{LineKind, LineKinds, LineSettings};
-use rilievo_engine::surface::hatching::HatchSettings;
+use rilievo_engine::surface::hatching::{GuideLines, HatchSettings};
 use rilievo_engine::surface::operator::UnwrapSettings;
 use rilievo_engine::surface::scene::Scene;
 use rilievo_engine::surface::unwrap::Unwrapping;
@@ -158,7 +158,7 @@ fn form_lines_under_a_moved_light(bencher: Bencher, threads: usize) {
 fn hatch_lines(bencher: Bencher, threads: usize) {
     bencher.with_inputs(ball_before_a_wall).bench_local_values(|surface| {
         with_threads(threads, || {
-            black_box(surface.hatch_lines(&HatchSettings::DEFAULT));
+            black_box(surface.hatch_lines(&HatchSettings::DEFAULT, &GuideLines::none()));
         });
         surface
     });

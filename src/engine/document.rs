@@ -21,6 +21,7 @@ pub mod flatten;
 mod floats;
 mod frame_box;
 pub mod guides;
+mod hatch_sources;
 mod histogram;
 pub mod history;
 mod ink_layers;

@@ -59,7 +59,9 @@ pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;
 pub use filter::{LiveFilter, PictureFilter};
-pub use form_drawing::{DrawingHand, FormDrawing, FormPattern};
+pub use form_drawing::{
+    DrawingHand, FormDrawing, FormPattern, FoundSources, HatchSources, TonePicture, ToneSource,
+};
 pub use gradient::{Gradient, GradientStop};
 pub use image::{PictureOrigin, PictureSource, PlacedImage, Placement};
 pub use liquify::{LiquifySettings, LiquifyStroke, LiquifyTool};

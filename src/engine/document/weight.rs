@@ -3,8 +3,10 @@
 
 use super::{Content, DerivedMask, Document, Layer, LayerMask, StrokeList};
 use crate::math::Rect;
+use crate::paint::FormDrawing;
 use crate::raster::Tile;
 use crate::surface::Contours;
+use crate::surface::hatching::{HatchTone, HatchWay};
 use crate::surface::region::RegionKind;
 use std::sync::Arc;
 
@@ -18,6 +20,8 @@ const FILTERED_BYTES: u64 = 8;
 const CURVATURE_BYTES: u64 = 14;
 /// Blurred normals and what lines are traced in, bytes a pixel.
 const DRAWING_BYTES: u64 = 48;
+/// Directions between drawn strokes, and what they are solved with, bytes a pixel.
+const GUIDE_BYTES: u64 = 110;
 /// A surface with other normals, bytes a pixel.
 const SURFACE_BYTES: u64 = 18;
 
@@ -86,7 +90,9 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
             // What is composed beneath it and what it makes of that, in 16 bits.
             Content::Filter(_) => 2 * area * FILTERED_BYTES,
             Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
-            Content::FormDrawing(_) => area * (TILE_BYTES + DRAWING_BYTES),
+            Content::FormDrawing(live) => {
+                area * (TILE_BYTES + DRAWING_BYTES + guide_bytes(live.params()))
+            }
             Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,
             Content::Shading(live) => {
                 area * (TILE_BYTES + CURVATURE_BYTES + live.params().kept_bytes())
@@ -95,6 +101,14 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
             Content::Normals(_) => area * SURFACE_BYTES,
             Content::Group(group) => of_layers(&group.layers, canvas, area),
         }
+}
+
+/// What hatching takes for the strokes that it follows, and for its tone, bytes a pixel.
+fn guide_bytes(drawing: &FormDrawing) -> u64 {
+    drawing.hatching().map_or(0, |hatch| {
+        let guides = if hatch.way == HatchWay::Guides { GUIDE_BYTES } else { 0 };
+        guides + u64::from(hatch.tone != HatchTone::Light)
+    })
 }
 
 /// Pixels of the boxes around the strokes, unbent.

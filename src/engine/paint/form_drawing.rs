@@ -1,14 +1,16 @@
 //! Drawings by the form: strokes of a brush along the lines that a surface has. Floor 3. Here: what
 //! such a drawing is, and its strokes, which are made once for a scene; `hand` is how a hand follows
-//! a line. Not here: where the lines are (`surface::form_lines`), how strokes look (`stroke`).
+//! a line, `sources` what it reads of other layers. Not here: where the lines are (`surface::form_lines`), how strokes look (`stroke`).
 
 mod hand;
 mod hatched;
+mod sources;
 
 #[cfg(test)]
 mod tests;
 
 pub use hand::DrawingHand;
+pub use sources::{FoundSources, HatchSources, TonePicture, ToneSource};
 
 use super::brush::Brush;
 use super::dynamics::{Curve, Dynamics, Input, Property};
@@ -41,6 +43,10 @@ pub struct FormDrawing {
     pub brush: Brush,
     /// Its color.
     pub color: Color,
+    /// Which other layers hatching reads.
+    pub sources: HatchSources,
+    /// What those layers hold now.
+    pub found: FoundSources,
     /// Its strokes on the scene that they were last made for.
     pub made: MadeStrokes,
 }
@@ -57,7 +63,15 @@ impl FormDrawing {
                 (DrawingHand { taper: 8.0, ..DrawingHand::DEFAULT }, Self::burin())
             }
         };
-        Self { pattern, hand, brush, color: Self::INK, made: MadeStrokes::default() }
+        Self {
+            pattern,
+            hand,
+            brush,
+            color: Self::INK,
+            sources: HatchSources::default(),
+            found: FoundSources::default(),
+            made: MadeStrokes::default(),
+        }
     }
 
     /// The pen that lines begin with: a nib that pressure widens, black at once.
@@ -70,6 +84,14 @@ impl FormDrawing {
     pub fn burin() -> Brush {
         let dynamics = Dynamics::none().with(Property::Size, Input::Pressure, Curve::Share(1.0));
         Brush { size: 5.0, hardness: 0.85, spacing: 0.2, dynamics, ..Brush::default() }
+    }
+
+    /// What is asked of it, if it is hatching.
+    pub fn hatching(&self) -> Option<&HatchSettings> {
+        match &self.pattern {
+            FormPattern::Lines(_) => None,
+            FormPattern::Hatching(hatch) => Some(hatch),
+        }
     }
 
     /// Toward its light, camera space (y up), any length.
@@ -95,7 +117,9 @@ impl FormDrawing {
             FormPattern::Hatching(hatch) => FormPattern::Hatching(hatch.scaled(factor)),
         };
         let (hand, brush) = (self.hand.scaled(factor), self.brush.scaled(factor));
-        Self { pattern, hand, brush, color: self.color, made: MadeStrokes::default() }
+        let found = self.found.scaled(factor);
+        let (sources, made) = (self.sources.clone(), MadeStrokes::default());
+        Self { pattern, hand, brush, color: self.color, sources, found, made }
     }
 
     /// Its strokes on a scene, the lowest first; none without a surface. Those of a far side are

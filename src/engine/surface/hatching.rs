@@ -1,11 +1,14 @@
 //! Hatching: lines that follow the form, equally far apart on the surface, in nested levels, so that
 //! tone decides only which are drawn and how wide. Floor 2. Here: what is asked of them, their
-//! levels, and the cache. `directions` holds the field that they follow, `streamlines` places them,
-//! `room` measures how densely they lie. Not here: tone, and strokes along them
+//! levels, and the cache. `directions` holds the field that they follow, `guided` spreads drawn
+//! strokes over it, `streamlines` places them, `stipples` places points in their stead, `room` measures
+//! how densely they lie. Not here: tone, and strokes along them
 //! (`paint::form_drawing`).
 
 mod directions;
+mod guided;
 mod room;
+mod stipples;
 mod streamlines;
 
 #[cfg(test)]
@@ -16,6 +19,7 @@ use super::cache::HeapSize;
 use crate::math::number_settings::number_settings;
 use crate::math::{Vec2, Vec3};
 use directions::DirectionField;
+pub use guided::GuideLines;
 use std::sync::Arc;
 use streamlines::Streamlines;
 
@@ -30,6 +34,8 @@ crate::named! {
         Hatch = "hatch" => ("Hatching", "One family of lines, denser in the shade"),
         /// One family whose width alone carries the tone.
         Engraving = "engraving" => ("Engraving", "One family of lines, whose width alone carries the tone"),
+        /// Points, more and larger ones in the shade.
+        Stipple = "stipple" => ("Stippling", "Points, more and larger ones in the shade"),
     }
 }
 
@@ -46,6 +52,22 @@ crate::named! {
         Slope = "slope" => ("Down the slope", "Toward the outline, as rain would run"),
         /// At one angle on the paper.
         Paper = "paper" => ("On the paper", "At one angle, whatever the form"),
+        /// Along strokes that are drawn on another layer.
+        Guides = "guides" => ("Along my strokes", "Along the strokes of a stroke layer; pieces without one: around the form"),
+    }
+}
+
+crate::named! {
+    /// What says how dark hatching is.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum HatchTone {
+        /// A light of its own on the form.
+        #[default]
+        Light = "light" => ("Its own light", "A light on the form, with shadows and hollows"),
+        /// The picture beneath.
+        Beneath = "beneath" => ("What lies beneath", "How dark the picture beneath is"),
+        /// One layer, shown or hidden.
+        Layer = "layer" => ("One layer", "How dark a layer or group is, shown or hidden"),
     }
 }
 
@@ -73,6 +95,8 @@ number_settings! {
         style: HatchStyle = HatchStyle::Crosshatch;
         /// Which way lines go.
         way: HatchWay = HatchWay::Around;
+        /// What says how dark it is.
+        tone: HatchTone = HatchTone::Light;
         /// Toward the light, camera space (y up), any length.
         light: Vec3 = Vec3::new(-0.5, 0.6, 0.62);
     }
@@ -97,7 +121,16 @@ impl HatchSettings {
             &[level(1.0, 0, 0.2), level(0.5, 0, 0.24), level(0.55, 1, 0.5), level(0.28, 0, 1.0)];
         const HATCH: &[HatchLevel] = &[level(1.0, 0, 0.2), level(0.5, 0, 0.4), level(0.25, 0, 1.0)];
         const ENGRAVING: &[HatchLevel] = &[level(0.5, 0, 1.0)];
+        const STIPPLE: &[HatchLevel] = &[
+            level(1.0, 0, 1.0),
+            level(0.8, 0, 1.0),
+            level(0.64, 0, 1.0),
+            level(0.512, 0, 1.0),
+            level(0.41, 0, 1.0),
+            level(0.328, 0, 1.0),
+        ];
         match self.style {
+            HatchStyle::Stipple => STIPPLE,
             HatchStyle::Crosshatch => CROSSHATCH,
             HatchStyle::Hatch => HATCH,
             HatchStyle::Engraving => ENGRAVING,
@@ -117,10 +150,36 @@ impl HatchSettings {
         })
     }
 
-    fn key(&self) -> HatchKey {
-        let own = [self.spacing, self.angle, self.smooth, self.spread].map(f32::to_bits);
-        HatchKey { style: self.style, way: self.way, bits: own }
+    /// The area of a point of stippling where the tone is so dark, of what each point has for itself
+    /// among all levels. One level after the other is drawn, its points up to the size of those
+    /// before; where all are drawn, all grow on and run into each other.
+    pub fn stipple_area(&self, dark: f32, level: usize) -> f32 {
+        let levels = self.levels();
+        // As many points lie that far apart, of all.
+        let share = |level: &HatchLevel| (levels[levels.len() - 1].apart / level.apart).powi(2);
+        if dark > STIPPLED_UP_TO {
+            return STIPPLED_UP_TO + overlapping_area(dark) - overlapping_area(STIPPLED_UP_TO);
+        }
+        let before = if level == 0 { 0.0 } else { share(&levels[level - 1]) };
+        let own = share(&levels[level]) - before;
+        (dark - before * STIPPLED_UP_TO).max(0.0).min(own * STIPPLED_UP_TO) / own
     }
+
+    fn key(&self, guides: &GuideLines) -> HatchKey {
+        let own = [self.spacing, self.angle, self.smooth, self.spread].map(f32::to_bits);
+        let guides = if self.way == HatchWay::Guides { guides.clone() } else { GuideLines::none() };
+        HatchKey { style: self.style, way: self.way, bits: own, guides }
+    }
+}
+
+/// How dark stippling is when all of its points are drawn, just before they meet.
+const STIPPLED_UP_TO: f32 = 0.45;
+
+/// The area of points that cover so much though they overlap, of what each has for itself: what
+/// points cover that lie anywhere, but for a share.
+fn overlapping_area(dark: f32) -> f32 {
+    // Beyond, points cover everything.
+    -0.8 * (1.0 - dark.min(0.98)).ln()
 }
 
 /// One of the nested levels of lines.
@@ -135,11 +194,12 @@ pub struct HatchLevel {
 }
 
 /// What tells the lines of a surface from others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(in crate::surface) struct HatchKey {
     style: HatchStyle,
     way: HatchWay,
     bits: [u32; 4],
+    guides: GuideLines,
 }
 
 /// A point of a hatching line.
@@ -147,8 +207,8 @@ pub(in crate::surface) struct HatchKey {
 pub struct HatchPoint {
     /// Canvas px.
     pub at: Vec2,
-    /// How wide the strip of the picture is that the line has for itself among those of its level,
-    /// px.
+    /// How wide the strip of the picture is that the line has for itself among those of its level;
+    /// of a single point, the side of the square that it has among all. px.
     pub room_px: f32,
 }
 
@@ -157,7 +217,7 @@ pub struct HatchPoint {
 pub struct HatchLine {
     /// Its level, from 0 on.
     pub level: u8,
-    /// Its points, a pixel apart.
+    /// Its points, a pixel apart; a single one in stippling.
     pub points: Vec<HatchPoint>,
 }
 
@@ -177,9 +237,12 @@ impl HeapSize for HatchLines {
 }
 
 impl HatchLines {
-    fn of(surface: &Surface, settings: &HatchSettings) -> Self {
+    fn of(surface: &Surface, settings: &HatchSettings, guides: &GuideLines) -> Self {
         let normals = surface.smooth_normals(settings.smooth);
-        let field = DirectionField::of(surface, &normals, settings);
+        if settings.style == HatchStyle::Stipple {
+            return Self { lines: stipples::place_points(surface, &normals, settings) };
+        }
+        let field = DirectionField::of(surface, &normals, settings, guides);
         let levels = settings.levels();
         // Lines of two families do not keep each other at a distance.
         let family = |family: u8| {
@@ -199,9 +262,11 @@ impl HatchLines {
 
 impl Surface {
     /// The hatching lines of the surface, cached: tone is no part of them.
-    pub fn hatch_lines(&self, settings: &HatchSettings) -> Arc<HatchLines> {
+    ///
+    /// * `guides`: what they follow if their way is [`HatchWay::Guides`].
+    pub fn hatch_lines(&self, settings: &HatchSettings, guides: &GuideLines) -> Arc<HatchLines> {
         const KEPT: usize = 3;
-        let compute = |_| HatchLines::of(self, settings);
-        self.derived.hatch_lines.get_or_compute(settings.key(), KEPT, compute)
+        let compute = |_| HatchLines::of(self, settings, guides);
+        self.derived.hatch_lines.get_or_compute(settings.key(guides), KEPT, compute)
     }
 }

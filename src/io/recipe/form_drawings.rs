@@ -7,9 +7,9 @@ use super::light::{direction, of_object, settings, write_settings};
 use super::value::RecipeValue;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
-use crate::paint::{DrawingHand, FormDrawing, FormPattern};
+use crate::paint::{DrawingHand, FormDrawing, FormPattern, HatchSources};
 use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
-use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
+use crate::surface::hatching::{HatchSettings, HatchStyle, HatchTone, HatchWay};
 use serde_json::Value;
 
 impl LayerReader<'_> {
@@ -22,7 +22,12 @@ impl LayerReader<'_> {
     /// A layer of hatching.
     pub fn hatching(&mut self, fields: &mut Fields) -> Result<FormDrawing> {
         let pattern = FormPattern::Hatching(hatch(fields)?);
-        self.form_drawing(fields, pattern)
+        let mut name = |key| match fields.get(key) {
+            Some(node) => node.text().map(str::to_owned),
+            None => Ok(String::new()),
+        };
+        let sources = HatchSources { guides: name("guides")?, tone: name("tone_of")? };
+        Ok(FormDrawing { sources, ..self.form_drawing(fields, pattern)? })
     }
 
     fn form_drawing(&mut self, fields: &mut Fields, pattern: FormPattern) -> Result<FormDrawing> {
@@ -35,11 +40,11 @@ impl LayerReader<'_> {
                 }
                 brush
             }
-            None => plain.brush,
+            None => plain.brush.clone(),
         };
         let hand = fields.get("hand").map_or(Ok(plain.hand), |node| hand(&node, plain.hand))?;
         let color = fields.color("color", plain.color)?;
-        Ok(FormDrawing { pattern, hand, brush, color, made: plain.made })
+        Ok(FormDrawing { hand, brush, color, ..plain })
     }
 }
 
@@ -65,14 +70,16 @@ fn hatch(fields: &mut Fields) -> Result<HatchSettings> {
     let numbers = settings(fields, HatchSettings::SETTINGS, plain)?;
     let style = fields.one_of("style", &HatchStyle::ALL, plain.style)?;
     let way = fields.one_of("way", &HatchWay::ALL, plain.way)?;
+    let tone = fields.one_of("tone", &HatchTone::ALL, plain.tone)?;
     let light = fields.get("light").map_or(Ok(plain.light), |node| direction(&node))?;
-    Ok(HatchSettings { style, way, light, ..numbers })
+    Ok(HatchSettings { style, way, tone, light, ..numbers })
 }
 
 fn write_hatch(out: &mut JsonObject, hatch: &HatchSettings) {
     let plain = HatchSettings::DEFAULT;
     out.word("style", &HatchStyle::ALL, hatch.style, plain.style);
     out.word("way", &HatchWay::ALL, hatch.way, plain.way);
+    out.word("tone", &HatchTone::ALL, hatch.tone, plain.tone);
     write_settings(out, HatchSettings::SETTINGS, hatch, &plain);
     if hatch.light != plain.light {
         out.set("light", object::vector(hatch.light));
@@ -102,6 +109,9 @@ pub fn write(out: &mut JsonObject, drawing: &FormDrawing) {
         FormPattern::Lines(lines) => write_lines(out, lines),
         FormPattern::Hatching(hatch) => write_hatch(out, hatch),
     }
+    let HatchSources { guides, tone } = &drawing.sources;
+    out.text("guides", guides, "");
+    out.text("tone_of", tone, "");
     let plain = FormDrawing::new(drawing.pattern);
     let mut hand = JsonObject::default();
     write_settings(&mut hand, DrawingHand::SETTINGS, &drawing.hand, &plain.hand);
@@ -172,7 +182,7 @@ mod tests {
     #[test]
     fn hatching_is_written_as_it_was_read() {
         let text = json!({
-            "style": "engraving", "way": "slope", "spacing": 6, "angle": 30, "smooth": 4, "spread": 10,
+            "style": "engraving", "way": "slope", "tone": "beneath", "spacing": 6, "angle": 30, "smooth": 4, "spread": 10,
             "darkness": 0.75, "paper": 0.5, "shadow": 0.25, "hollows": 1, "light": [1, 0, 0.5],
         });
         let node = JsonNode::root(std::path::Path::new("r.json"), &text);

@@ -68,6 +68,10 @@ actions! {
         "lines" Lines { lines: LineSettings }
         /// What hatching is like.
         "hatching" Hatched { hatching: HatchSettings }
+        /// The stroke layer whose strokes hatching follows, by its name.
+        "guided by" GuidedBy { name: String }
+        /// The layer whose tone hatching has, by its name.
+        "tone of" ToneOf { name: String }
         /// How a hand follows the lines of such a drawing.
         "hand" Hand { hand: DrawingHand }
         /// The size of its brush, px.
@@ -154,7 +158,9 @@ impl Property {
             Property::Filtered { .. } => "Filter",
             Property::Adjusted { .. } => "Adjust image",
             Property::Lines { .. } => "Form lines",
-            Property::Hatched { .. } => "Hatching",
+            Property::Hatched { .. } | Property::GuidedBy { .. } | Property::ToneOf { .. } => {
+                "Hatching"
+            }
             Property::Hand { .. } => "Hand",
             Property::LineSize { .. } | Property::DrawnWith { .. } => "Brush of the lines",
             Property::Worded { .. } => "Text",
@@ -327,6 +333,12 @@ impl Property {
         match (self, &mut next.pattern) {
             (Property::Lines { lines }, FormPattern::Lines(own)) => *own = *lines,
             (Property::Hatched { hatching }, FormPattern::Hatching(own)) => *own = *hatching,
+            (Property::GuidedBy { name }, FormPattern::Hatching(_)) => {
+                next.sources.guides.clone_from(name);
+            }
+            (Property::ToneOf { name }, FormPattern::Hatching(_)) => {
+                next.sources.tone.clone_from(name);
+            }
             (Property::Hand { hand }, _) => next.hand = *hand,
             (Property::Fill { color }, _) => next.color = *color,
             (Property::LineSize { to }, _) => next.brush.size = clamp_to_range(*to, &Brush::SIZE),

@@ -2,14 +2,15 @@
 
 use super::setter::LayerSetter;
 use super::{colors, painter};
+use crate::document::{Content, Layer};
 use crate::io::recipe::presets;
 use crate::math::{Vec3, vec3};
 use crate::paint::{Brush, DrawingHand, FormDrawing, FormPattern};
 use crate::session::actions::LayerAction;
 use crate::session::{Property, Session};
 use crate::surface::form_lines::{LineKind, LineSettings};
-use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
-use crate::widgets::{NumberField, check, choice_row, set_accessible_name, title};
+use crate::surface::hatching::{HatchSettings, HatchStyle, HatchTone, HatchWay};
+use crate::widgets::{NumberField, check, choice_row, name, set_accessible_name, title};
 use eframe::egui::{self, Ui};
 
 /// The panel of one.
@@ -25,7 +26,7 @@ pub fn show(
     }
     match drawing.pattern {
         FormPattern::Lines(lines) => line_settings(ui, lines, setter),
-        FormPattern::Hatching(hatch) => hatch_settings(ui, hatch, setter),
+        FormPattern::Hatching(hatch) => hatch_settings(ui, session, drawing, hatch, setter),
     }
     brush(ui, session, drawing, setter);
     title(ui, "Hand");
@@ -52,7 +53,13 @@ fn line_settings(ui: &mut Ui, lines: LineSettings, setter: &mut LayerSetter) {
     });
 }
 
-fn hatch_settings(ui: &mut Ui, hatching: HatchSettings, setter: &mut LayerSetter) {
+fn hatch_settings(
+    ui: &mut Ui,
+    session: &Session,
+    drawing: &FormDrawing,
+    hatching: HatchSettings,
+    setter: &mut LayerSetter,
+) {
     title(ui, "Hatching");
     if let Some(style) = choice_row(ui, "Style", hatching.style, &HatchStyle::LABELS) {
         let hatching = HatchSettings { style, ..hatching };
@@ -62,12 +69,68 @@ fn hatch_settings(ui: &mut Ui, hatching: HatchSettings, setter: &mut LayerSetter
         let hatching = HatchSettings { way, ..hatching };
         setter.set(Property::Hatched { hatching }, true);
     }
+    if hatching.way == HatchWay::Guides {
+        guides(ui, session, &drawing.sources.guides, setter);
+    }
+    if let Some(tone) = choice_row(ui, "Tone", hatching.tone, &HatchTone::LABELS) {
+        setter.set(Property::Hatched { hatching: HatchSettings { tone, ..hatching } }, true);
+    }
+    if hatching.tone == HatchTone::Layer {
+        let of = &drawing.sources.tone;
+        if let Some(name) = layer_row(ui, session, "Tone of", of, |_| true) {
+            setter.set(Property::ToneOf { name }, true);
+        }
+    }
     painter::settings(ui, HatchSettings::SETTINGS, hatching, setter, |hatching| {
         Property::Hatched { hatching }
     });
-    light(ui, hatching.light, setter, |light| Property::Hatched {
-        hatching: HatchSettings { light, ..hatching },
+    if hatching.tone == HatchTone::Light {
+        light(ui, hatching.light, setter, |light| Property::Hatched {
+            hatching: HatchSettings { light, ..hatching },
+        });
+    }
+}
+
+/// Which strokes hatching follows, and how they are drawn.
+fn guides(ui: &mut Ui, session: &Session, of: &str, setter: &mut LayerSetter) {
+    let is_strokes = |layer: &Layer| matches!(layer.content, Content::Strokes(_));
+    if let Some(name) = layer_row(ui, session, "Strokes of", of, is_strokes) {
+        setter.set(Property::GuidedBy { name }, true);
+    }
+    let hint = "Selects a stroke layer; lines follow the strokes that you paint on it";
+    if ui.button("Draw guide strokes").on_hover_text(hint).clicked() {
+        setter.act(|layer| LayerAction::DrawGuides { layer });
+    }
+}
+
+/// A choice of a layer by its name.
+fn layer_row(
+    ui: &mut Ui,
+    session: &Session,
+    label: &str,
+    current: &str,
+    suits: impl Fn(&Layer) -> bool,
+) -> Option<String> {
+    let document = session.shown_document()?;
+    let layers: Vec<_> = document.walk().into_iter().filter(|(_, layer)| suits(layer)).collect();
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        name(ui, label);
+        let shown = if current.is_empty() { "None" } else { current };
+        let combo = egui::ComboBox::from_id_salt(label)
+            .selected_text(shown)
+            .width(ui.available_width())
+            .truncate();
+        let response = combo.show_ui(ui, |ui| {
+            for (_, layer) in layers.iter().rev() {
+                if ui.selectable_label(layer.name == current, &layer.name).clicked() {
+                    chosen = Some(layer.name.clone());
+                }
+            }
+        });
+        set_accessible_name(&response.response, label);
     });
+    chosen
 }
 
 /// Where the light comes from: its turn in the picture and its height above it.

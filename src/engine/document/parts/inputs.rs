@@ -27,9 +27,14 @@ pub struct SurfaceInputs {
 }
 
 impl Document {
-    /// Whether its surface is what its parts, its layers and its maps make, and its ink layers show
-    /// the ink of their drawings. If not, [`Document::reshaped`] makes it.
+    /// Whether its surface is what its parts, its layers and its maps make, its ink layers show the
+    /// ink of their drawings, and hatching follows the layers that it reads. If not,
+    /// [`Document::reshaped`] makes it.
     pub fn is_shaped(&self) -> bool {
+        self.is_inked_and_shaped() && self.is_hatching_fed()
+    }
+
+    fn is_inked_and_shaped(&self) -> bool {
         self.is_ink_lifted() && self.has_its_surface()
     }
 
@@ -58,8 +63,13 @@ impl Document {
 
     /// The same, a step for each part; `None` if canceled.
     pub fn reshaped_with_progress(&self, progress: &Progress) -> Option<Document> {
+        Some(self.shaped_with_progress(progress)?.with_hatching_fed())
+    }
+
+    /// Without what hatching reads.
+    fn shaped_with_progress(&self, progress: &Progress) -> Option<Document> {
         let placed = self.with_attachments_placed().with_ink_lifted();
-        if placed.is_shaped() {
+        if placed.is_inked_and_shaped() {
             placed.parts.forget_flats();
             return Some(placed.with_selections_found());
         }

@@ -1,17 +1,18 @@
 //! Strokes of hatching: where tone asks for a line, and how wide it is there. Floor 3. Lines that
 //! stay do not move when the light does: tone decides width alone.
 
-use super::FormDrawing;
-use crate::math::{Vec2, Vec3, vec3};
+use super::{FormDrawing, TonePicture};
+use crate::math::{Size, Vec2, Vec3, vec3};
 use crate::paint::brush::Brush;
 use crate::paint::dynamics::{Curve, Input, Property};
 use crate::paint::stroke::Stroke;
 use crate::raster::Plane;
 use crate::surface::Surface;
 use crate::surface::form_lines::{LinePoint, SmoothNormals};
-use crate::surface::hatching::{HatchLine, HatchSettings};
+use crate::surface::hatching::{HatchLine, HatchPoint, HatchSettings, HatchTone};
 use crate::surface::shadow::{LampPlace, ShadowLamp, ShareMap};
 use rayon::prelude::*;
+use std::f32::consts::PI;
 use std::sync::Arc;
 
 /// Thinner lines are not drawn, px.
@@ -31,8 +32,19 @@ const KEPT: usize = 3;
 /// How far what makes hollows dark may be, in longer sides.
 const HOLLOW: f32 = 0.04;
 
-/// How dark a surface is under the light of a hatching.
+/// How dark hatching is to be: under its light, or as a picture is.
 pub(super) struct FormTone<'s> {
+    settings: &'s HatchSettings,
+    of: ToneOf<'s>,
+}
+
+enum ToneOf<'s> {
+    Light(LitForm<'s>),
+    Picture(&'s TonePicture, Size),
+}
+
+/// A surface under the light of a hatching.
+struct LitForm<'s> {
     settings: &'s HatchSettings,
     normals: Arc<SmoothNormals>,
     shadow: Option<Arc<ShareMap>>,
@@ -42,7 +54,31 @@ pub(super) struct FormTone<'s> {
 }
 
 impl<'s> FormTone<'s> {
-    pub fn of(surface: &Surface, settings: &'s HatchSettings) -> Self {
+    pub fn of(
+        surface: &Surface,
+        settings: &'s HatchSettings,
+        picture: Option<&'s TonePicture>,
+    ) -> Self {
+        let of = match picture.filter(|_| settings.tone != HatchTone::Light) {
+            Some(picture) => ToneOf::Picture(picture, surface.size()),
+            None => ToneOf::Light(LitForm::of(surface, settings)),
+        };
+        Self { settings, of }
+    }
+
+    /// How dark the drawing is to be at a place, `[0, 1]`.
+    pub fn dark(&self, at: Vec2) -> f32 {
+        let tone = match &self.of {
+            ToneOf::Light(form) => form.tone(at),
+            ToneOf::Picture(picture, canvas) => picture.at(at, *canvas),
+        };
+        let paper = self.settings.paper.max(1e-3);
+        self.settings.darkness * ((paper - tone) / paper).clamp(0.0, 1.0)
+    }
+}
+
+impl<'s> LitForm<'s> {
+    fn of(surface: &Surface, settings: &'s HatchSettings) -> Self {
         let side = surface.size().longer_side();
         let light = settings.light.normalize_or(Vec3::Z);
         let (radius, reach, rays) = LAMP;
@@ -62,8 +98,8 @@ impl<'s> FormTone<'s> {
         }
     }
 
-    /// How dark the drawing is to be at a place, `[0, 1]`.
-    pub fn dark(&self, at: Vec2) -> f32 {
+    /// How light it is at a place, `[0, 1]`.
+    fn tone(&self, at: Vec2) -> f32 {
         let size = self.normals.planes[0].size();
         let pixel = |v: f32, n: u32| (v.max(0.0) as usize).min(n.saturating_sub(1) as usize);
         let (x, y) = (pixel(at.x, size.width), pixel(at.y, size.height));
@@ -73,9 +109,7 @@ impl<'s> FormTone<'s> {
         let open = self.open.as_ref().map_or(1.0, |open| open.at(x, y));
         let cast = 1.0 - self.settings.shadow * (1.0 - seen);
         let hollow = 1.0 - self.settings.hollows * (1.0 - open);
-        let tone = (lit * cast * (1.0 - AROUND) + AROUND) * hollow;
-        let paper = self.settings.paper.max(1e-3);
-        self.settings.darkness * ((paper - tone) / paper).clamp(0.0, 1.0)
+        (lit * cast * (1.0 - AROUND) + AROUND) * hollow
     }
 }
 
@@ -85,13 +119,16 @@ pub(super) fn strokes(
     surface: &Surface,
     settings: &HatchSettings,
 ) -> Vec<Arc<Stroke>> {
-    let tone = FormTone::of(surface, settings);
-    let lines = surface.hatch_lines(settings);
+    let tone = FormTone::of(surface, settings, drawing.found.tone.as_deref());
+    let lines = surface.hatch_lines(settings, &drawing.found.guides);
     let of_line = |line: &HatchLine| of_line(drawing, line, &tone);
     lines.lines.par_iter().flat_map_iter(of_line).collect()
 }
 
 fn of_line(drawing: &FormDrawing, line: &HatchLine, tone: &FormTone) -> Vec<Arc<Stroke>> {
+    if let [point] = line.points[..] {
+        return of_point(drawing, point, line.level, tone).into_iter().collect();
+    }
     let width = |at: Vec2, room_px: f32| {
         let share = tone.settings.coverages(tone.dark(at)).nth(usize::from(line.level));
         share.unwrap_or(0.0) * room_px
@@ -118,6 +155,21 @@ fn of_line(drawing: &FormDrawing, line: &HatchLine, tone: &FormTone) -> Vec<Arc<
         from += run;
     }
     strokes
+}
+
+/// A dab for a point of stippling, as large as its area asks; `None` where it is too small.
+fn of_point(
+    drawing: &FormDrawing,
+    point: HatchPoint,
+    level: u8,
+    tone: &FormTone,
+) -> Option<Arc<Stroke>> {
+    let area = tone.settings.stipple_area(tone.dark(point.at), usize::from(level));
+    let width_px = (area * 4.0 / PI).sqrt() * point.room_px;
+    (width_px >= LEAST_PX).then(|| {
+        let strength = pressure_of(&drawing.brush, width_px);
+        drawing.hand.draw_part(drawing, &[LinePoint { at: point.at, strength }], 0)
+    })
 }
 
 /// The pressure at which a brush draws so wide: the inverse of how pressure drives its size.

@@ -108,7 +108,7 @@ fn hatching_covers_what_the_tone_asks() {
     for (style, _) in HatchStyle::ALL {
         let drawing = hatching(style);
         let FormPattern::Hatching(settings) = &drawing.pattern else { panic!("hatching") };
-        let tone = hatched::FormTone::of(scene.surface.as_deref().unwrap(), settings);
+        let tone = hatched::FormTone::of(scene.surface.as_deref().unwrap(), settings, None);
         let strokes = drawing.strokes(&scene);
         let mut coverage = Plane::full(scene.size, 0.0f32);
         for at in TileAt::covering(scene.size.rect()) {

@@ -1,8 +1,10 @@
 //! Which way hatching lines go: the cross of principal directions, diffused by how directed the form
-//! is and combed to one family, or the slope, or an angle on the paper. Floor 2. Angles are in the
-//! tangent plane, in the frame that S takes from the picture without turning it (MATH 8).
+//! is and combed to one family, or the slope, or an angle on the paper, or along strokes (`guided`).
+//! Floor 2. Angles are in the tangent plane, in the frame that S takes from the picture without
+//! turning it (MATH 8).
 
-use super::{HatchSettings, HatchWay};
+use super::guided::guide_directions;
+use super::{GuideLines, HatchSettings, HatchWay};
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::Plane;
 use crate::surface::form_lines::{SmoothNormals, diffuse_copy, gradient_of};
@@ -50,7 +52,12 @@ pub fn principal(slopes: [Vec2; 2], root: Mat2) -> Principal {
 }
 
 impl<'s> DirectionField<'s> {
-    pub fn of(surface: &'s Surface, normals: &'s SmoothNormals, settings: &HatchSettings) -> Self {
+    pub fn of(
+        surface: &'s Surface,
+        normals: &'s SmoothNormals,
+        settings: &HatchSettings,
+        guides: &GuideLines,
+    ) -> Self {
         let turned = settings.angle.to_radians();
         let of_angle = |angle: &(dyn Fn(usize, usize) -> f32 + Sync)| {
             let angles = Plane::from_fn(surface.size(), angle);
@@ -67,6 +74,10 @@ impl<'s> DirectionField<'s> {
                 let nbar = |i: usize| diffuse_copy(&normals.planes[i], surface, settings.spread);
                 let [nx, ny] = [nbar(0), nbar(1)];
                 of_angle(&|x, y| ny.at(x, y).atan2(nx.at(x, y)) - turned)
+            }
+            HatchWay::Guides => {
+                let form = of_form(surface, normals, settings, -turned);
+                guide_directions(surface, normals, guides, -turned, form)
             }
             HatchWay::Around => of_form(surface, normals, settings, -turned),
             HatchWay::Along => of_form(surface, normals, settings, FRAC_PI_2 - turned),
@@ -154,7 +165,7 @@ fn halve_angle(doubled: Vec2) -> Vec2 {
 }
 
 /// S at a pixel of smooth normals: `stretch` to the power 1, without its power.
-fn root(normals: &SmoothNormals, x: usize, y: usize) -> Mat2 {
+pub(super) fn root(normals: &SmoothNormals, x: usize, y: usize) -> Mat2 {
     scale_along(normals.nbar(x, y), 1.0 / normals.nz(x, y).max(STEEPEST_NZ).min(1.0))
 }
 

@@ -1,5 +1,6 @@
 //! How wide a strip of the picture each line has for itself: one over the length of its level's
-//! lines in an area, so that the width of a line that covers a share of it is known. Floor 2.
+//! lines in an area, so that the width of a line that covers a share of it is known; and how much of
+//! it each point has. Floor 2.
 
 use super::{HatchLine, HatchPoint, HatchSettings};
 use crate::math::{Size, Vec2};
@@ -18,19 +19,20 @@ pub fn measure_room(
     settings: &HatchSettings,
 ) -> Vec<HatchLine> {
     let levels = settings.levels();
-    let densities: Vec<Plane<f32>> = levels
+    let densities: Vec<PointDensity> = levels
         .iter()
         .enumerate()
         .map(|(i, level)| {
             let own = lines.iter().filter(|(level, _)| usize::from(*level) == i);
-            density(surface, own.map(|(_, points)| &points[..]), level.apart * settings.spacing)
+            let own: Vec<&[Vec2]> = own.map(|(_, points)| &points[..]).collect();
+            density_of(surface, &own, level.apart * settings.spacing)
         })
         .collect();
     let line = |(level, points): (u8, Vec<Vec2>)| {
         let apart = levels[usize::from(level)].apart * settings.spacing;
         let density = &densities[usize::from(level)];
         let point = |at: Vec2| {
-            let per_px = density.at_clamped(cell(at.x), cell(at.y)).max(1.0 / (4.0 * apart));
+            let per_px = density.at(at).max(1.0 / (4.0 * apart));
             HatchPoint { at, room_px: 1.0 / per_px }
         };
         HatchLine { level, points: points.into_iter().map(point).collect() }
@@ -42,12 +44,18 @@ fn cell(v: f32) -> i32 {
     v as i32 / CELL_PX as i32
 }
 
-/// px of lines for each px² of the surface, in cells.
-fn density<'l>(
-    surface: &Surface,
-    lines: impl Iterator<Item = &'l [Vec2]>,
-    apart: f32,
-) -> Plane<f32> {
+/// How many points there are around a place for each px² of the surface; of lines, that is their
+/// length in px.
+pub(super) struct PointDensity(Plane<f32>);
+
+impl PointDensity {
+    pub fn at(&self, place: Vec2) -> f32 {
+        self.0.at_clamped(cell(place.x), cell(place.y))
+    }
+}
+
+/// The density of points that lie so far apart.
+pub(super) fn density_of(surface: &Surface, lines: &[&[Vec2]], apart: f32) -> PointDensity {
     let size = surface.size();
     let cells = Size::new(
         size.width.div_ceil(CELL_PX as u32).max(1),
@@ -70,8 +78,8 @@ fn density<'l>(
     }
     let sigma = (MEAN.0 * apart).max(MEAN.1).min(MEAN.2) / CELL_PX as f32;
     let mean = blur::gaussian_pixels(cells, &sums, sigma);
-    Plane::from_fn(cells, |x, y| {
+    PointDensity(Plane::from_fn(cells, |x, y| {
         let [length, area] = mean[index(x as i32, y as i32)];
         length / area.max(1e-6)
-    })
+    }))
 }

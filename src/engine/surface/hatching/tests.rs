@@ -41,7 +41,7 @@ fn lines_go_around_a_cylinder_or_along_it() {
     let cylinder = cylinder();
     for (way, along) in [(HatchWay::Around, Vec2::Y), (HatchWay::Along, Vec2::X)] {
         let settings = HatchSettings { way, style: HatchStyle::Hatch, ..HatchSettings::DEFAULT };
-        let lines = cylinder.hatch_lines(&settings);
+        let lines = cylinder.hatch_lines(&settings, &GuideLines::none());
         assert!(lines.lines.len() > 20, "{}", lines.lines.len());
         let cosines = lines
             .lines
@@ -50,6 +50,49 @@ fn lines_go_around_a_cylinder_or_along_it() {
         let least = cosines.fold(1.0, f32::min);
         assert!(least > 10f32.to_radians().cos(), "{}", least.acos().to_degrees());
     }
+}
+
+/// How far lines turn from a direction near a place, degrees: the most, and that of how many.
+fn turned_from(lines: &HatchLines, near: Vec2, along: Vec2) -> (f32, usize) {
+    let found = lines.lines.iter().flat_map(|line| line.points.windows(9)).filter_map(|nine| {
+        let is_near = nine[4].at.distance(near) < 12.0;
+        let way = (nine[8].at - nine[0].at).normalize();
+        is_near.then(|| way.dot(along).abs().min(1.0).acos().to_degrees())
+    });
+    found.fold((0.0, 0), |(most, count), turn| (most.max(turn), count + 1))
+}
+
+#[test]
+fn lines_follow_drawn_strokes_and_turn_evenly_between_them() {
+    let flat = surface(Size::new(240, 200), |_, _| Some(Vec3::Z));
+    let settings =
+        HatchSettings { way: HatchWay::Guides, style: HatchStyle::Hatch, ..HatchSettings::DEFAULT };
+    let slanted = vec2(1.0, 1.0).normalize();
+    let strokes = [[vec2(30.0, 20.0), vec2(30.0, 180.0)], [vec2(190.0, 80.0), vec2(230.0, 120.0)]];
+    let guides = GuideLines::of(strokes.into_iter().map(Vec::from));
+    let lines = flat.hatch_lines(&settings, &guides);
+    for (near, along) in [(vec2(30.0, 100.0), Vec2::Y), (vec2(210.0, 100.0), slanted)] {
+        let (most, count) = turned_from(&lines, near, along);
+        assert!(count > 10 && most < 10.0, "{most}° of {count} near {near}");
+    }
+    // Between them the doubled angle is halfway: 22.5° from either.
+    let halfway = vec2(22.5f32.to_radians().sin(), 22.5f32.to_radians().cos());
+    let (most, count) = turned_from(&lines, vec2(118.0, 100.0), halfway);
+    assert!(count > 10 && most < 16.0, "{most}° of {count}");
+    let turned = HatchSettings { angle: 90.0, ..settings };
+    let (most, _) = turned_from(&flat.hatch_lines(&turned, &guides), vec2(30.0, 100.0), Vec2::X);
+    assert!(most < 10.0, "{most}°");
+}
+
+#[test]
+fn pieces_without_a_stroke_follow_the_form() {
+    let cylinder = cylinder();
+    let [guided, around] = [HatchWay::Guides, HatchWay::Around].map(|way| {
+        let settings = HatchSettings { way, ..HatchSettings::DEFAULT };
+        let beside = GuideLines::of([vec![vec2(0.0, 1.0), vec2(90.0, 1.0)]].into_iter());
+        cylinder.hatch_lines(&settings, &beside)
+    });
+    assert_eq!(guided, around);
 }
 
 #[test]
@@ -61,7 +104,7 @@ fn neighbors_are_as_far_apart_on_the_surface_as_was_asked() {
         spacing: 16.0,
         ..HatchSettings::DEFAULT
     };
-    let lines = &cylinder.hatch_lines(&settings).lines;
+    let lines = &cylinder.hatch_lines(&settings, &GuideLines::none()).lines;
     let mut gaps: Vec<f32> = Vec::new();
     for (i, line) in lines.iter().enumerate() {
         for point in line.points.iter().step_by(10) {
@@ -80,6 +123,53 @@ fn neighbors_are_as_far_apart_on_the_surface_as_was_asked() {
     let at = |share: f32| gaps[(share * (gaps.len() - 1) as f32) as usize] / 8.0;
     let (low, middle, high) = (at(0.1), at(0.5), at(0.9));
     assert!(low > 0.75 && high < 1.25, "p10 {low}, median {middle}, p90 {high}");
+}
+
+#[test]
+fn stipples_are_even_on_the_surface_in_every_level() {
+    let cylinder = cylinder();
+    let settings =
+        HatchSettings { style: HatchStyle::Stipple, spacing: 16.0, ..HatchSettings::DEFAULT };
+    let points = &cylinder.hatch_lines(&settings, &GuideLines::none()).lines;
+    for (i, level) in settings.levels().iter().enumerate() {
+        let shown: Vec<Vec2> = points
+            .iter()
+            .filter(|line| usize::from(line.level) <= i)
+            .map(|line| line.points[0].at)
+            .collect();
+        let nearest = |at: &Vec2| {
+            let (x, y) = (at.x as usize, at.y as usize);
+            let root = stretch(cylinder.nbar(x, y), cylinder.normal(x, y).z, 1.0);
+            let others = shown.iter().filter(|other| *other != at);
+            let far = others.map(|other| (root * (*other - *at)).length());
+            far.min_by(f32::total_cmp).unwrap() / (level.apart * settings.spacing)
+        };
+        let mut far: Vec<f32> = shown.iter().map(nearest).collect();
+        far.sort_by(f32::total_cmp);
+        let at = |share: f32| far[(share * (far.len() - 1) as f32) as usize];
+        let (low, middle, high) = (at(0.1), at(0.5), at(0.9));
+        assert!(low > 0.93 && high < 1.35, "{i}: p10 {low}, median {middle}, p90 {high}");
+    }
+}
+
+#[test]
+fn stipples_grow_level_by_level_and_cover_the_tone() {
+    let settings = HatchSettings { style: HatchStyle::Stipple, ..HatchSettings::DEFAULT };
+    let last = settings.levels().len() - 1;
+    for level in 0..=last {
+        let areas: Vec<f32> =
+            (0..=100).map(|i| settings.stipple_area(i as f32 / 100.0, level)).collect();
+        assert_eq!(areas[0], 0.0);
+        assert!(areas.windows(2).all(|pair| pair[1] >= pair[0] && pair[1] - pair[0] < 0.9));
+    }
+    assert!(settings.stipple_area(0.02, 0) > 0.1 && settings.stipple_area(0.02, 1) == 0.0);
+    // All points together cover what is asked while they do not meet.
+    let share = |i: usize| (settings.levels()[last].apart / settings.levels()[i].apart).powi(2);
+    for dark in [0.1, 0.2, 0.4] {
+        let own = |i: usize| share(i) - if i == 0 { 0.0 } else { share(i - 1) };
+        let sum: f32 = (0..=last).map(|i| own(i) * settings.stipple_area(dark, i)).sum();
+        assert!((sum - dark).abs() < 1e-4, "{dark}: {sum}");
+    }
 }
 
 #[test]
@@ -102,7 +192,7 @@ fn the_room_of_even_lines_is_the_distance_between_them() {
         spacing: 16.0,
         ..HatchSettings::DEFAULT
     };
-    let lines = flat.hatch_lines(&settings);
+    let lines = flat.hatch_lines(&settings, &GuideLines::none());
     let points = lines.lines.iter().flat_map(|line| &line.points);
     let mut rooms: Vec<f32> = points.map(|point| point.room_px).collect();
     rooms.sort_by(f32::total_cmp);
@@ -117,7 +207,7 @@ fn lines_are_the_same_with_any_number_of_threads() {
     let settings = HatchSettings::DEFAULT;
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| HatchLines::of(&cylinder(), &settings))
+        pool.install(|| HatchLines::of(&cylinder(), &settings, &GuideLines::none()))
     };
     assert_eq!(with(1), with(4));
 }

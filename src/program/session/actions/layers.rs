@@ -59,6 +59,8 @@ actions! {
         "bake" Bake { layer: LayerPaths }
         /// The strokes of a drawing by the form become a stroke layer.
         "make strokes" MakeStrokes { layer: LayerPath }
+        /// Hatching follows the strokes of a stroke layer above it, which is added or chosen.
+        "draw guides" DrawGuides { layer: LayerPath }
         /// A drawing by the form gets the brush and the color in hand.
         "draw with" DrawWith { layer: LayerPath }
         /// A shading layer of a model, with the material it begins with.
@@ -297,6 +299,9 @@ impl LayerAction {
             LayerAction::MakeStrokes { layer: path } => {
                 let id = layer(path)?.id;
                 ("Make strokes", document.with_made_strokes(id)?, vec![id])
+            }
+            LayerAction::DrawGuides { layer: path } => {
+                new::add_guides(document, layer(path)?.as_ref())?
             }
             LayerAction::PaintedBall { layer: path, name, hollows } => {
                 let layer = layer(path)?;

@@ -96,6 +96,11 @@ impl LayerKind for Live<FormDrawing> {
         if !keeps {
             made.clear();
         }
+        if let Some(tone) = &self.params().found.tone
+            && count.is_new(tone)
+        {
+            count.add_painted(tone.bytes());
+        }
         made.last().iter().flat_map(|made| made.iter()).for_each(|s| count.add_stroke(s));
     }
 }

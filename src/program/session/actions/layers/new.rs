@@ -1,8 +1,10 @@
 //! New layers of every kind, as they begin.
 //! Floor 6.
 
+use super::steps::EditStep;
 use crate::document::{
-    Content, DetailSource, Document, Group, Layer, Live, NormalLayer, PixelLayer, StrokeList,
+    Content, DetailSource, Document, Group, Layer, LayerSlot, Live, NormalLayer, PixelLayer,
+    StrokeList,
 };
 use crate::math::{Size, srgb::Color, vec2};
 use crate::paint::{FormDrawing, FormPattern, Gradient, Placement, RampStyle};
@@ -10,7 +12,7 @@ use crate::raster::{BlendMode, Outside};
 use crate::session::replay::names;
 use crate::shading::{Model, RadianceScaling, Shading};
 use crate::surface::form_lines::LineSettings;
-use crate::surface::hatching::HatchSettings;
+use crate::surface::hatching::{HatchSettings, HatchWay};
 use crate::surface::{NoiseRelief, Operator};
 use crate::tools::ToolSettings;
 use crate::tools::gradient::GradientSettings;
@@ -61,6 +63,32 @@ pub(super) fn lit_layer(model: Model, document: &Document) -> Layer {
 /// A drawing by the form in lengths that suit a canvas.
 fn make_drawing(pattern: FormPattern, size: Size) -> Content {
     Content::FormDrawing(Live::new(FormDrawing::new(pattern).scaled(on_canvas(size))))
+}
+
+/// Hatching along the strokes of the stroke layer that it names, or of a new one above it, which is
+/// selected.
+pub(super) fn add_guides(document: &Document, layer: &Layer) -> Option<EditStep> {
+    let Content::FormDrawing(live) = &layer.content else { return None };
+    let mut drawing = live.params().clone();
+    let FormPattern::Hatching(hatch) = &mut drawing.pattern else { return None };
+    hatch.way = HatchWay::Guides;
+    let named = document.layer_named(&drawing.sources.guides);
+    let known = named.filter(|layer| matches!(layer.content, Content::Strokes(_)));
+    let (document, id) = match known {
+        Some(known) => (document.clone(), known.id),
+        None => {
+            let name = document.free_layer_name("Guide strokes");
+            let strokes = Content::Strokes(Live::new(StrokeList::default()));
+            let new = Layer { clip_to_surface: false, ..Layer::new(name.clone(), strokes) };
+            let place = document.place_of(layer.id)?;
+            let (id, above) = (new.id, LayerSlot { index: place.index + 1, ..place });
+            drawing.sources.guides = name;
+            (document.with_inserted(new, above)?, id)
+        }
+    };
+    let content = Content::FormDrawing(Live::new(drawing));
+    let next = document.with_layer(layer.id, |layer| layer.content = content)?;
+    Some(("Draw guide strokes", next, vec![id]))
 }
 
 /// What lengths of a canvas of 1024 px are multiplied by on another: finer ones would not be seen,

@@ -246,6 +246,7 @@ impl Roll for String {
             ("overlay", _) => facts.views.clone(),
             ("look", _) => LiveLook::keys().map(str::to_owned).collect(),
             ("material", "name") => PartMaterial::keys().map(str::to_owned).collect(),
+            ("guided by" | "tone of", _) => facts.names.clone(),
             ("painted ball", _) => PaintedBall::all().map(|ball| ball.key.to_owned()).collect(),
             _ => Vec::new(),
         };

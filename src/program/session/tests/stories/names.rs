@@ -61,9 +61,13 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         Unliquified {} => &["liquify"],
         PassThrough { .. } => &["passing through"],
         Fill { .. } => &["color", "lines or how they are drawn"],
-        Lines { .. } | Hatched { .. } | Hand { .. } | LineSize { .. } | DrawnWith { .. } => {
-            &["lines or how they are drawn"]
-        }
+        Lines { .. }
+        | Hatched { .. }
+        | GuidedBy { .. }
+        | ToneOf { .. }
+        | Hand { .. }
+        | LineSize { .. }
+        | DrawnWith { .. } => &["lines or how they are drawn"],
         Anchors { .. } | Power { .. } | Adjusted { .. } => &["picture or how it lies"],
         Worded { .. } | Drawn { .. } => &["picture or how it lies", "name"],
         Bend { .. } | Pieces { .. } | Filtered { .. } => &["picture or how it lies", "gradient"],

@@ -26,7 +26,7 @@ use crate::shading::{
     Reference, Scaling, Shadows, Term,
 };
 use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
-use crate::surface::hatching::{HatchSettings, HatchStyle, HatchWay};
+use crate::surface::hatching::{HatchSettings, HatchStyle, HatchTone, HatchWay};
 use crate::surface::plane_piece::PlanePiece;
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::surface::{Anchor, NoiseRelief, Operator};
@@ -369,7 +369,8 @@ impl Roll for HatchSettings {
         let numbers = settings(dice, HatchSettings::SETTINGS, HatchSettings::DEFAULT);
         let style = dice.one_of(&HatchStyle::ALL.map(|(style, _)| style));
         let way = dice.one_of(&HatchWay::ALL.map(|(way, _)| way));
-        HatchSettings { style, way, light: dice.value(dice.word, "light"), ..numbers }
+        let tone = dice.one_of(&HatchTone::ALL.map(|(tone, _)| tone));
+        HatchSettings { style, way, tone, light: dice.value(dice.word, "light"), ..numbers }
     }
 }
 

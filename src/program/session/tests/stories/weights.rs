@@ -64,7 +64,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
     (&["image", "normals"], &["placement", "outside"]),
     (&["gradient"], &["stops", "ends", "ramp"]),
     (&["lines"], &["lines"]),
-    (&["hatching"], &["hatching"]),
+    (&["hatching"], &["hatching", "guided by", "tone of"]),
     (&["lines", "hatching"], &["hand", "line size", "drawn with"]),
     (&["normals"], &["grain", "strength"]),
     (&["adjustment"], &["adjustment"]),

@@ -1,0 +1,222 @@
+//! Hatching follows the layers that it reads: strokes that its lines follow, and the picture whose
+//! tone it has. Floor 4. Not here: what it makes of them (`paint::form_drawing`).
+
+use super::flatten::{flatten, flatten_layer};
+use super::{Content, Document, Group, Layer, LayerId, Live, Progress};
+use crate::math::Vec2;
+use crate::paint::{FormDrawing, FoundSources, HatchSources, Stroke, TonePicture, ToneSource};
+use crate::raster::TileGrid;
+use crate::surface::hatching::{GuideLines, HatchTone, HatchWay};
+use std::sync::Arc;
+
+/// From one point of a stroke to the next that gives a direction, px: less is a trembling hand.
+const EVERY_PX: f32 = 5.0;
+
+impl Document {
+    /// Whether all hatching has what is in the layers that it reads.
+    pub(super) fn is_hatching_fed(&self) -> bool {
+        self.hatchings().iter().all(|(layer, drawing)| {
+            let found = &drawing.found;
+            let is_toned = match (self.tone_sources(layer, drawing), &found.tone) {
+                (Some(sources), Some(tone)) => tone.is_of(self.size, &sources),
+                (None, None) => true,
+                _ => false,
+            };
+            is_toned && self.guide_lines(drawing) == found.guides
+        })
+    }
+
+    /// The document with hatching as the layers are that it reads ([`Document::is_hatching_fed`]).
+    pub(super) fn with_hatching_fed(&self) -> Document {
+        if self.is_hatching_fed() {
+            return self.clone();
+        }
+        // Directions first: a picture whose tone is read may show hatching along strokes.
+        let guided = self.with_found(|document, _, drawing| FoundSources {
+            guides: document.guide_lines(drawing),
+            tone: drawing.found.tone.clone(),
+        });
+        guided.with_found(|document, layer, drawing| {
+            let measure = |sources| document.measure_tone(layer, drawing, sources);
+            let tone = document.tone_picture(layer, drawing, measure);
+            FoundSources { guides: drawing.found.guides.clone(), tone }
+        })
+    }
+
+    /// With what is found for each hatching, the lowest first: those above it see it.
+    fn with_found(
+        &self,
+        find: impl Fn(&Document, &Arc<Layer>, &FormDrawing) -> FoundSources,
+    ) -> Document {
+        let ids: Vec<LayerId> = self.hatchings().iter().map(|(layer, _)| layer.id).collect();
+        ids.into_iter().fold(self.clone(), |next, id| {
+            let Some(layer) = next.layer(id).cloned() else { return next };
+            let Content::FormDrawing(live) = &layer.content else { return next };
+            let found = find(&next, &layer, live.params());
+            if found.is_same(&live.params().found) {
+                return next;
+            }
+            // What shows the same need not be drawn again.
+            let is_alike = found.is_alike(&live.params().found);
+            let drawing = FormDrawing { found, ..live.params().clone() };
+            let content = Content::FormDrawing(live.with(drawing, |_| is_alike));
+            next.with_layer(id, |layer| layer.content = content).unwrap_or(next)
+        })
+    }
+
+    /// Hatching that reads other layers, or did.
+    fn hatchings(&self) -> Vec<(Arc<Layer>, FormDrawing)> {
+        let reads = |layer: &Arc<Layer>| match &layer.content {
+            Content::FormDrawing(live) => {
+                let drawing = live.params();
+                let hatch = drawing.hatching()?;
+                let is_reading = hatch.way == HatchWay::Guides || hatch.tone != HatchTone::Light;
+                let has_read = !drawing.found.is_same(&FoundSources::default());
+                (is_reading || has_read).then(|| (layer.clone(), drawing.clone()))
+            }
+            _ => None,
+        };
+        self.walk().into_iter().filter_map(|(_, layer)| reads(layer)).collect()
+    }
+
+    fn guide_lines(&self, drawing: &FormDrawing) -> GuideLines {
+        let is_guided = drawing.hatching().is_some_and(|hatch| hatch.way == HatchWay::Guides);
+        let layer = self.layer_named(&drawing.sources.guides).filter(|_| is_guided);
+        let Some(layer) = layer else { return GuideLines::none() };
+        let strokes = self.strokes_on_canvas(layer.id);
+        GuideLines::of(strokes.iter().map(|stroke| sparse_points(stroke)))
+    }
+
+    /// The layer whose tone a hatching has: none that has the tone of another itself.
+    fn tone_layer(&self, drawing: &FormDrawing) -> Option<&Arc<Layer>> {
+        self.layer_named(&drawing.sources.tone).filter(|layer| !has_read_tone(layer))
+    }
+
+    /// What the tone of a hatching follows from: layers, bottom first, and the surface; `None` if it
+    /// has a light of its own.
+    fn tone_sources(&self, layer: &Layer, drawing: &FormDrawing) -> Option<Vec<ToneSource>> {
+        let read = match drawing.hatching()?.tone {
+            HatchTone::Light => return None,
+            HatchTone::Beneath => all_beneath(&self.layers, layer.id)?,
+            HatchTone::Layer => vec![self.tone_layer(drawing)?.clone()],
+        };
+        let surface = self.surface.iter().map(ToneSource::of);
+        Some(read.iter().map(ToneSource::of).chain(surface).collect())
+    }
+
+    /// The picture whose tone a hatching has: the known one while it follows from the same, else
+    /// what `measure` finds.
+    fn tone_picture(
+        &self,
+        layer: &Layer,
+        drawing: &FormDrawing,
+        measure: impl FnOnce(Vec<ToneSource>) -> Option<Arc<TonePicture>>,
+    ) -> Option<Arc<TonePicture>> {
+        let sources = self.tone_sources(layer, drawing)?;
+        match &drawing.found.tone {
+            Some(known) if known.is_of(self.size, &sources) => Some(known.clone()),
+            _ => measure(sources),
+        }
+    }
+
+    fn measure_tone(
+        &self,
+        layer: &Layer,
+        drawing: &FormDrawing,
+        sources: Vec<ToneSource>,
+    ) -> Option<Arc<TonePicture>> {
+        let progress = Progress::default();
+        let picture: TileGrid = match drawing.hatching()?.tone {
+            HatchTone::Light => return None,
+            HatchTone::Beneath => {
+                let layers = layers_beneath(&self.layers, layer.id)?;
+                flatten(&Document { layers, ..self.clone() }, &progress)?
+            }
+            HatchTone::Layer => flatten_layer(self, self.tone_layer(drawing)?.id, &progress)?,
+        };
+        Some(Arc::new(TonePicture::of(&picture, self.size, sources)))
+    }
+
+    /// With hatching naming the layers that it reads by their present names; `before`: the document
+    /// in which a layer had another name.
+    pub(super) fn with_hatch_sources_renamed(self, before: &Document, id: LayerId) -> Document {
+        let names = before.layer(id).zip(self.layer(id)).map(|(old, new)| (&old.name, &new.name));
+        let Some((old, new)) = names.filter(|(old, new)| old != new) else { return self };
+        if before.layer_named(old).is_none_or(|layer| layer.id != id) {
+            return self;
+        }
+        let renamed = |name: &String| if name == old { new.clone() } else { name.clone() };
+        let reading = self.walk().into_iter().filter_map(|(_, layer)| match &layer.content {
+            Content::FormDrawing(live) => {
+                let HatchSources { guides, tone } = &live.params().sources;
+                let reads = !old.is_empty() && (guides == old || tone == old);
+                let sources = HatchSources { guides: renamed(guides), tone: renamed(tone) };
+                reads.then(|| (layer.id, FormDrawing { sources, ..live.params().clone() }))
+            }
+            _ => None,
+        });
+        let reading: Vec<(LayerId, FormDrawing)> = reading.collect();
+        reading.into_iter().fold(self.clone(), |next, (id, drawing)| {
+            let content = Content::FormDrawing(Live::new(drawing));
+            next.with_layer(id, |layer| layer.content = content).unwrap_or(next)
+        })
+    }
+}
+
+/// The layers beneath one in its list and around it: groups that hold it show only what lies
+/// beneath it. `None` without it.
+fn layers_beneath(layers: &[Arc<Layer>], id: LayerId) -> Option<Vec<Arc<Layer>>> {
+    for (i, layer) in layers.iter().enumerate() {
+        if layer.id == id {
+            return Some(layers[..i].to_vec());
+        }
+        let inner = layer.content.group().and_then(|group| layers_beneath(&group.layers, id));
+        if let Some(inner) = inner {
+            let mut beneath = layers[..i].to_vec();
+            let group = Group { layers: inner, pass_through: true };
+            let around = Layer::new(layer.name.clone(), Content::Group(group));
+            beneath.push(Arc::new(around));
+            return Some(beneath);
+        }
+    }
+    None
+}
+
+/// The same layers one after the other, without the groups around it.
+fn all_beneath(layers: &[Arc<Layer>], id: LayerId) -> Option<Vec<Arc<Layer>>> {
+    layers.iter().enumerate().find_map(|(i, layer)| {
+        let inner = if layer.id == id {
+            Vec::new()
+        } else {
+            all_beneath(&layer.content.group()?.layers, id)?
+        };
+        Some(layers[..i].iter().cloned().chain(inner).collect())
+    })
+}
+
+/// Whether a layer shows hatching that has the tone of a picture.
+fn has_read_tone(layer: &Arc<Layer>) -> bool {
+    match &layer.content {
+        Content::FormDrawing(live) => {
+            live.params().hatching().is_some_and(|hatch| hatch.tone != HatchTone::Light)
+        }
+        Content::Group(group) => group.layers.iter().any(has_read_tone),
+        _ => false,
+    }
+}
+
+/// The points of a stroke, so far apart that its hand does not tremble.
+fn sparse_points(stroke: &Stroke) -> Vec<Vec2> {
+    let mut points: Vec<Vec2> = Vec::new();
+    let samples = stroke.samples();
+    for (i, sample) in samples.iter().enumerate() {
+        let is_far = points.last().is_none_or(|last| last.distance(sample.at) >= EVERY_PX);
+        if is_far || i + 1 == samples.len() {
+            points.push(sample.at);
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests;

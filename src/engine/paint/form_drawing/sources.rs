@@ -1,0 +1,130 @@
+//! What hatching reads of other layers: strokes that it follows, and a picture whose tone it has.
+//! Floor 3. Not here: finding them in a document (`document::hatch_sources`).
+
+use crate::math::{Size, Vec2, srgb};
+use crate::raster::{Plane, TILE, TileGrid};
+use crate::surface::hatching::GuideLines;
+use std::any::Any;
+use std::sync::{Arc, Weak};
+
+/// Layers that hatching reads, by their names; none where a name is empty.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HatchSources {
+    /// The stroke layer whose strokes lines follow.
+    pub guides: String,
+    /// The layer or group whose tone it has.
+    pub tone: String,
+}
+
+/// What is in those layers. Whatever it is, it counts as equal: it follows from what is around a
+/// drawing.
+#[derive(Clone, Default)]
+pub struct FoundSources {
+    /// Strokes that lines follow.
+    pub guides: GuideLines,
+    /// The picture whose tone it has; `None` if it has a light of its own.
+    pub tone: Option<Arc<TonePicture>>,
+}
+
+impl PartialEq for FoundSources {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl FoundSources {
+    /// The same on a canvas `factor` times as large.
+    pub fn scaled(&self, factor: f32) -> Self {
+        Self { guides: self.guides.scaled(factor), tone: self.tone.clone() }
+    }
+
+    /// Whether both are the same.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let of = |found: &Self| found.tone.as_ref().map(Arc::as_ptr);
+        of(self) == of(other) && self.guides == other.guides
+    }
+
+    /// Whether drawings with either are the same.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        let light = |found: &Self| found.tone.clone();
+        let is_as_light = match (light(self), light(other)) {
+            (Some(a), Some(b)) => a.light == b.light,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        is_as_light && self.guides == other.guides
+    }
+}
+
+/// Something that a picture was made of, to be known again; not held by this.
+#[derive(Clone, Debug)]
+pub struct ToneSource(Weak<dyn Any + Send + Sync>);
+
+impl ToneSource {
+    /// Of a shared value.
+    pub fn of<T: Any + Send + Sync>(shared: &Arc<T>) -> Self {
+        let shared: Arc<dyn Any + Send + Sync> = shared.clone();
+        Self(Arc::downgrade(&shared))
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        // A weak pointer keeps its address from being used again.
+        self.0.as_ptr().cast::<()>() == other.0.as_ptr().cast::<()>()
+    }
+}
+
+/// How light a picture on white paper is, in steps of its sRGB code.
+#[derive(Debug)]
+pub struct TonePicture {
+    light: Plane<u8>,
+    sources: Vec<ToneSource>,
+}
+
+impl TonePicture {
+    /// Of a picture on a canvas, and of what that was made.
+    pub fn of(picture: &TileGrid, size: Size, sources: Vec<ToneSource>) -> Self {
+        let mut light = Plane::full(size, 255);
+        for (at, tile) in picture.iter() {
+            let corner = at.rect();
+            let inside = corner.intersect(size.rect());
+            for (y, x) in
+                (inside.y0..inside.y1).flat_map(|y| (inside.x0..inside.x1).map(move |x| (y, x)))
+            {
+                let i = (y - corner.y0) as usize * TILE + (x - corner.x0) as usize;
+                light.set(x as usize, y as usize, lightness(&tile.bytes()[4 * i..4 * i + 4]));
+            }
+        }
+        Self { light, sources }
+    }
+
+    /// Whether it is of a canvas of that size, and was made of the same.
+    pub fn is_of(&self, size: Size, sources: &[ToneSource]) -> bool {
+        self.light.size() == size
+            && self.sources.len() == sources.len()
+            && self.sources.iter().zip(sources).all(|(a, b)| a.is_same(b))
+    }
+
+    /// Bytes that it holds.
+    pub fn bytes(&self) -> u64 {
+        self.light.size().area() as u64
+    }
+
+    /// The tone at a place of a canvas, `[0, 1]`; the canvas may be of another size.
+    pub fn at(&self, place: Vec2, canvas: Size) -> f32 {
+        let size = self.light.size();
+        let pixel = |v: f32, from: u32, n: u32| {
+            let scaled = v * n as f32 / from.max(1) as f32;
+            (scaled.max(0.0) as usize).min(n.saturating_sub(1) as usize)
+        };
+        let (x, y) =
+            (pixel(place.x, canvas.width, size.width), pixel(place.y, canvas.height, size.height));
+        f32::from(self.light.at(x, y)) / 255.0
+    }
+}
+
+/// The sRGB code of the luminance of a premultiplied pixel on white paper.
+fn lightness(pixel: &[u8]) -> u8 {
+    let free = 255 - pixel[3];
+    let [r, g, b] =
+        [0, 1, 2].map(|i| srgb::decode(f32::from(pixel[i].saturating_add(free)) / 255.0));
+    srgb::quantize(srgb::encode(srgb::luminance(r, g, b)))
+}
