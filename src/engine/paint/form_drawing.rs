@@ -1,6 +1,7 @@
 //! Drawings by the form: strokes of a brush along the lines that a surface has. Floor 3. Here: what
 //! such a drawing is, and its strokes, which are made once for a scene; `hand` is how a hand follows
-//! a line, `sources` what it reads of other layers. Not here: where the lines are (`surface::form_lines`), how strokes look (`stroke`).
+//! a line, `sources` what it reads of other layers. Not here: where the lines are
+//! (`surface::form_lines`), how strokes look (`stroke`).
 
 mod hand;
 mod hatched;

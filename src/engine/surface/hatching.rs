@@ -10,6 +10,7 @@ mod guided;
 mod room;
 mod stipples;
 mod streamlines;
+mod stretch;
 
 #[cfg(test)]
 mod tests;
@@ -53,7 +54,8 @@ crate::named! {
         /// At one angle on the paper.
         Paper = "paper" => ("On the paper", "At one angle, whatever the form"),
         /// Along strokes that are drawn on another layer.
-        Guides = "guides" => ("Along my strokes", "Along the strokes of a stroke layer; pieces without one: around the form"),
+        Guides = "guides" =>
+            ("Along my strokes", "Along the strokes of a stroke layer; pieces without one: around the form"),
     }
 }
 

@@ -182,7 +182,8 @@ mod tests {
     #[test]
     fn hatching_is_written_as_it_was_read() {
         let text = json!({
-            "style": "engraving", "way": "slope", "tone": "beneath", "spacing": 6, "angle": 30, "smooth": 4, "spread": 10,
+            "style": "engraving", "way": "slope", "tone": "beneath",
+            "spacing": 6, "angle": 30, "smooth": 4, "spread": 10,
             "darkness": 0.75, "paper": 0.5, "shadow": 0.25, "hollows": 1, "light": [1, 0, 0.5],
         });
         let node = JsonNode::root(std::path::Path::new("r.json"), &text);

@@ -287,7 +287,6 @@ mod tests {
 
     #[test]
     fn the_brush_in_hand_is_changed_by_what_a_recipe_would_say_and_keeps_its_pictures() {
-        use crate::io::platform::files;
         use crate::io::recipe::brush_to_json;
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pen.gbr");

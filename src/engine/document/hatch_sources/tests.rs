@@ -38,7 +38,7 @@ fn document(layers: Vec<Layer>) -> Document {
     Document { layers, surface: Some(flat()), ..Document::empty(SIZE) }
 }
 
-fn found(document: &Document) -> FoundSources {
+fn sources_of(document: &Document) -> FoundSources {
     let layer = document.layer_named("Hatching").unwrap();
     let Content::FormDrawing(live) = &layer.content else { panic!("hatching") };
     live.params().found.clone()
@@ -55,22 +55,22 @@ fn guides_follow_their_layer_and_its_name() {
     assert!(!bare.is_shaped());
     let history: History<()> = History::new(bare, 10);
     assert!(history.present().is_shaped());
-    let before = found(history.present());
+    let before = sources_of(history.present());
     assert!(!before.guides.is_empty());
     let id = history.present().layer_named("Guides").unwrap().id;
     let renamed = history.present().with_layer(id, |layer| layer.name = "Ways".into()).unwrap();
-    assert!(renamed.is_shaped() && found(&renamed).is_same(&before), "a new name is followed");
+    assert!(renamed.is_shaped() && sources_of(&renamed).is_same(&before), "a new name is followed");
     let moved = renamed.with_moved_strokes(id, &[0], vec2(0.0, 9.0)).unwrap();
     assert!(!moved.is_shaped());
-    assert!(!found(&moved.reshaped()).is_same(&before));
+    assert!(!sources_of(&moved.reshaped()).is_same(&before));
     let gone = renamed.with_layer(id, |layer| layer.name = "x".into()).unwrap();
     let gone = gone.without_strokes(id, &[0]).unwrap().reshaped();
-    assert!(found(&gone).guides.is_empty() && gone.is_shaped());
+    assert!(sources_of(&gone).guides.is_empty() && gone.is_shaped());
 }
 
 #[test]
 fn tone_is_that_of_what_lies_beneath_or_of_one_layer() {
-    let at = |document: &Document| found(document).tone.unwrap().at(vec2(60.0, 40.0), SIZE);
+    let at = |document: &Document| sources_of(document).tone.unwrap().at(vec2(60.0, 40.0), SIZE);
     let beneath = hatching(HatchWay::Paper, HatchTone::Beneath);
     let shown = document(vec![gray("Tone", 51), beneath, gray("Above", 200)]).reshaped();
     assert!(shown.is_shaped());
@@ -96,7 +96,7 @@ fn hatching_that_names_itself_has_its_own_light() {
         *live = Live::new(FormDrawing { sources, ..live.params().clone() });
     }
     let document = document(vec![own]).reshaped();
-    assert!(document.is_shaped() && found(&document).tone.is_none());
+    assert!(document.is_shaped() && sources_of(&document).tone.is_none());
 }
 
 #[test]

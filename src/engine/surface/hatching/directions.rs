@@ -4,6 +4,7 @@
 //! turning it (MATH 8).
 
 use super::guided::guide_directions;
+use super::stretch::{root, scale_along};
 use super::{GuideLines, HatchSettings, HatchWay};
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::Plane;
@@ -162,21 +163,6 @@ fn halve_angle(doubled: Vec2) -> Vec2 {
     }
     let half = vec2(unit.y, 1.0 - unit.x).normalize();
     if half.x < 0.0 { -half } else { half }
-}
-
-/// S at a pixel of smooth normals: `stretch` to the power 1, without its power.
-pub(super) fn root(normals: &SmoothNormals, x: usize, y: usize) -> Mat2 {
-    scale_along(normals.nbar(x, y), 1.0 / normals.nz(x, y).max(STEEPEST_NZ).min(1.0))
-}
-
-/// Scales by a factor along n̄.
-fn scale_along(nbar: Vec2, factor: f32) -> Mat2 {
-    let (along, grown) = (nbar.normalize_or_zero(), factor - 1.0);
-    let across = grown * along.x * along.y;
-    Mat2::from_cols(
-        vec2(1.0 + grown * along.x * along.x, across),
-        vec2(across, 1.0 + grown * along.y * along.y),
-    )
 }
 
 /// e^{2iθ} of the direction in which the form bends most, weighted by how clear it is and diffused;

@@ -1,7 +1,7 @@
 //! Directions along drawn strokes: each piece of the surface that one touches follows its strokes,
 //! evenly between them. Floor 2. Not here: which layer holds the strokes (`document::hatch_sources`).
 
-use super::directions::root;
+use super::stretch::root;
 use crate::math::{Vec2, vec2};
 use crate::raster::Plane;
 use crate::surface::form_lines::SmoothNormals;

@@ -2,8 +2,8 @@
 //! levels before leave free, so that points of all levels up to any are even. Floor 2. Placed in a
 //! fixed order that has nothing to do with rows.
 
-use super::directions::root;
 use super::room::density_of;
+use super::stretch::root;
 use super::{HatchLine, HatchPoint, HatchSettings};
 use crate::math::{Mat2, Vec2, hash, vec2};
 use crate::raster::Plane;

@@ -53,7 +53,7 @@ fn lines_go_around_a_cylinder_or_along_it() {
 }
 
 /// How far lines turn from a direction near a place, degrees: the most, and that of how many.
-fn turned_from(lines: &HatchLines, near: Vec2, along: Vec2) -> (f32, usize) {
+fn angle_from(lines: &HatchLines, near: Vec2, along: Vec2) -> (f32, usize) {
     let found = lines.lines.iter().flat_map(|line| line.points.windows(9)).filter_map(|nine| {
         let is_near = nine[4].at.distance(near) < 12.0;
         let way = (nine[8].at - nine[0].at).normalize();
@@ -72,15 +72,15 @@ fn lines_follow_drawn_strokes_and_turn_evenly_between_them() {
     let guides = GuideLines::of(strokes.into_iter().map(Vec::from));
     let lines = flat.hatch_lines(&settings, &guides);
     for (near, along) in [(vec2(30.0, 100.0), Vec2::Y), (vec2(210.0, 100.0), slanted)] {
-        let (most, count) = turned_from(&lines, near, along);
+        let (most, count) = angle_from(&lines, near, along);
         assert!(count > 10 && most < 10.0, "{most}° of {count} near {near}");
     }
     // Between them the doubled angle is halfway: 22.5° from either.
     let halfway = vec2(22.5f32.to_radians().sin(), 22.5f32.to_radians().cos());
-    let (most, count) = turned_from(&lines, vec2(118.0, 100.0), halfway);
+    let (most, count) = angle_from(&lines, vec2(118.0, 100.0), halfway);
     assert!(count > 10 && most < 16.0, "{most}° of {count}");
     let turned = HatchSettings { angle: 90.0, ..settings };
-    let (most, _) = turned_from(&flat.hatch_lines(&turned, &guides), vec2(30.0, 100.0), Vec2::X);
+    let (most, _) = angle_from(&flat.hatch_lines(&turned, &guides), vec2(30.0, 100.0), Vec2::X);
     assert!(most < 10.0, "{most}°");
 }
 
