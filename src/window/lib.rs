@@ -44,6 +44,7 @@ mod settings;
 mod swatches;
 mod theme;
 mod thumbnails;
+mod tour;
 mod typed_range;
 mod usage;
 mod widgets;

@@ -9,6 +9,7 @@ use crate::session::OpenDocument;
 use crate::session::storage::OpenedFile;
 use crate::shading::{Model, Shading};
 use crate::surface::{Maps, Operator, Surface};
+use crate::tour::{self, Tour};
 use crate::{Error, Result};
 use std::sync::Arc;
 
@@ -19,28 +20,48 @@ const SIDE: usize = 640;
 pub struct StartSample {
     pub name: &'static str,
     pub about: &'static str,
-    /// What lies on the shape, the lowest first.
-    layers: fn(Size) -> Vec<Layer>,
+    /// The steps that are shown while it is in front.
+    pub tour: &'static Tour,
+    begins: SampleKind,
+}
+
+/// What a sample is, before anything is done to it.
+enum SampleKind {
+    /// A ball and a ring, with these layers on them, the lowest first.
+    Shape(fn(Size) -> Vec<Layer>),
+    /// A document so many pixels wide and high.
+    Drawing(fn(usize) -> Result<Document>),
 }
 
 /// All samples; the first is the one of the Help menu.
-pub const SAMPLES: [StartSample; 3] = [
+pub static SAMPLES: [StartSample; 4] = [
     StartSample {
         name: "Ball and ring",
         about: "A shape with a gradient that follows it: drop a photo, paint highlights",
-        layers: |size| vec![bent_gradient("Base", size, &CLAY, 0.6)],
+        tour: &tour::ON_A_SHAPE,
+        begins: SampleKind::Shape(|size| vec![bent_gradient("Base", size, &CLAY, 0.6)]),
     },
     StartSample {
         name: "Chrome",
         about: "A horizon that is bent as metal reflects it",
-        layers: |size| vec![bent_gradient("Chrome", size, &CHROME, 1.0)],
+        tour: &tour::ON_A_SHAPE,
+        begins: SampleKind::Shape(|size| vec![bent_gradient("Chrome", size, &CHROME, 1.0)]),
     },
     StartSample {
         name: "In a painter's light",
         about: "Flat color under a lamp with shadows: move the light on the canvas (A)",
-        layers: lit_layers,
+        tour: &tour::ON_A_SHAPE,
+        begins: SampleKind::Shape(lit_layers),
+    },
+    StartSample {
+        name: "A flat drawing",
+        about: "Six steps make a finished picture of it",
+        tour: &tour::FROM_A_DRAWING,
+        begins: SampleKind::Drawing(tour::drawing),
     },
 ];
+/// The place of the sample that the tour of the Help menu begins with.
+pub const TOUR_SAMPLE: usize = 3;
 
 /// Places in `[0, 1]` along a gradient, and their colors.
 type Stops = [(f32, [u8; 3])];
@@ -69,13 +90,17 @@ impl StartSample {
 
     /// The same, so many pixels wide and high.
     pub fn document(&self, side: usize) -> Result<Document> {
+        let layers = match self.begins {
+            SampleKind::Shape(layers) => layers,
+            SampleKind::Drawing(drawing) => return drawing(side),
+        };
         let surface = surface(side).map_err(|error| Error::unsupported_file("sample", error))?;
         let size = Size::new(side as u32, side as u32);
         let down = (vec2(0.0, 0.0), vec2(0.0, side as f32));
         let dark = [(0.0, [0x3a; 3]), (1.0, [0x24; 3])];
         let behind =
             Layer { clip_to_surface: false, ..gradient("Background", down, &dark, Operator::None) };
-        let layers = std::iter::once(behind).chain((self.layers)(size)).map(Arc::new).collect();
+        let layers = std::iter::once(behind).chain(layers(size)).map(Arc::new).collect();
         Ok(Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) })
     }
 }

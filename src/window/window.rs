@@ -63,10 +63,8 @@ pub struct MainWindow {
     keeper: SettingsFile,
     /// Whether it uses its own file dialogs instead of the system's.
     asks_itself: bool,
-    /// Whether the program was started without a file, so that the sample is open.
-    is_first_start: bool,
-    /// Which steps of a first start were done, in any document.
-    steps_done: [bool; 3],
+    /// The steps that are shown over the canvas.
+    steps: Option<steps::TourProgress>,
     export: export::ExportDialog,
     maps: maps::MapsDialog,
     unwrapped: unwrapped::UnwrappedDialog,
@@ -131,8 +129,7 @@ impl MainWindow {
             settings,
             keeper,
             asks_itself: false,
-            is_first_start: false,
-            steps_done: [false; 3],
+            steps: None,
             export: export::ExportDialog::default(),
             maps: maps::MapsDialog::default(),
             unwrapped: unwrapped::UnwrappedDialog::default(),
@@ -209,7 +206,6 @@ impl MainWindow {
 
     /// Opens what the program was started with.
     pub fn begin(&mut self, files: Vec<PathBuf>) {
-        self.is_first_start = files.is_empty();
         if !files.is_empty() {
             self.open_files(files, None);
         }
@@ -225,7 +221,8 @@ impl MainWindow {
         let Some(sample) = SAMPLES.get(index) else { return };
         self.jobs.start("Opening the sample".into(), JobKind::Working, |_| {
             JobResult::of(sample.open(), |window: &mut Self, opened| {
-                window.add_opened(None, opened)
+                window.add_opened(None, opened);
+                window.begin_tour(sample.tour);
             })
             .in_front()
         });

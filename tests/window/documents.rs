@@ -241,6 +241,28 @@ fn the_first_start_offers_a_sample_with_three_steps_that_can_be_put_away() {
     key_is_free(&mut harness);
 }
 
+#[test]
+fn the_tour_makes_a_finished_picture_of_a_flat_drawing_and_shows_each_step() {
+    let mut harness = window_of(1.0, MainWindow::new);
+    command(&mut harness, "Take the tour");
+    until(&mut harness, |harness| harness.query_by_label("Show me").is_some());
+    let past =
+        |harness: &super::Story| session(harness).active().unwrap().history.past_names().len();
+    for name in ["Give it a shape", "Move the light", "Paint a gloss", "Make a part", "Try a look"]
+    {
+        let before = past(&harness);
+        press(&mut harness, "Show me");
+        until(&mut harness, |harness| past(harness) > before);
+        steps(&mut harness);
+        assert!(past(&harness) > before, "{name}");
+    }
+    let document = session(&harness).shown_document().unwrap();
+    assert!(document.surface.is_some());
+    assert!(document.parts.list.len() > 5, "{}", document.parts.list.len());
+    press(&mut harness, "Show me");
+    until(&mut harness, |harness| harness.query_by_label("Export…").is_some());
+}
+
 /// With the hint gone, keys reach the canvas as ever.
 fn key_is_free(harness: &mut super::Story) {
     super::key(harness, Modifiers::NONE, Key::E);

@@ -4,6 +4,7 @@
 use super::row::{LINE, MenuCommand, always, key, row};
 use crate::preferences::PreferencePage;
 use crate::requests::WindowRequest;
+use crate::sample::TOUR_SAMPLE;
 use eframe::egui::Key;
 
 pub const COMMANDS: &[MenuCommand] = &[
@@ -13,6 +14,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         "A ball with everything on it, to try things out",
         always,
         |_, requests| requests.request(WindowRequest::OpenSample(0)),
+    ),
+    row(
+        "Take the tour",
+        &[],
+        "Six steps from a flat drawing to a finished picture",
+        always,
+        |_, requests| requests.request(WindowRequest::OpenSample(TOUR_SAMPLE)),
     ),
     row("Keyboard shortcuts…", &[], "Every command and its keys", always, |_, requests| {
         requests.request(WindowRequest::Preferences(PreferencePage::Keys))

@@ -74,7 +74,7 @@ impl MainWindow {
                 panels::start::show(ui, area, about, pictures, requests);
             }
             panels::text::type_on_canvas(ui, &self.session, requests);
-            self.show_steps(ui);
+            self.show_steps(ui, requests);
             self.messages.show(ui.ctx(), area);
             show_hovered(ui, area, self.session.active().is_some());
         });

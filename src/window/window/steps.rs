@@ -1,85 +1,91 @@
-//! The three hints of the first start, shown over the canvas until they are completed or dismissed.
-//! Floor 7.
+//! The steps of a tour, shown over the canvas until they are done or put away. Floor 7. Not here:
+//! what they are (`tour`).
 
 use super::MainWindow;
-use crate::document::Content;
-use crate::session::Session;
-use crate::surface::Operator;
-use eframe::egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
+use crate::requests::UiRequests;
+use crate::tour::{self, Tour, TourStep};
+use eframe::egui::{Align2, Area, Frame, Id, RichText, TextStyle, Ui, vec2};
 
-/// Each step, how to do it, and whether it is done.
-type HintStep = (&'static str, &'static str, fn(&Session) -> bool);
+const WIDTH_PT: f32 = 250.0;
 
-const STEPS: [HintStep; 3] = [
-    (
-        "Drop a photo on the shape",
-        "It bends over it like a reflection. Or File, Place image…",
-        has_image,
-    ),
-    ("Paint highlights", "Brush (B), Gloss (F3): strokes follow the form", has_bent_stroke),
-    (
-        "Move what you made",
-        "Anchors (A) move the photo along the surface, Move (V) a stroke",
-        has_moved,
-    ),
-];
-
-fn has_any(session: &Session, is: impl Fn(&Content) -> bool) -> bool {
-    session
-        .shown_document()
-        .is_some_and(|document| document.walk().iter().any(|(_, layer)| is(&layer.content)))
+/// A tour, and which of its steps were done.
+pub(super) struct TourProgress {
+    tour: &'static Tour,
+    done: Vec<bool>,
+    /// The document that it began in.
+    document: usize,
 }
 
-fn has_image(session: &Session) -> bool {
-    has_any(session, |content| matches!(content, Content::Image(_)))
-}
-
-fn has_bent_stroke(session: &Session) -> bool {
-    let bent = |stroke: &crate::paint::Stroke| stroke.operator() != Operator::None;
-    has_any(
-        session,
-        |content| matches!(content, Content::Strokes(live) if live.params().strokes.iter().any(|s| bent(s))),
-    )
-}
-
-fn has_moved(session: &Session) -> bool {
-    let moves = ["Move anchor", "Add anchor", "Move stroke", "Move layer"];
-    session
-        .active()
-        .is_some_and(|open| open.history.past_names().any(|label| moves.contains(&label)))
+impl TourProgress {
+    /// The first step that is not done.
+    fn next(&self) -> Option<usize> {
+        self.done.iter().position(|is_done| !is_done)
+    }
 }
 
 impl MainWindow {
-    /// Shows them until all are completed or they are dismissed.
-    pub(super) fn show_steps(&mut self, ui: &mut Ui) {
-        let is_over = self.settings.is_hint_done
-            || self.session.active().is_none_or(|open| open.document().surface.is_none());
-        if is_over || !self.is_first_start {
+    /// Begins a tour in the document in front; the hints on a shape only until they were put away once.
+    pub(super) fn begin_tour(&mut self, tour: &'static Tour) {
+        let is_known = std::ptr::eq(tour, &tour::ON_A_SHAPE) && self.settings.is_hint_done;
+        let Some(open) = self.session.active().filter(|_| !is_known) else { return };
+        let done = vec![false; tour.steps.len()];
+        self.steps = Some(TourProgress { tour, done, document: open.key });
+    }
+
+    /// Shows the steps while their document is in front.
+    pub(super) fn show_steps(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
+        let key = self.session.active().map(|open| open.key);
+        let Some(progress) = self.steps.as_mut().filter(|steps| Some(steps.document) == key) else {
             return;
+        };
+        // A step that was done once stays done.
+        for (was_done, step) in progress.done.iter_mut().zip(progress.tour.steps) {
+            *was_done = *was_done || (step.is_done)(&self.session);
         }
-        // A step done once in any document is done.
-        for (was_done, (_, _, is_done)) in self.steps_done.iter_mut().zip(STEPS) {
-            *was_done |= is_done(&self.session);
-        }
-        let done = self.steps_done;
+        let next = progress.next();
+        let mut is_put_away = false;
         let corner = ui.max_rect().left_top() + vec2(14.0, 14.0);
         let area = Area::new(Id::unique("first steps")).fixed_pos(corner).pivot(Align2::LEFT_TOP);
         area.show(ui.ctx(), |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
-                ui.set_width(230.0);
-                ui.label(RichText::new("Three steps").strong());
-                for (i, ((name, how, _), is_done)) in STEPS.iter().zip(done).enumerate() {
-                    let name = RichText::new(format!("{}  {name}", i + 1));
-                    ui.label(if is_done { name.weak().strikethrough() } else { name.strong() });
-                    if !is_done {
-                        ui.label(RichText::new(*how).small().weak());
+                ui.set_width(WIDTH_PT);
+                ui.label(RichText::new(progress.tour.title).strong());
+                for (i, (step, is_done)) in
+                    progress.tour.steps.iter().zip(&progress.done).enumerate()
+                {
+                    name(ui, i, step, *is_done);
+                    if next == Some(i) {
+                        how(ui, step);
                     }
                 }
-                let put_away = if done == [true; 3] { "Done" } else { "Not now" };
-                if ui.button(put_away).clicked() {
-                    self.settings.is_hint_done = true;
-                }
+                ui.add_space(4.0);
+                ui.horizontal(|ui| {
+                    let show = next.and_then(|i| progress.tour.steps[i].show);
+                    if show.is_some() && ui.button("Show me").clicked() {
+                        show.into_iter().for_each(|show| show(&self.session, requests));
+                    }
+                    is_put_away =
+                        ui.button(if next.is_none() { "Done" } else { "Not now" }).clicked();
+                });
             });
         });
+        if is_put_away {
+            self.settings.is_hint_done = true;
+            self.steps = None;
+        }
     }
+}
+
+/// As high for every step, so that the buttons stay where they are.
+fn how(ui: &mut Ui, step: &TourStep) {
+    ui.scope(|ui| {
+        let line_pt = ui.text_style_height(&TextStyle::Small);
+        ui.set_min_height(3.0 * line_pt);
+        ui.label(RichText::new(step.how).small());
+    });
+}
+
+fn name(ui: &mut Ui, index: usize, step: &TourStep, is_done: bool) {
+    let name = RichText::new(format!("{}  {}", index + 1, step.name));
+    ui.label(if is_done { name.weak().strikethrough() } else { name.strong() });
 }
