@@ -148,6 +148,11 @@ impl Canvas {
         self.hand.draw_on(tablet);
     }
 
+    /// Whether the screen was touched with a finger since the program started.
+    pub fn has_felt_fingers(&self) -> bool {
+        self.hand.has_felt_fingers()
+    }
+
     /// Works as the user prefers.
     pub fn prefer(&mut self, preferences: &Preferences) {
         self.hand.prefer(preferences);

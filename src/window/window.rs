@@ -2,6 +2,7 @@
 //! `layout` arranges the panels; `files` and `leaving` handle files.
 
 mod by_name;
+mod drawer;
 mod files;
 mod interface;
 mod layout;
@@ -63,6 +64,8 @@ pub struct MainWindow {
     keeper: SettingsFile,
     /// Whether it uses its own file dialogs instead of the system's.
     asks_itself: bool,
+    /// Whether the panels of a narrow window are shown.
+    is_drawer_open: bool,
     /// The steps that are shown over the canvas.
     steps: Option<steps::TourProgress>,
     export: export::ExportDialog,
@@ -129,6 +132,7 @@ impl MainWindow {
             settings,
             keeper,
             asks_itself: false,
+            is_drawer_open: false,
             steps: None,
             export: export::ExportDialog::default(),
             maps: maps::MapsDialog::default(),
@@ -269,7 +273,8 @@ impl MainWindow {
         settings.shelf.note_used(&session.preset);
         session.keep_steps(preferences.undo_steps);
         self.canvas.prefer(preferences);
-        theme::enlarge_targets(ctx, preferences.has_large_targets);
+        let has_fingers = self.canvas.has_felt_fingers();
+        theme::enlarge_targets(ctx, preferences.has_large_targets || has_fingers);
         settings.keep_recent();
     }
 

@@ -75,10 +75,11 @@ fn every_command_stands_in_its_menu() {
 fn every_command_is_done_by_its_name() {
     let mut harness = window();
     command(&mut harness, "New gradient layer");
-    // What menus within the menus make is made one by one in other stories.
+    // They leave the document; and what menus within the menus make is made one by one elsewhere.
+    const OTHER: [&str; 2] = ["Close", "Take the tour"];
     let all: Vec<&str> = MainWindow::commands().collect();
     let rows = MainWindow::menus().flat_map(|(_, rows)| rows);
-    let names: Vec<&str> = rows.filter(|row| all.contains(row) && *row != "Close").collect();
+    let names: Vec<&str> = rows.filter(|row| all.contains(row) && !OTHER.contains(row)).collect();
     assert!(names.len() > 60, "{}", names.len());
     for name in names {
         command(&mut harness, name);

@@ -221,3 +221,22 @@ fn a_second_view_shows_the_document_until_it_is_asked_to_go() {
     command(&mut harness, "Second view");
     assert!(harness.query_by_label("Second view").is_none());
 }
+
+#[test]
+fn in_a_narrow_window_the_panels_slide_in_and_a_touch_on_the_picture_puts_them_away() {
+    let mut harness = window();
+    harness.set_size(vec2(390.0, 800.0));
+    steps(&mut harness);
+    assert!(harness.query_by_label("Layers").is_none());
+    press(&mut harness, "Panels");
+    until(&mut harness, |harness| harness.query_by_label("Layers").is_some());
+    (0..5).for_each(|_| steps(&mut harness));
+    let past = session(&harness).active().unwrap().history.past_names().len();
+    harness.hover_at(pos2(62.0, 300.0));
+    harness.drag_at(pos2(62.0, 300.0));
+    steps(&mut harness);
+    harness.drop_at(pos2(62.0, 300.0));
+    until(&mut harness, |harness| harness.query_by_label("Layers").is_none());
+    assert_eq!(session(&harness).active().unwrap().history.past_names().len(), past);
+    assert!(harness.query_by_label("Panels").is_some());
+}

@@ -91,6 +91,11 @@ impl PointerState {
         self.pen.on(tablet);
     }
 
+    /// Whether the screen was touched with a finger since the program started.
+    pub fn has_felt_fingers(&self) -> bool {
+        self.pen.has_felt_fingers()
+    }
+
     /// Uses the pen as the user prefers.
     pub fn prefer(&mut self, preferences: &Preferences) {
         self.pick_keys = preferences.pick_keys;

@@ -16,6 +16,7 @@ pub struct WindowPen {
     force: Option<f32>,
     /// Fingers and pens on the glass.
     touches: usize,
+    has_felt_fingers: bool,
     tablet: Option<SharedTablet>,
     /// The last state of the tablet.
     held: PenState,
@@ -33,7 +34,11 @@ impl WindowPen {
         let phase = match *event {
             Event::Touch { phase, force, .. } => {
                 match phase {
-                    TouchPhase::Start => self.touches += 1,
+                    TouchPhase::Start => {
+                        self.touches += 1;
+                        // A pen that comes as a touch has a force.
+                        self.has_felt_fingers |= force.is_none();
+                    }
                     TouchPhase::End | TouchPhase::Cancel => {
                         self.touches = self.touches.saturating_sub(1)
                     }
@@ -85,6 +90,11 @@ impl WindowPen {
     fn report(&self, phase: PenPhase, secs: f64) -> PenReport {
         let PenState { pressure, tilt, is_eraser, .. } = self.held;
         PenReport { phase, at: self.at, pressure: self.force.or(pressure), tilt, secs, is_eraser }
+    }
+
+    /// Whether the screen was touched with a finger since the program started.
+    pub fn has_felt_fingers(&self) -> bool {
+        self.has_felt_fingers
     }
 
     /// The number of fingers and pens on the glass: two or more move the view instead of painting.

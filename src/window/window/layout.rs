@@ -1,7 +1,7 @@
 //! The layout of the panels: next to the canvas, together in a window, or each in its own. Floor 7.
 //! Not here: the panels themselves (`panels`).
 
-use super::MainWindow;
+use super::{MainWindow, drawer};
 use crate::jobs::JobKind;
 use crate::keys;
 use crate::panel_layout::PanelKind;
@@ -54,7 +54,9 @@ impl MainWindow {
                     panels::tools::show(ui, &self.session, keymap, requests);
                 },
             );
-            self.side(ui, requests);
+            if !drawer::is_narrow(ui.ctx()) {
+                self.side(ui, requests);
+            }
             self.show_floating(ui.ctx(), requests);
         }
         if !self.session.open_documents.is_empty() && !is_bare {
@@ -74,6 +76,9 @@ impl MainWindow {
                 panels::start::show(ui, area, about, pictures, requests);
             }
             panels::text::type_on_canvas(ui, &self.session, requests);
+            if drawer::is_narrow(ui.ctx()) && !self.settings.layout.is_hidden {
+                self.show_drawer(ui, requests);
+            }
             self.show_steps(ui, requests);
             self.messages.show(ui.ctx(), area);
             show_hovered(ui, area, self.session.active().is_some());
@@ -112,7 +117,7 @@ impl MainWindow {
     }
 
     /// The color, the panel in front, the layers below.
-    fn show_panels(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
+    pub(super) fn show_panels(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let floating = &self.settings.layout.floating;
         let shown = |is_below: bool| -> Vec<_> {
             let among = PanelKind::ALL.into_iter();
