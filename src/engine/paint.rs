@@ -60,7 +60,8 @@ pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;
 pub use filter::{LiveFilter, PictureFilter};
 pub use form_drawing::{
-    DrawingHand, FormDrawing, FormPattern, FoundSources, HatchSources, TonePicture, ToneSource,
+    DrawingHand, FormDrawing, FormPattern, FoundSources, HatchSources, InkOnCanvas, TonePicture,
+    ToneSource,
 };
 pub use gradient::{Gradient, GradientStop};
 pub use image::{PictureOrigin, PictureSource, PlacedImage, Placement};

@@ -1,16 +1,18 @@
 //! Drawings by the form: strokes of a brush along the lines that a surface has. Floor 3. Here: what
 //! such a drawing is, and its strokes, which are made once for a scene; `hand` is how a hand follows
-//! a line, `sources` what it reads of other layers. Not here: where the lines are
+//! a line, `sources` what it reads of other layers, `inked` what ink draws already. Not here: where the lines are
 //! (`surface::form_lines`), how strokes look (`stroke`).
 
 mod hand;
 mod hatched;
+mod inked;
 mod sources;
 
 #[cfg(test)]
 mod tests;
 
 pub use hand::DrawingHand;
+pub use inked::InkOnCanvas;
 pub use sources::{FoundSources, HatchSources, TonePicture, ToneSource};
 
 use super::brush::Brush;
@@ -19,7 +21,8 @@ use super::scene::Scene;
 use super::stroke::Stroke;
 use crate::math::Vec3;
 use crate::math::srgb::Color;
-use crate::surface::form_lines::LineSettings;
+use crate::surface::Surface;
+use crate::surface::form_lines::{FormLines, LineSettings};
 use crate::surface::hatching::HatchSettings;
 use hand::LightOnLines;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -44,7 +47,7 @@ pub struct FormDrawing {
     pub brush: Brush,
     /// Its color.
     pub color: Color,
-    /// Which other layers hatching reads.
+    /// Which other layers hatching reads, by name.
     pub sources: HatchSources,
     /// What those layers hold now.
     pub found: FoundSources,
@@ -135,12 +138,18 @@ impl FormDrawing {
         strokes
     }
 
+    /// Its lines on a surface, without those that ink draws already.
+    pub fn lines(&self, surface: &Surface, settings: &LineSettings) -> Arc<FormLines> {
+        let all = surface.form_lines(settings);
+        if settings.skip_ink { self.found.ink.leave_out(&all, settings).into() } else { all }
+    }
+
     fn draw(&self, scene: &Scene) -> Vec<Arc<Stroke>> {
         let Some(surface) = scene.surface.as_deref() else { return Vec::new() };
         match &self.pattern {
             FormPattern::Lines(settings) => {
                 let light = LightOnLines { surface, light: settings.light };
-                let lines = surface.form_lines(settings);
+                let lines = self.lines(surface, settings);
                 lines.lines.iter().map(|line| self.hand.stroke(self, line, &light)).collect()
             }
             FormPattern::Hatching(settings) => hatched::strokes(self, surface, settings),

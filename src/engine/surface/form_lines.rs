@@ -84,6 +84,8 @@ number_settings! {
         /// The distance between wires, px on the surface.
         wires: "Wires apart", "The distance between wires, px on the surface", 4.0..=2000.0, 40.0, px;
         and
+        /// Whether lines are left out that the document's ink draws already.
+        skip_ink: bool = false;
         /// Which there are.
         kinds: LineKinds = LineKinds::PEN;
         /// Toward the light, camera space (y up), any length.
@@ -92,6 +94,9 @@ number_settings! {
 }
 
 impl LineSettings {
+    /// Those of a new layer: it draws nothing that ink draws already.
+    pub const BESIDE_INK: Self = Self { skip_ink: true, ..Self::DEFAULT };
+
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = *self;

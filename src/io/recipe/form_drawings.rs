@@ -54,7 +54,8 @@ fn lines(fields: &mut Fields) -> Result<LineSettings> {
     let numbers = settings(fields, LineSettings::SETTINGS, plain)?;
     let kinds = fields.get("of").map_or(Ok(plain.kinds), |node| kinds(&node))?;
     let light = fields.get("light").map_or(Ok(plain.light), |node| direction(&node))?;
-    Ok(LineSettings { kinds, light, ..numbers })
+    let skip_ink = fields.boolean("skip_ink", plain.skip_ink)?;
+    Ok(LineSettings { kinds, light, skip_ink, ..numbers })
 }
 
 fn kinds(node: &JsonNode) -> Result<LineKinds> {
@@ -94,6 +95,7 @@ fn hand(node: &JsonNode, base: DrawingHand) -> Result<DrawingHand> {
 fn write_lines(out: &mut JsonObject, lines: &LineSettings) {
     let plain = LineSettings::DEFAULT;
     write_settings(out, LineSettings::SETTINGS, lines, &plain);
+    out.flag("skip_ink", lines.skip_ink, plain.skip_ink);
     if lines.kinds != plain.kinds {
         let all = LineKind::ALL.iter().filter(|(kind, _)| lines.kinds.has_kind(*kind));
         out.set("of", all.map(|(_, name)| Value::from(*name)).collect());
@@ -171,7 +173,7 @@ mod tests {
     fn every_field_is_written_as_it_was_read() {
         let text = json!({
             "smooth": 3, "detail": 0.75, "shortest": 20, "gap": 4, "lit": 0.25, "wires": 30,
-            "of": ["outlines", "ridges", "wires"], "light": [0, 1, 0.5],
+            "skip_ink": true, "of": ["outlines", "ridges", "wires"], "light": [0, 1, 0.5],
         });
         let lines = read(&text).unwrap();
         assert_eq!(lines.to_json(), text);

@@ -86,7 +86,7 @@ fn svg(document: &Document, drawing: &FormDrawing) -> String {
     let (FormPattern::Lines(settings), Some(surface)) = (&drawing.pattern, &scene.surface) else {
         return out;
     };
-    let (lines, strokes) = (surface.form_lines(settings), drawing.strokes(&scene));
+    let (lines, strokes) = (drawing.lines(surface, settings), drawing.strokes(&scene));
     for (kind, name) in LineKind::ALL {
         let of_kind = lines.lines.iter().zip(strokes.iter()).filter(|(line, _)| line.kind == kind);
         let mut paths = of_kind.peekable();

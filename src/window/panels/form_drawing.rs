@@ -47,6 +47,10 @@ fn line_settings(ui: &mut Ui, lines: LineSettings, setter: &mut LayerSetter) {
             setter.set(Property::Lines { lines: LineSettings { kinds, ..lines } }, true);
         }
     }
+    let hint = "Leaves out lines that the drawing's own ink draws already";
+    if let Some(skip_ink) = check(ui, "Not where there is ink", hint, lines.skip_ink) {
+        setter.set(Property::Lines { lines: LineSettings { skip_ink, ..lines } }, true);
+    }
     painter::settings(ui, LineSettings::SETTINGS, lines, setter, |lines| Property::Lines { lines });
     light(ui, lines.light, setter, |light| Property::Lines {
         lines: LineSettings { light, ..lines },

@@ -31,7 +31,7 @@ impl Document {
     /// ink of their drawings, and hatching follows the layers that it reads. If not,
     /// [`Document::reshaped`] makes it.
     pub fn is_shaped(&self) -> bool {
-        self.is_inked_and_shaped() && self.is_hatching_fed()
+        self.is_inked_and_shaped() && self.has_form_sources()
     }
 
     fn is_inked_and_shaped(&self) -> bool {
@@ -63,7 +63,7 @@ impl Document {
 
     /// The same, a step for each part; `None` if canceled.
     pub fn reshaped_with_progress(&self, progress: &Progress) -> Option<Document> {
-        Some(self.shaped_with_progress(progress)?.with_hatching_fed())
+        Some(self.shaped_with_progress(progress)?.with_form_sources())
     }
 
     /// Without what hatching reads.

@@ -1,6 +1,8 @@
-//! What hatching reads of other layers: strokes that it follows, and a picture whose tone it has.
-//! Floor 3. Not here: finding them in a document (`document::hatch_sources`).
+//! What drawings by the form read of other layers: strokes that hatching follows, a picture whose
+//! tone it has, ink that lines leave out. Floor 3. Not here: finding them in a document
+//! (`document::form_sources`).
 
+use super::inked::InkOnCanvas;
 use crate::math::{Size, Vec2, srgb};
 use crate::raster::{Plane, TILE, TileGrid};
 use crate::surface::hatching::GuideLines;
@@ -24,6 +26,8 @@ pub struct FoundSources {
     pub guides: GuideLines,
     /// The picture whose tone it has; `None` if it has a light of its own.
     pub tone: Option<Arc<TonePicture>>,
+    /// The ink that lines leave out.
+    pub ink: InkOnCanvas,
 }
 
 impl PartialEq for FoundSources {
@@ -35,13 +39,14 @@ impl PartialEq for FoundSources {
 impl FoundSources {
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
-        Self { guides: self.guides.scaled(factor), tone: self.tone.clone() }
+        let (guides, ink) = (self.guides.scaled(factor), self.ink.scaled(factor));
+        Self { guides, tone: self.tone.clone(), ink }
     }
 
     /// Whether both are the same.
     pub fn is_same(&self, other: &Self) -> bool {
         let of = |found: &Self| found.tone.as_ref().map(Arc::as_ptr);
-        of(self) == of(other) && self.guides == other.guides
+        of(self) == of(other) && self.guides == other.guides && self.ink.is_same(&other.ink)
     }
 
     /// Whether drawings with either are the same.
@@ -51,7 +56,7 @@ impl FoundSources {
             (Some(a), Some(b)) => a.light == b.light,
             (a, b) => a.is_none() && b.is_none(),
         };
-        is_as_light && self.guides == other.guides
+        is_as_light && self.guides == other.guides && self.ink.is_same(&other.ink)
     }
 }
 

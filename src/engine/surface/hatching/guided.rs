@@ -1,5 +1,5 @@
 //! Directions along drawn strokes: each piece of the surface that one touches follows its strokes,
-//! evenly between them. Floor 2. Not here: which layer holds the strokes (`document::hatch_sources`).
+//! evenly between them. Floor 2. Not here: which layer holds the strokes (`document::form_sources`).
 
 use super::stretch::root;
 use crate::math::{Vec2, vec2};

@@ -136,7 +136,7 @@ pub(super) fn make_layer(
         NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),
         NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
         NewLayer::Lines => {
-            ("Form lines", make_drawing(FormPattern::Lines(LineSettings::DEFAULT), size))
+            ("Form lines", make_drawing(FormPattern::Lines(LineSettings::BESIDE_INK), size))
         }
         NewLayer::Hatching => {
             ("Hatching", make_drawing(FormPattern::Hatching(HatchSettings::DEFAULT), size))

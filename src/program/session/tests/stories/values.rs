@@ -360,7 +360,8 @@ impl Roll for LineSettings {
         let with = |kinds: LineKinds, (kind, is_in)| kinds.with(kind, is_in);
         let kinds = LineKind::ALL.map(|(kind, _)| (kind, dice.is(50)));
         let kinds = kinds.into_iter().fold(LineKinds::NONE, with);
-        LineSettings { kinds, light: dice.value(dice.word, "light"), ..numbers }
+        let light = dice.value(dice.word, "light");
+        LineSettings { kinds, light, skip_ink: dice.is(50), ..numbers }
     }
 }
 

@@ -1,10 +1,14 @@
-//! Hatching follows the layers that it reads: strokes that its lines follow, and the picture whose
-//! tone it has. Floor 4. Not here: what it makes of them (`paint::form_drawing`).
+//! Drawings by the form follow the layers that they read: strokes that hatching follows, the picture
+//! whose tone it has, and ink that lines leave out. Floor 4. Not here: what they make of them
+//! (`paint::form_drawing`).
 
 use super::flatten::{flatten, flatten_layer};
 use super::{Content, Document, Group, Layer, LayerId, Live, Progress};
 use crate::math::Vec2;
-use crate::paint::{FormDrawing, FoundSources, HatchSources, Stroke, TonePicture, ToneSource};
+use crate::paint::{
+    FormDrawing, FormPattern, FoundSources, HatchSources, InkOnCanvas, Stroke, TonePicture,
+    ToneSource,
+};
 use crate::raster::TileGrid;
 use crate::surface::hatching::{GuideLines, HatchTone, HatchWay};
 use std::sync::Arc;
@@ -13,42 +17,47 @@ use std::sync::Arc;
 const EVERY_PX: f32 = 5.0;
 
 impl Document {
-    /// Whether all hatching has what is in the layers that it reads.
-    pub(super) fn is_hatching_fed(&self) -> bool {
-        self.hatchings().iter().all(|(layer, drawing)| {
+    /// Whether all drawings by the form have what is in the layers that they read.
+    pub(super) fn has_form_sources(&self) -> bool {
+        let ink = self.ink_on_canvas();
+        self.reading_drawings().iter().all(|(layer, drawing)| {
             let found = &drawing.found;
             let is_toned = match (self.tone_sources(layer, drawing), &found.tone) {
                 (Some(sources), Some(tone)) => tone.is_of(self.size, &sources),
                 (None, None) => true,
                 _ => false,
             };
-            is_toned && self.guide_lines(drawing) == found.guides
+            let is_inked = found.ink.is_same(&ink_of(drawing, &ink));
+            is_toned && is_inked && self.guide_lines(drawing) == found.guides
         })
     }
 
-    /// The document with hatching as the layers are that it reads ([`Document::is_hatching_fed`]).
-    pub(super) fn with_hatching_fed(&self) -> Document {
-        if self.is_hatching_fed() {
+    /// The document with drawings by the form as the layers are that they read
+    /// ([`Document::has_form_sources`]).
+    pub(super) fn with_form_sources(&self) -> Document {
+        if self.has_form_sources() {
             return self.clone();
         }
+        let ink = self.ink_on_canvas();
         // Directions first: a picture whose tone is read may show hatching along strokes.
         let guided = self.with_found(|document, _, drawing| FoundSources {
             guides: document.guide_lines(drawing),
             tone: drawing.found.tone.clone(),
+            ink: ink_of(drawing, &ink),
         });
         guided.with_found(|document, layer, drawing| {
             let measure = |sources| document.measure_tone(layer, drawing, sources);
             let tone = document.tone_picture(layer, drawing, measure);
-            FoundSources { guides: drawing.found.guides.clone(), tone }
+            FoundSources { tone, ..drawing.found.clone() }
         })
     }
 
-    /// With what is found for each hatching, the lowest first: those above it see it.
+    /// With what is found for each drawing, the lowest first: those above it see it.
     fn with_found(
         &self,
         find: impl Fn(&Document, &Arc<Layer>, &FormDrawing) -> FoundSources,
     ) -> Document {
-        let ids: Vec<LayerId> = self.hatchings().iter().map(|(layer, _)| layer.id).collect();
+        let ids: Vec<LayerId> = self.reading_drawings().iter().map(|(layer, _)| layer.id).collect();
         ids.into_iter().fold(self.clone(), |next, id| {
             let Some(layer) = next.layer(id).cloned() else { return next };
             let Content::FormDrawing(live) = &layer.content else { return next };
@@ -64,19 +73,41 @@ impl Document {
         })
     }
 
-    /// Hatching that reads other layers, or did.
-    fn hatchings(&self) -> Vec<(Arc<Layer>, FormDrawing)> {
+    /// Drawings by the form that read other layers, or did.
+    fn reading_drawings(&self) -> Vec<(Arc<Layer>, FormDrawing)> {
         let reads = |layer: &Arc<Layer>| match &layer.content {
             Content::FormDrawing(live) => {
                 let drawing = live.params();
-                let hatch = drawing.hatching()?;
-                let is_reading = hatch.way == HatchWay::Guides || hatch.tone != HatchTone::Light;
+                let is_reading = match &drawing.pattern {
+                    FormPattern::Lines(lines) => lines.skip_ink,
+                    FormPattern::Hatching(hatch) => {
+                        hatch.way == HatchWay::Guides || hatch.tone != HatchTone::Light
+                    }
+                };
                 let has_read = !drawing.found.is_same(&FoundSources::default());
                 (is_reading || has_read).then(|| (layer.clone(), drawing.clone()))
             }
             _ => None,
         };
         self.walk().into_iter().filter_map(|(_, layer)| reads(layer)).collect()
+    }
+
+    /// What the ink layers show that are visible.
+    fn ink_on_canvas(&self) -> InkOnCanvas {
+        fn add(layers: &[Arc<Layer>], all: &mut Vec<TileGrid>) {
+            for layer in layers.iter().filter(|layer| layer.visible) {
+                match &layer.content {
+                    Content::Ink(lines) => {
+                        all.extend(lines.shown.iter().map(|shown| shown.tiles.clone()))
+                    }
+                    Content::Group(group) => add(&group.layers, all),
+                    _ => {}
+                }
+            }
+        }
+        let mut all = Vec::new();
+        add(&self.layers, &mut all);
+        InkOnCanvas::of(all)
     }
 
     fn guide_lines(&self, drawing: &FormDrawing) -> GuideLines {
@@ -160,6 +191,14 @@ impl Document {
             let content = Content::FormDrawing(Live::new(drawing));
             next.with_layer(id, |layer| layer.content = content).unwrap_or(next)
         })
+    }
+}
+
+/// The ink that a drawing leaves out.
+fn ink_of(drawing: &FormDrawing, ink: &InkOnCanvas) -> InkOnCanvas {
+    match &drawing.pattern {
+        FormPattern::Lines(lines) if lines.skip_ink => ink.clone(),
+        _ => InkOnCanvas::default(),
     }
 }
 
