@@ -144,6 +144,7 @@ const RING: (Vec2, f32, f32) = (vec2(0.5, 0.52), 0.36, 0.075);
 const TILT: f32 = 0.34;
 
 /// What the line of sight meets first.
+#[derive(Clone, Copy)]
 struct Seen {
     /// Toward the viewer, in canvas lengths.
     height: f32,
@@ -229,10 +230,10 @@ fn surface(side: usize) -> std::result::Result<Surface, crate::surface::SurfaceE
     let size = Size::new(side as u32, side as u32);
     let place = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5) / side as f32;
     let px = 1.0 / side as f32;
-    let seen_at = |x: usize, y: usize| hit_at(place(x, y));
-    let heights =
-        Plane::from_fn(size, |x, y| seen_at(x, y).map_or(f32::NEG_INFINITY, |seen| seen.height));
-    let normals = Plane::from_fn(size, |x, y| seen_at(x, y).map_or(Vec3::ZERO, |seen| seen.normal));
+    // The line of sight is followed once for each pixel.
+    let seen = Plane::from_fn(size, |x, y| hit_at(place(x, y)));
+    let heights = seen.map(|seen| seen.map_or(f32::NEG_INFINITY, |seen| seen.height));
+    let normals = seen.map(|seen| seen.map_or(Vec3::ZERO, |seen| seen.normal));
     let finite = |h: &f32| h.is_finite();
     let low = heights.values().iter().copied().filter(finite).fold(f32::INFINITY, f32::min);
     let high = heights.values().iter().copied().filter(finite).fold(f32::NEG_INFINITY, f32::max);
