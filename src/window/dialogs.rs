@@ -37,6 +37,14 @@ use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
 use std::path::PathBuf;
 
+/// The least air beside a dialog, points.
+const BESIDE_PT: f32 = 24.0;
+
+/// A dialog is as wide as it wants to be, where the window has room for that.
+fn set_width(ui: &mut Ui, wanted_pt: f32) {
+    ui.set_width(wanted_pt.min(ui.ctx().content_rect().width() - 2.0 * BESIDE_PT).max(1.0));
+}
+
 /// The dialog that is open.
 pub enum Dialog {
     New(new::NewDialog),

@@ -237,7 +237,7 @@ impl LostSessions {
         };
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
         let DrawingVersion { document, aside } = recovered.version;
-        let mut open = OpenDocument::new(format!("{name} (recovered)"), document, None);
+        let mut open = OpenDocument::new(recovered_name(&name), document, None);
         open.mark_unsaved();
         open.aim_as_stored(&aside["target"]);
         let tool = ToolKind::read(&aside["tool"]).ok();
@@ -253,6 +253,12 @@ impl LostSessions {
         }
         Ok(Some(RestoredDocument { open, recovery, tool }))
     }
+}
+
+/// The name of what was recovered, and of what is recovered of that again.
+fn recovered_name(name: &str) -> String {
+    const SUFFIX: &str = " (recovered)";
+    format!("{}{SUFFIX}", name.strip_suffix(SUFFIX).unwrap_or(name))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Asks for the size of the canvas, of the picture, and for the angle that it is turned by.
 //! Floor 7.
 
-use super::{Dialog, DialogAnswer, buttons};
+use super::{Dialog, DialogAnswer, buttons, set_width};
 use crate::document::canvas_change::{CanvasAnchor, CanvasChange};
 use crate::math::Size;
 use crate::raster::Resampling;
@@ -116,7 +116,7 @@ impl CanvasSizeDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
-        ui.set_width(360.0);
+        set_width(ui, 360.0);
         ui.heading("Canvas size");
         ui.weak("Moves the borders. Paint beyond them is kept; masks of layers are cut.");
         self.sides.show(ui);
@@ -159,7 +159,7 @@ impl ImageSizeDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
-        ui.set_width(360.0);
+        set_width(ui, 360.0);
         ui.heading("Image size");
         ui.weak("Paint is resampled; strokes, images, gradients and the shape are rendered again, as sharp as before.");
         self.sides.show(ui);
@@ -185,7 +185,7 @@ impl TurnDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
-        ui.set_width(360.0);
+        set_width(ui, 360.0);
         ui.heading("Turn canvas");
         ui.weak(
             "Counter-clockwise. Paint gets a transform, so it can be turned back without loss.",

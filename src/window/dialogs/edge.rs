@@ -1,6 +1,6 @@
 //! Asks by how much to change the edge of the selection. Floor 7.
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, SelectionAction};
@@ -18,7 +18,7 @@ impl EdgeDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
-        ui.set_width(300.0);
+        set_width(ui, 300.0);
         ui.heading(self.change.label());
         ui.weak(self.change.hint());
         ui.horizontal(|ui| {
@@ -55,7 +55,7 @@ impl KeepDialog {
         kept: &[String],
         requests: &mut UiRequests,
     ) -> DialogAnswer {
-        ui.set_width(320.0);
+        set_width(ui, 320.0);
         ui.heading("Keep selection");
         ui.weak(
             "Saved under a name with the document. If the name is taken, its selection is \

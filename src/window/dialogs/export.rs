@@ -3,7 +3,7 @@
 
 mod estimate;
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::document::Document;
 use crate::export_memory::{ExportMemory, ExportPreset};
 use crate::io::export::ExportFormat;
@@ -85,7 +85,7 @@ impl ExportDialog {
         memory: &mut ExportMemory,
         preview: Option<TextureId>,
     ) -> DialogAnswer {
-        ui.set_width(340.0);
+        set_width(ui, 340.0);
         ui.heading("Export the picture");
         self.presets(ui, memory);
         let document = session.shown_document();

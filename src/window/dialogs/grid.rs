@@ -1,6 +1,6 @@
 //! The numbers of the grid, and what the pen snaps to. Each change is shown at once. Floor 7.
 
-use super::{DialogAnswer, close};
+use super::{DialogAnswer, close, set_width};
 use crate::requests::UiRequests;
 use crate::session::actions::GuideAction;
 use crate::session::{Action, Session};
@@ -9,7 +9,7 @@ use crate::widgets::{begin_with, check};
 use eframe::egui::{DragValue, Key, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
-    ui.set_width(320.0);
+    set_width(ui, 320.0);
     ui.heading("Grid and snapping");
     let mut aids = session.tools.aids;
     grid(ui, &mut aids.grid);

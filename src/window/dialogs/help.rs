@@ -1,11 +1,11 @@
 //! The About dialog.
 //! Floor 7.
 
-use super::{DialogAnswer, close};
+use super::{DialogAnswer, close, set_width};
 use eframe::egui::Ui;
 
 pub fn show_about(ui: &mut Ui) -> DialogAnswer {
-    ui.set_width(360.0);
+    set_width(ui, 360.0);
     ui.heading("Rilievo");
     ui.label(format!("Version {}", crate::io::version()));
     ui.label("Paint on the picture of a shape: brushes, gradients and photos bend over its normals and depth.");

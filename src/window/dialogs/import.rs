@@ -5,7 +5,7 @@
 mod findings;
 mod ways;
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::Result;
 use crate::advice::with_advice;
 use crate::canvas::load_texture;
@@ -162,7 +162,7 @@ impl ImportDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
-        ui.set_width(560.0);
+        set_width(ui, 560.0);
         ui.heading(match self.becomes {
             MapsBecome::Document => "New document from maps",
             MapsBecome::ItsMaps => "Other maps for this document",

@@ -1,6 +1,6 @@
 //! The looks that come with the program, each on the user's own drawing. Floor 7.
 
-use super::{DialogAnswer, close};
+use super::{DialogAnswer, close, set_width};
 use crate::io::recipe::LiveLook;
 use crate::look_pictures::{LookPictures, in_looks};
 use crate::requests::{UiRequests, WindowRequest};
@@ -33,7 +33,7 @@ impl LooksDialog {
         session: &Session,
         requests: &mut UiRequests,
     ) -> DialogAnswer {
-        ui.set_width(640.0);
+        set_width(ui, 640.0);
         ui.heading("Looks");
         ui.weak("A look is a group of live layers, which you can change afterwards.");
         if let Some(open) = session.active() {

@@ -1,7 +1,7 @@
 //! What a Photoshop file cannot hold, before a document is saved as one. Floor 7. Not here: what is
 //! lost (`io::psd`).
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::pending::Saving;
 use crate::widgets::list;
 use eframe::egui::Ui;
@@ -18,7 +18,7 @@ impl Losses {
 
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         let Some(saving) = &self.saving else { return DialogAnswer::Close };
-        ui.set_width(420.0);
+        set_width(ui, 420.0);
         ui.heading("Save as a Photoshop file?");
         ui.label("Other programs show live layers as pixels. A project (.ora) keeps everything.");
         ui.label(

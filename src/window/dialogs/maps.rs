@@ -1,7 +1,7 @@
 //! Exports the shape as maps for engines and other programs: which, and how they are written.
 //! Floor 7. Not here: the files (`io::export::shape`).
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::io::export::shape::{ShapeMap, ShapeOptions};
 use crate::requests::WindowRequest;
 use crate::session::Session;
@@ -35,7 +35,7 @@ impl MapsDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
-        ui.set_width(340.0);
+        set_width(ui, 340.0);
         ui.heading("Export maps of the shape");
         let Some(surface) = session.shown_document().and_then(|document| document.surface.as_ref())
         else {

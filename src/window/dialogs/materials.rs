@@ -2,7 +2,7 @@
 //! A material that was clicked is held: the part under the pointer is shown in it, and a click gives
 //! it to the part. Floor 7.
 
-use super::{DialogAnswer, close};
+use super::{DialogAnswer, close, set_width};
 use crate::document::Document;
 use crate::document::parts::forms::visible_place;
 use crate::io::recipe::PartMaterial;
@@ -93,7 +93,7 @@ impl MaterialsDialog {
         session: &Session,
         requests: &mut UiRequests,
     ) -> DialogAnswer {
-        ui.set_width(IN_A_ROW as f32 * (SHOWN_PT + 20.0));
+        set_width(ui, IN_A_ROW as f32 * (SHOWN_PT + 20.0));
         ui.heading("Materials");
         ui.weak("A material is a group of live layers on a part, which you can change afterwards.");
         if let Some(open) = session.active() {

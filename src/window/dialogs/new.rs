@@ -1,7 +1,7 @@
 //! A new document: an empty canvas, or one on an object's maps.
 //! Floor 7.
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::math::srgb::Color;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
@@ -30,7 +30,7 @@ impl Default for NewDialog {
 
 impl NewDialog {
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
-        ui.set_width(340.0);
+        set_width(ui, 340.0);
         ui.heading("New document");
         ui.label("To paint on an object, begin with its normal map, depth map or both. Or begin with a picture.");
         let mut begins = None;

@@ -1,6 +1,6 @@
 //! Adjusts or filters the paint of the selected layers for good, shown while it is set. Floor 7.
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::file_purpose::FilePurpose;
 use crate::paint::ColorAdjustment;
 use crate::panels::adjustment;
@@ -53,7 +53,7 @@ impl PaintChangeDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
-        ui.set_width(300.0);
+        set_width(ui, 300.0);
         ui.heading(self.change.label());
         ui.weak("The paint of the selected layers, within the selection");
         let is_new = !std::mem::replace(&mut self.is_begun, true);

@@ -3,7 +3,7 @@
 
 mod find;
 
-use super::DialogAnswer;
+use super::{DialogAnswer, set_width};
 use crate::keymap::{KeyTarget, Keymap, key_text};
 use crate::panel_layout::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
@@ -28,7 +28,7 @@ impl CommandPalette {
         keymap: &Keymap,
         requests: &mut UiRequests,
     ) -> DialogAnswer {
-        ui.set_width(420.0);
+        set_width(ui, 420.0);
         let field = ui.add(
             TextEdit::singleline(&mut self.typed)
                 .hint_text("Command, tool or setting")

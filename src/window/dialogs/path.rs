@@ -1,7 +1,7 @@
 //! The window's own file dialog, for systems without one, and for those who like it: the files of a
 //! folder with their pictures, and folders to go to. Floor 7.
 
-use super::{DialogAnswer, DialogContext, buttons};
+use super::{DialogAnswer, DialogContext, buttons, set_width};
 use crate::file_pictures::FilePictures;
 use crate::file_purpose::FilePurpose;
 use crate::io::platform;
@@ -62,7 +62,7 @@ impl PathDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, context: &mut DialogContext) -> DialogAnswer {
-        ui.set_width(640.0);
+        set_width(ui, 640.0);
         ui.heading(self.purpose.title());
         if self.listed.folder != self.folder {
             self.listed = FolderListing::of(&self.folder, self.purpose);

@@ -8,7 +8,7 @@ mod keys;
 mod memory;
 mod pen;
 
-use super::{DialogAnswer, DialogContext, close};
+use super::{DialogAnswer, DialogContext, close, set_width};
 use crate::preferences::{PreferencePage, Preferences};
 use crate::widgets::{NumberField, check};
 use eframe::egui::{Align, Layout, Ui, vec2};
@@ -30,7 +30,7 @@ impl PreferencesDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, context: &mut DialogContext) -> DialogAnswer {
-        ui.set_width(WIDTH_PT);
+        set_width(ui, WIDTH_PT);
         ui.heading("Preferences");
         let height = PAGE_PT.min((ui.ctx().content_rect().height() - 140.0).max(160.0));
         ui.allocate_ui_with_layout(

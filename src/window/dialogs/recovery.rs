@@ -1,7 +1,7 @@
 //! The recovery dialog, shown once at the start: lost drawings can be recovered, deleted, or left
 //! for later. Floor 7.
 
-use super::DialogAnswer;
+use super::{DialogAnswer, set_width};
 use crate::io::platform::SystemTime;
 use crate::io::recovery::LostSession;
 use crate::widgets::list;
@@ -24,7 +24,7 @@ impl RecoveryDialog {
 
     /// Closing it leaves everything for the next start.
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
-        ui.set_width(460.0);
+        set_width(ui, 460.0);
         ui.heading("Recover unsaved drawings?");
         ui.label("Rilievo ended unexpectedly. What is recovered opens as a new drawing; no file is replaced.");
         let (mut recover, mut delete) = (None, None);

@@ -1,6 +1,6 @@
 //! “Replace?”, asked before a file is overwritten. Floor 7.
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::jobs::short;
 use crate::pending::Pending;
 use eframe::egui::Ui;
@@ -19,7 +19,7 @@ impl Replace {
 
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         let Some(pending) = &self.pending else { return DialogAnswer::Close };
-        ui.set_width(380.0);
+        set_width(ui, 380.0);
         let name = short(pending.file());
         ui.heading(format!("Replace “{name}”?"));
         ui.label(format!("{}: {}.", pending.file().display(), self.reason));

@@ -1,7 +1,7 @@
 //! Gives a drawing its first shape: one part, or one per color or place, as a pillow, tube, relief
 //! or coin. Floor 7. Not here: what becomes of it (`session::actions::parts::first`).
 
-use super::{DialogAnswer, answers};
+use super::{DialogAnswer, answers, set_width};
 use crate::document::parts::drawing::{DrawingTraits, FigureBackground};
 use crate::document::parts::from_flats::PartFor;
 use crate::document::{Document, Inflation, LayerId};
@@ -78,7 +78,7 @@ impl ShapeDialog {
         session: &Session,
         requests: &mut UiRequests,
     ) -> DialogAnswer {
-        ui.set_width(380.0);
+        set_width(ui, 380.0);
         let open = session.open_documents.iter().position(|open| open.key == self.key);
         let Some((index, open)) = open.map(|index| (index, &session.open_documents[index])) else {
             return DialogAnswer::Close;

@@ -1,7 +1,7 @@
 //! “Save changes?”, before anything is lost.
 //! Floor 7.
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::pending::AfterUnsaved;
 use crate::session::Session;
 use eframe::egui::Ui;
@@ -14,7 +14,7 @@ pub struct UnsavedDialog {
 
 impl UnsavedDialog {
     pub fn show(&self, ui: &mut Ui, session: &Session) -> DialogAnswer {
-        ui.set_width(360.0);
+        set_width(ui, 360.0);
         let title =
             session.open_documents.get(self.index).map_or_else(String::new, |open| open.title());
         ui.heading(format!("Save the changes to “{title}”?"));

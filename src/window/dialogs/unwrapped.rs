@@ -1,6 +1,6 @@
 //! Asks how to export the unwrapped surface. Floor 7.
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, set_width};
 use crate::document::Highlights;
 use crate::document::view::UnwrapOptions;
 use crate::requests::WindowRequest;
@@ -33,7 +33,7 @@ impl UnwrappedDialog {
     }
 
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
-        ui.set_width(320.0);
+        set_width(ui, 320.0);
         ui.heading("Export the unwrapped surface");
         ui.weak("Paint over it in another program and import it unwrapped: it returns to its place on the surface.");
         for scale in UnwrapOptions::SCALE.filter(|scale| scale.is_power_of_two()) {
