@@ -25,7 +25,6 @@ function check(name, isRight, detail = "") {
 
 const servers = [await serve(folder, WITH_HEADERS), await serve(folder, WITHOUT_HEADERS, false)];
 const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const profile = join(pictures, "profile");
 const options = {
   executablePath,
   headless: true,
@@ -34,7 +33,7 @@ const options = {
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     .concat(["--disable-background-networking", "--disable-component-update", "--disable-sync"]),
 };
-let context = await chromium.launchPersistentContext(profile, options);
+let context = await chromium.launchPersistentContext(join(pictures, "profile"), options);
 
 /** A page that shows the program, and how long that took. */
 async function opened(port = WITH_HEADERS, query = "", viewport = options.viewport) {
@@ -48,7 +47,11 @@ async function opened(port = WITH_HEADERS, query = "", viewport = options.viewpo
   const began = Date.now();
   await page.goto(`http://localhost:${port}/${query}`);
   await page.waitForSelector("body[data-state=ready]", { timeout: 60_000 });
-  return { page, took: Date.now() - began };
+  const started = Date.now() - began;
+  // The title has the name of the document in front, once one is there.
+  const isOpen = page.waitForFunction(() => document.title.includes(" – "), null, { timeout: 60_000 });
+  await isOpen.catch(() => null);
+  return { page, started, took: Date.now() - began };
 }
 
 const shot = async (page, name) => {
@@ -56,6 +59,8 @@ const shot = async (page, name) => {
   await page.screenshot({ path });
   return readFileSync(path);
 };
+/** Where the button *Recover all* is in a window of this size. */
+const RECOVER_ALL = [447, 487];
 const rest = (page, ms = 700) => page.waitForTimeout(ms);
 
 async function stroke(page, from, to, release = true) {
@@ -69,14 +74,37 @@ async function stroke(page, from, to, release = true) {
   }
 }
 
+/** The next file that the page gives out after `act`, under a name among the pictures. */
+async function downloaded(page, name, act) {
+  const download = page.waitForEvent("download", { timeout: 30_000 }).catch(() => null);
+  await act();
+  const file = join(pictures, name);
+  await (await download)?.saveAs(file);
+  return existsSync(file) ? file : null;
+}
+
+/** The picture of a document, by the native program. */
+function rendered(file, name) {
+  const picture = join(pictures, name);
+  execFileSync(native, ["render", file, "--output", picture, "--force"]);
+  return readFileSync(picture);
+}
+
+const hasNative = existsSync(native);
+if (!hasNative) {
+  console.log(`     no bytes are compared: ${native} is not there`);
+}
+
 // Loads, paints, undoes.
 const first = await opened();
-check("the sample is shown", true, `${first.took} ms`);
+check("the sample is shown", true, `${first.took} ms, the window ${first.started} ms`);
 let { page } = first;
+await page.mouse.move(30, 780);
 await rest(page, 1500);
 const empty = await shot(page, "sample");
 await page.keyboard.press("b");
 await stroke(page, [420, 300], [700, 480]);
+await page.mouse.move(30, 780);
 await rest(page);
 const painted = await shot(page, "painted");
 check("a stroke shows", !painted.equals(empty));
@@ -90,36 +118,107 @@ for (let i = 0; i <= 40; i++) {
   await pen("mouseMoved", 420 + i * 8, 520, i / 40);
 }
 await pen("mouseReleased", 740, 520, 0);
+await page.mouse.move(30, 780);
 await rest(page);
-await shot(page, "pen");
-await page.keyboard.press("Control+z");
-await rest(page);
-const undone = await shot(page, "undone");
-check("undo brings back what was there", undone.equals(painted) || undone.length > 0);
+check("a pen's stroke shows", !(await shot(page, "pen")).equals(painted));
 
 // Saves, and the native program reads it.
-const download = page.waitForEvent("download", { timeout: 30_000 }).catch(() => null);
-await page.keyboard.press("Control+s");
-const saved = await download;
-check("the document is downloaded", Boolean(saved), saved?.suggestedFilename());
-if (saved) {
-  const file = join(pictures, "saved.ora");
-  await saved.saveAs(file);
-  if (existsSync(native)) {
-    execFileSync(native, ["render", file, "--output", join(pictures, "saved.png"), "--force"]);
-    check("the native program renders it", existsSync(join(pictures, "saved.png")));
-  }
+const saved = await downloaded(page, "saved.ora", () => page.keyboard.press("Control+s"));
+check("the document is downloaded", Boolean(saved));
+const before = saved && hasNative ? rendered(saved, "saved.png") : null;
+
+// The lowest step is the first stroke: two undos bring the sample back, two redos the strokes.
+const undo = async (keys) => {
+  await page.keyboard.press(keys);
+  await rest(page);
+};
+await undo("Control+z");
+await undo("Control+z");
+const bare = await downloaded(page, "undone.ora", () => page.keyboard.press("Control+s"));
+await undo("Control+Shift+Z");
+await undo("Control+Shift+Z");
+const redone = await downloaded(page, "redone.ora", () => page.keyboard.press("Control+s"));
+if (hasNative) {
+  check("undo takes both strokes away", Boolean(bare) && !rendered(bare, "undone.png").equals(before));
+  check("redo brings them back", Boolean(redone) && rendered(redone, "redone.png").equals(before));
 }
 
 // A tab that is killed in the middle of a stroke.
 await stroke(page, [420, 200], [700, 260]);
-await rest(page, 1200);
+await rest(page, 3000);
 await stroke(page, [380, 420], [560, 640], false);
 await page.close({ runBeforeUnload: false });
 ({ page } = await opened());
 await rest(page, 1500);
+await shot(page, "recovery");
+await page.mouse.click(...RECOVER_ALL);
+await page.waitForFunction(() => /recovered/i.test(document.title), null, { timeout: 10_000 }).catch(() => null);
+await rest(page, 1500);
 await shot(page, "recovered");
+const again = await downloaded(page, "recovered.ora", () => page.keyboard.press("Control+s"));
+check("what was drawn before the tab was killed comes back", Boolean(again));
+if (again && hasNative) {
+  check("with its last stroke", !rendered(again, "recovered_picture.png").equals(before));
+}
 await page.close();
+
+// As a new user from here on.
+await context.close();
+context = await chromium.launchPersistentContext(join(pictures, "profile of another"), options);
+
+// The same bytes as the native program's.
+const recipe = "sample_normals/bronze_muse.json";
+const muse = await opened(WITH_HEADERS, `?open=${recipe}`);
+await rest(muse.page, 3000);
+await shot(muse.page, "muse");
+const exported = await downloaded(muse.page, "muse_exported.png", async () => {
+  await muse.page.keyboard.press("Control+Alt+e");
+  await rest(muse.page, 1500);
+  await shot(muse.page, "export");
+  await muse.page.keyboard.press("Enter");
+});
+check("a recipe and the files that it names are opened, and exported", Boolean(exported), `${muse.took} ms`);
+if (exported && hasNative) {
+  const same = readFileSync(exported).equals(rendered(join(folder, recipe), "muse_native.png"));
+  check("the exported picture has the native program's bytes", same);
+}
+await muse.page.close();
+
+// How long frames take while a stroke of a brush of 128 px is drawn, and while the picture is dragged.
+for (const threads of [1, 2]) {
+  const { page: wide } = await opened(WITH_HEADERS, `#threads=${threads}`, { width: 1920, height: 1080 });
+  await rest(wide, 4000);
+  const workers = wide.workers();
+  const ofProgram = await Promise.all(workers.map((worker) => worker.evaluate(() => self.frameTimes?.length ?? 0)));
+  const program = workers[ofProgram.indexOf(Math.max(...ofProgram))];
+  const measure = async (name, act) => {
+    await program.evaluate(() => (self.frameTimes = []));
+    await act();
+    await rest(wide, 300);
+    const times = (await program.evaluate(() => self.frameTimes)).sort((a, b) => a - b);
+    const at = (share) => times[Math.floor(share * (times.length - 1))]?.toFixed(1);
+    console.log(`     ${name}, threads: ${threads}: ${at(0.5)} ms a frame, the ninth decile ${at(0.9)} (${times.length} frames)`);
+  };
+  await wide.keyboard.press("b");
+  for (let i = 0; i < 5; i++) {
+    await wide.keyboard.press("]");
+  }
+  const slowly = (from, to) => async () => {
+    await wide.mouse.move(...from);
+    await wide.mouse.down();
+    for (let i = 1; i <= 60; i++) {
+      await wide.mouse.move(from[0] + ((to[0] - from[0]) * i) / 60, from[1] + ((to[1] - from[1]) * i) / 60);
+      await rest(wide, 16);
+    }
+    await wide.mouse.up();
+  };
+  await measure("a brush's stroke", slowly([600, 400], [1100, 700]));
+  await shot(wide, `stroke_${threads}`);
+  await wide.keyboard.down(" ");
+  await measure("the picture dragged", slowly([700, 500], [900, 600]));
+  await wide.keyboard.up(" ");
+  await wide.close();
+}
 
 // Without the two headers; on a tablet and on a phone.
 const plain = await opened(WITHOUT_HEADERS);

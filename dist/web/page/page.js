@@ -2,6 +2,7 @@
 // one of them (worker.js) and may wait there; nothing here ever does.
 
 import { answerQuestion, handOut, notePaste } from "./files.js";
+import { showFigure } from "./figure.js";
 import { listen } from "./input.js";
 
 const welcome = document.getElementById("welcome");
@@ -78,18 +79,39 @@ function storedFiles(storage, living) {
   });
 }
 
-/** The document that the address names: `?open=URL`. */
-async function namedFiles() {
-  const address = new URLSearchParams(location.search).get("open");
-  if (!address) {
-    return [];
-  }
+async function fetched(address) {
   const response = await fetch(address);
   if (!response.ok) {
     throw new Error(`${address}: ${response.status} ${response.statusText}`);
   }
-  const name = decodeURIComponent(new URL(address, location).pathname.split("/").pop()) || "document";
-  return [[`/documents/${name}`, new Uint8Array(await response.arrayBuffer())]];
+  return new Uint8Array(await response.arrayBuffer());
+}
+
+/** What a recipe names that looks like a file. */
+const FILE = /"([^"]+\.(?:png|jpe?g|webp|tiff?|exr|hdr|bmp|tga|svg|json|ora|psd|obj|ttf|otf|cube|gpl))"/gi;
+
+/** The files that a recipe names, from where it is: a list of [path, bytes]. */
+async function filesOfRecipe(address, bytes) {
+  const named = new TextDecoder().decode(bytes).matchAll(FILE);
+  const names = [...new Set([...named].map(([, name]) => name))];
+  const files = names.map(async (name) => {
+    const found = await fetched(new URL(name, address)).catch(() => null);
+    return found && [new URL(name, "file:///documents/").pathname, found];
+  });
+  return (await Promise.all(files)).filter(Boolean);
+}
+
+/** The document that the address names, `?open=URL`, and after it the files that it names itself. */
+async function namedFiles() {
+  const named = new URLSearchParams(location.search).get("open");
+  if (!named) {
+    return [];
+  }
+  const address = new URL(named, location);
+  const name = decodeURIComponent(address.pathname.split("/").pop()) || "document";
+  const bytes = await fetched(address);
+  const others = name.endsWith(".json") ? await filesOfRecipe(address, bytes) : [];
+  return [[`/documents/${name}`, bytes], ...others];
 }
 
 async function start() {
@@ -143,16 +165,18 @@ async function start() {
   program.onerror = fail;
   const input = listen(canvas, document.getElementById("typed"), tell, notePaste);
   const offscreen = canvas.transferControlToOffscreen();
-  const sample = new URLSearchParams(location.hash.slice(1)).get("sample") ?? "";
+  const asked = new URLSearchParams(location.hash.slice(1));
+  const sample = asked.get("sample") ?? "";
   const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
-  const threads = Math.max(1, Math.min(navigator.hardwareConcurrency || 2, 8));
+  const threads = Number(asked.get("threads")) || Math.max(1, Math.min(navigator.hardwareConcurrency || 2, 8));
   const files = [...stored, ...opened];
   tell(
-    { kind: "start", module, canvas: offscreen, id, threads, isMac, files, open: opened.map(([path]) => path), sample },
+    { kind: "start", module, canvas: offscreen, id, threads, isMac, files, open: opened.slice(0, 1).map(([path]) => path), sample },
     [offscreen, ...files.map(([, bytes]) => bytes.buffer)],
   );
   input.resize();
   canvas.focus();
 }
 
+showFigure(document.getElementById("figure")).catch((error) => console.warn(error));
 start().catch((error) => refuse(`Rilievo cannot start here: ${error.message}.`));
