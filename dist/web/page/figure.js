@@ -1,5 +1,6 @@
 // A figure whose light follows the pointer: what the program is about, before it is loaded. One picture
-// holds its colors on the left and its normals on the right, x to the right, y up, z to the viewer.
+// holds its colors on the left and its normals on the right (x to the right, y up, z to the viewer): those
+// that the program makes of src/window/tour/robin.svg.
 
 /** How far the lamp is before the picture, in its widths. */
 const LAMP_HEIGHT = 0.35;
