@@ -68,10 +68,10 @@ impl InkOnCanvas {
             points.rotate_left(cut);
         }
         flip_short_runs(&mut inked, true, LEAST_POINTS);
-        flip_short_runs(&mut inked, false, settings.shortest as usize);
         if !inked.contains(&true) {
             return vec![line.clone()];
         }
+        flip_short_runs(&mut inked, false, settings.shortest as usize);
         let last = inked.len() - 1;
         runs(&inked)
             .filter(|run| !inked[run.start] && run.len() > 2)
