@@ -184,42 +184,6 @@ if (exported && hasNative) {
 }
 await muse.page.close();
 
-// How long frames take while a stroke of a brush of 128 px is drawn, and while the picture is dragged.
-for (const threads of [1, 2]) {
-  const { page: wide } = await opened(WITH_HEADERS, `#threads=${threads}`, { width: 1920, height: 1080 });
-  await rest(wide, 4000);
-  const workers = wide.workers();
-  const ofProgram = await Promise.all(workers.map((worker) => worker.evaluate(() => self.frameTimes?.length ?? 0)));
-  const program = workers[ofProgram.indexOf(Math.max(...ofProgram))];
-  const measure = async (name, act) => {
-    await program.evaluate(() => (self.frameTimes = []));
-    await act();
-    await rest(wide, 300);
-    const times = (await program.evaluate(() => self.frameTimes)).sort((a, b) => a - b);
-    const at = (share) => times[Math.floor(share * (times.length - 1))]?.toFixed(1);
-    console.log(`     ${name}, threads: ${threads}: ${at(0.5)} ms a frame, the ninth decile ${at(0.9)} (${times.length} frames)`);
-  };
-  await wide.keyboard.press("b");
-  for (let i = 0; i < 5; i++) {
-    await wide.keyboard.press("]");
-  }
-  const slowly = (from, to) => async () => {
-    await wide.mouse.move(...from);
-    await wide.mouse.down();
-    for (let i = 1; i <= 60; i++) {
-      await wide.mouse.move(from[0] + ((to[0] - from[0]) * i) / 60, from[1] + ((to[1] - from[1]) * i) / 60);
-      await rest(wide, 16);
-    }
-    await wide.mouse.up();
-  };
-  await measure("a brush's stroke", slowly([600, 400], [1100, 700]));
-  await shot(wide, `stroke_${threads}`);
-  await wide.keyboard.down(" ");
-  await measure("the picture dragged", slowly([700, 500], [900, 600]));
-  await wide.keyboard.up(" ");
-  await wide.close();
-}
-
 // Without the two headers; on a tablet and on a phone.
 const plain = await opened(WITHOUT_HEADERS);
 check("a server without the headers serves it, too", true, `${plain.took} ms`);

@@ -30,15 +30,9 @@ self.host = {
 
 let program;
 let isShown = false;
-/** How long the last frames took, ms, for who measures. */
-self.frameTimes = [];
 
 function paint(now) {
-  const began = performance.now();
   const isPainted = program.tryFrame(now);
-  if (isPainted) {
-    self.frameTimes = [...self.frameTimes.slice(-299), performance.now() - began];
-  }
   if (isPainted && !isShown) {
     isShown = true;
     send({ kind: "painted" });
