@@ -28,7 +28,7 @@ const NEAR_P99: usize = 16;
 /// As far as edges of text differ, which Photoshop blends by a curve of its own.
 const MOST_OF_TEXT: usize = 40;
 /// Names of what is added.
-const PICTURE: &str = "The file's own picture";
+pub(super) const PICTURE: &str = "The file's own picture";
 const LAYERS: &str = "Layers";
 
 /// How far two pictures differ: the farthest channel of each pixel, on white, of 255.
@@ -162,7 +162,7 @@ fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Docum
 }
 
 /// White, black or transparent everywhere: the writer left the picture out without saying so.
-fn is_blank(rgba: &[u8]) -> bool {
+pub(super) fn is_blank(rgba: &[u8]) -> bool {
     let pixels = rgba.as_chunks::<4>().0;
     let all = |value: u8| pixels.iter().all(|pixel| pixel[..3] == [value; 3]);
     all(255) || all(0) || pixels.iter().all(|pixel| pixel[3] == 0)

@@ -43,6 +43,8 @@ pub struct PatternFill {
 /// Stops from one that the file names to the next: colors and opacities have middles of their own,
 /// where ramps bend.
 const BETWEEN: usize = 8;
+/// As far as a coordinate may be from a whole one by rounding.
+const ROUNDING: f32 = 1e-3;
 /// No real gradient has more stops.
 const MOST_STOPS: usize = 1000;
 
@@ -69,7 +71,8 @@ pub fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
     object.number(name).map_or(absent, |percent| percent / 100.0)
 }
 
-/// A color in any of the ways that descriptors say one. With 32 bits a channel, RGB is light there.
+/// A color in any of the ways that descriptors say one. With 32 bits a channel, RGB and gray are
+/// light there.
 pub fn color(said: &DescriptorObject, colors: &Colors) -> Option<Color> {
     let byte = |v: f32, full: f32| srgb::quantize(v / full);
     let all = |names: [&str; 3]| {
@@ -94,8 +97,9 @@ pub fn color(said: &DescriptorObject, colors: &Colors) -> Option<Color> {
     if let Some(lab) = all(["Lmnc", "A   ", "B   "]) {
         return Some(lab_color(lab, colors));
     }
-    let gray = byte(100.0 - said.number("Gry ")?, 100.0);
-    Some(in_mode(Mode::Gray, [gray, 0, 0, 0]))
+    let gray = 1.0 - said.number("Gry ")? / 100.0;
+    let gray = if colors.is_light { srgb::encode(gray.max(0.0)) } else { gray };
+    Some(in_mode(Mode::Gray, [srgb::quantize(gray), 0, 0, 0]))
 }
 
 /// A color of one mode, of a file in perhaps another.
@@ -134,11 +138,7 @@ pub fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill
     };
     let offset = said.object("Ofst");
     let along = |name: &str| offset.map_or(0.0, |offset| share(offset, name, 0.0));
-    let mut stops = stops(said.object("Grad")?, colors)?;
-    if said.is_set("Rvrs") {
-        stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
-        stops.reverse();
-    }
+    let stops = in_direction(stops(said.object("Grad")?, colors)?, said, way);
     Some(GradientFill {
         way,
         degrees: said.number("Angl").unwrap_or(0.0),
@@ -147,6 +147,20 @@ pub fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill
         aligned: !said.is_false("Algn"),
         stops,
     })
+}
+
+/// Stops from the beginning of a ramp to its end, as it runs here: reversed where the file says so,
+/// and around a middle, where Photoshop's runs clockwise.
+pub fn in_direction(
+    mut stops: Vec<GradientStop>,
+    said: &DescriptorObject,
+    way: RampStyle,
+) -> Vec<GradientStop> {
+    if said.is_set("Rvrs") != (way == RampStyle::Angle) {
+        stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
+        stops.reverse();
+    }
+    stops
 }
 
 /// A value at a place of a ramp, and where the middle between it and the next lies.
@@ -234,22 +248,37 @@ fn at<const N: usize>(marks: &[Mark<[f32; N]>], t: f32) -> Option<[f32; N]> {
 impl GradientFill {
     /// As a gradient of this program, on the rectangle that it fills.
     pub fn live(&self, rect: Rect) -> Gradient {
-        let (middle, half) = self.line(rect);
-        let from = if self.way == RampStyle::Linear { middle - half } else { middle };
-        let line = Gradient::new(from, middle + half, &[]);
+        let (from, to) = self.ends(rect);
         let stops = self.stops.clone();
+        let line = Gradient::new(from, to, &[]);
         Gradient { style: self.way, stops, filter: ImageFilter::Bilinear, ..line }
     }
 
-    /// Its middle, and from there to its end.
-    fn line(&self, rect: Rect) -> (Vec2, Vec2) {
-        RampStyle::line(rect, self.degrees, self.scale, self.offset)
+    /// Where it begins and ends. Photoshop lays both on whole pixels, and gives a pixel the color of
+    /// its corner; here that is the color of its center.
+    fn ends(&self, rect: Rect) -> (Vec2, Vec2) {
+        let (middle, half) = RampStyle::line(rect, self.degrees, self.scale, self.offset);
+        let from = if self.way == RampStyle::Linear { middle - half } else { middle };
+        let exact = (from, middle + half);
+        // What is whole but for rounding stays.
+        let whole = |p: Vec2| (p + Vec2::splat(ROUNDING)).floor();
+        let (from, to) = match self.way {
+            RampStyle::Linear if self.scale != 1.0 => {
+                let half = (half + half.signum() * ROUNDING).trunc();
+                (whole(middle) - half, whole(middle) + half)
+            }
+            _ => (whole(exact.0), whole(exact.1)),
+        };
+        let (from, to) = if from == to { exact } else { (from, to) };
+        (from + Vec2::splat(0.5), to + Vec2::splat(0.5))
     }
 
     /// The color of a pixel.
     pub fn color_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
-        let [r, g, b, a] =
-            self.at(self.way.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
+        let (from, to) = self.ends(rect);
+        let middle = if self.way == RampStyle::Linear { (from + to) / 2.0 } else { from };
+        let line = (middle, to - middle);
+        let [r, g, b, a] = self.at(self.way.place(line, vec2(x as f32 + 0.5, y as f32 + 0.5)));
         Some(Color { r, g, b, a })
     }
 

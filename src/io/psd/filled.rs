@@ -1,6 +1,7 @@
 //! What a record's layer holds: pixels, or the fill that they show.
 //! Floor 5.
 
+use super::effects::RecordEffects;
 use super::fill::{GradientFill, LayerFill};
 use super::pattern::PatternResource;
 use super::{LayerRecord, RecordMask};
@@ -61,6 +62,12 @@ fn draw_fill(
 
 /// A fill and its pixels, which show its shape: if their colors differ, the pixels win.
 fn show_fill(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
+    if has_cut_effects(record, size) {
+        record.note_conversion(
+            "its fill became pixels: it reaches beyond the canvas, and its effects follow its edge there",
+        );
+        return own_pixels(record);
+    }
     let is_plain = !record.stroked && !record.unfilled;
     let live = match fill {
         LayerFill::Solid(color) if is_plain && is_of(record, |_| Some(color)) => {
@@ -87,6 +94,13 @@ fn show_fill(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
     live
 }
 
+/// Whether its effects follow an edge beyond the canvas, where a fill with a mask has none.
+fn has_cut_effects(record: &LayerRecord, size: Size) -> bool {
+    let is_shown = |effects: &RecordEffects| effects.list.iter().any(|effect| effect.on);
+    record.rect.intersect(size.rect()) != record.rect
+        && record.effects.as_ref().is_some_and(is_shown)
+}
+
 /// An opaque gradient whose colors the pixels have.
 fn opaque_gradient(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option<Content> {
     let rect = filled_rect(record, gradient, size);
@@ -98,11 +112,23 @@ fn opaque_gradient(record: &LayerRecord, gradient: &GradientFill, size: Size) ->
 /// What a gradient fills: the layer as far as its pixels and mask reach, or the canvas.
 fn filled_rect(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Rect {
     let layer = match &record.mask {
-        _ if !record.rect.is_empty() => record.rect,
+        _ if !record.rect.is_empty() => covered_rect(record),
         Some(mask) if mask.outside == 0 => mask.bounds(),
         _ => size.rect(),
     };
     if gradient.aligned && !layer.is_empty() { layer } else { size.rect() }
+}
+
+/// The least rectangle around its pixels that are not transparent, or that of all.
+fn covered_rect(record: &LayerRecord) -> Rect {
+    let width = record.rect.width().max(1);
+    let covered =
+        record.rgba.as_chunks::<4>().0.iter().enumerate().filter(|(_, pixel)| pixel[3] > 0);
+    let all = covered.fold(Rect::EMPTY, |all, (i, _)| {
+        let (x, y) = (record.rect.x0 + (i % width) as i32, record.rect.y0 + (i / width) as i32);
+        all.union(Rect::new(x, y, x + 1, y + 1))
+    });
+    if all.is_empty() { record.rect } else { all }
 }
 
 /// Whether the pixels have those colors, faint ones aside.

@@ -8,6 +8,7 @@ use super::colors::{ColorValue, Colors, Mode, StraightPixels};
 use super::cursor::ByteCursor;
 use super::header::{PsdHeader, resource};
 use crate::document::NamedSelection;
+use crate::math::srgb;
 use crate::raster::{CoverageGrid, Plane};
 
 /// The picture, as stored in the file.
@@ -56,9 +57,9 @@ pub fn read_merged<T: ColorValue>(
     let alpha = planes.next();
     let mut pixels = T::pixels(*colors, header.size, &slots, alpha.as_deref());
     // Photoshop blends the colors with white as far as they are transparent; some programs do not.
-    if has_alpha && count.is_some() && is_on_white(&pixels.rgba) {
-        remove_white(pixels.rgba.as_chunks_mut().0);
-        remove_white(&mut pixels.rgba16);
+    if has_alpha && count.is_some() && is_on_white(&pixels.rgba, colors.is_light) {
+        remove_backdrop(pixels.rgba.as_chunks_mut().0, colors.is_light);
+        remove_backdrop(&mut pixels.rgba16, colors.is_light);
     }
     // Since the number of its version: whether the picture is real.
     let is_real = resource(resources, VERSION_INFO).is_none_or(|data| data.get(4) != Some(&0));
@@ -101,10 +102,40 @@ fn planes<T: ChannelValue>(
 }
 
 /// No color is darker than it can be on white. Some programs leave what is wholly transparent black.
-fn is_on_white(rgba: &[u8]) -> bool {
-    let is_light =
-        |[r, g, b, a]: &[u8; 4]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a);
-    rgba.as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 0 || is_light(pixel))
+/// `is_light`: colors were blended with white as light.
+fn is_on_white(rgba: &[u8], is_light: bool) -> bool {
+    let least = |a: u8| match is_light {
+        true => srgb::quantize(srgb::encode(1.0 - f32::from(a) / 255.0)),
+        false => 255 - a,
+    };
+    let is_bright =
+        |[r, g, b, a]: &[u8; 4]| [r, g, b].iter().all(|c| c.saturating_add(3) >= least(*a));
+    rgba.as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 0 || is_bright(pixel))
+}
+
+/// Removes the white, which colors were blended with as light or as the file stores them.
+fn remove_backdrop<T: ChannelValue + TryFrom<i64>>(texels: &mut [[T; 4]], is_light: bool)
+where
+    i64: From<T>,
+{
+    if is_light { remove_white_light(texels) } else { remove_white(texels) }
+}
+
+/// As [`remove_white`], of colors that were blended with it as light.
+fn remove_white_light<T: ChannelValue + TryFrom<i64>>(texels: &mut [[T; 4]])
+where
+    i64: From<T>,
+{
+    let share = |v: T| i64::from(v) as f32 / i64::from(T::WHOLE) as f32;
+    let value =
+        |v: f32| T::try_from((v * i64::from(T::WHOLE) as f32 + 0.5) as i64).unwrap_or(T::WHOLE);
+    for [color @ .., alpha] in texels {
+        let a = share(*alpha);
+        if a > 0.0 {
+            let light = |v: T| (srgb::decode(share(v)) - 1.0 + a) / a;
+            *color = color.map(|v| value(srgb::encode(light(v).max(0.0).min(1.0))));
+        }
+    }
 }
 
 /// Removes the white beneath colors as far as they are transparent; fully transparent pixels keep
@@ -143,7 +174,24 @@ mod tests {
             rgba16,
             [[65535, 0, 0, 32768], [65535, 5079, 5068, 6000], [65535, 65535, 65535, 0]]
         );
-        assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255], [0; 4]].concat()));
-        assert!(!is_on_white(&[100, 100, 100, 20]));
+        assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255], [0; 4]].concat(), false));
+        assert!(!is_on_white(&[100, 100, 100, 20], false));
+    }
+
+    #[test]
+    fn white_beneath_light_is_taken_away_as_light() {
+        // White that is half covered by black.
+        let on_white = [[255, 187, 187, 128], [9, 9, 9, 255], [0, 0, 0, 0], [255, 255, 255, 1]];
+        let mut rgba: Vec<u8> = on_white.concat();
+        assert!(is_on_white(&rgba, true) && !is_on_white(&[127, 127, 127, 128], true));
+        remove_backdrop(rgba.as_chunks_mut().0, true);
+        let [_, green, ..] = rgba[..4] else { panic!("a pixel") };
+        assert!(green < 8, "{green}");
+        assert_eq!(rgba[4..], [[9, 9, 9, 255], [0, 0, 0, 0], [255, 255, 255, 1]].concat());
+        let white = |alpha: u16| [srgb::quantize16(srgb::encode(0.75)), 65535, 65535, alpha];
+        let mut rgba16 = [white(32768), white(65535)];
+        remove_backdrop(&mut rgba16, true);
+        assert!(rgba16[0][0].abs_diff(srgb::quantize16(srgb::encode(0.5))) <= 2, "{rgba16:?}");
+        assert!(rgba16[1][0].abs_diff(white(0)[0]) <= 1, "{rgba16:?}");
     }
 }

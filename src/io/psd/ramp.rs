@@ -75,11 +75,7 @@ pub fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill
         Some([r, g, b])
     })?;
     let opacities = marks(ramp, "Trns", |object| Some([share(object, "Opct", 1.0)]))?;
-    let mut stops = stops(inks, opacities, smoothness, mixing)?;
-    if said.is_set("Rvrs") {
-        stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
-        stops.reverse();
-    }
+    let stops = fill::in_direction(stops(inks, opacities, smoothness, mixing)?, said, read.way);
     Some(GradientFill { stops, ..read })
 }
 

@@ -181,7 +181,8 @@ fn ramp(said: &mut DescriptorWriter, effect: &LayerEffect) {
         RampStyle::Diamond => "Dmnd",
     };
     said.word("Type", "GrdT", style);
-    said.flag("Rvrs", s.reverse);
+    // Photoshop's ramp around a middle runs the other way round.
+    said.flag("Rvrs", s.reverse != (s.ramp == RampStyle::Angle));
     said.flag("Dthr", false);
     said.flag("Algn", s.aligned);
     percent(said, "Scl ", s.scale);

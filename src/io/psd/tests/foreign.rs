@@ -294,13 +294,14 @@ fn a_gradient_fill_is_a_gradient_of_its_style() {
         descriptor(&[("Type", choice("GrdT", way)), ("Angl", double(0.0)), ("Grad", ramp.clone())])
     };
     let mut made = plain(8, 1, [100; 3]);
-    made.merged = vec![(0..8).map(|x| (x * 32 + 16) as u8).collect(); 3];
+    // A pixel has the color of its left edge.
+    made.merged = vec![(0..8).map(|x| (x * 32) as u8).collect(); 3];
     made.layers.as_mut().unwrap().push(empty("ramp", vec![(b"GdFl", fill("Lnr "))]));
     let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
     assert!(matches!(back.document.layers[1].content, Content::Gradient(_)));
     made.layers.as_mut().unwrap()[1] = empty("ramp", vec![(b"GdFl", fill("Rflc"))]);
-    made.merged = vec![[7i32, 5, 3, 1, 1, 3, 5, 7].map(|v| (v * 32) as u8).to_vec(); 3];
+    made.merged = vec![[4i32, 3, 2, 1, 0, 1, 2, 3].map(|v| (v * 255 / 4) as u8).to_vec(); 3];
     let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
     let Content::Gradient(live) = &back.document.layers[1].content else { panic!("a gradient") };
