@@ -10,6 +10,7 @@
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `adjustments` | what adjustment layers do |
+//! | `gray` | adjustments of gray values with a profile, as tables of sRGB |
 //! | `effects` | shadows, glows and other effects of layers |
 //! | `ramp` | how colors mix between those of a gradient |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
@@ -37,6 +38,7 @@ mod effects;
 mod export;
 mod fill;
 mod filled;
+mod gray;
 mod header;
 mod isolation;
 mod layers;

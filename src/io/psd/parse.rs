@@ -4,6 +4,7 @@
 use super::blocks::block;
 use super::colors::Colors;
 use super::cursor::ByteCursor;
+use super::gray::GrayTones;
 use super::header::{PsdHeader, header, resource};
 use super::layers::RecordReader;
 use super::merged::{Merged, read_merged};
@@ -30,6 +31,8 @@ pub struct ParsedPsd<'a> {
     pub patterns: Vec<PatternResource>,
     /// Its values are those of a color profile.
     pub has_profile: bool,
+    /// What its gray values are in sRGB, unless they are the same.
+    pub gray: Option<GrayTones>,
     /// The light of effects that have none of their own.
     pub effect_light: EffectLight,
     /// And how many were left out.
@@ -103,6 +106,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         merged,
         patterns,
         has_profile: colors.has_profile(),
+        gray: GrayTones::of(&colors, header.bits),
         effect_light,
         guides,
         damage,

@@ -5,14 +5,15 @@ use super::blocks::ArtboardBackground;
 use super::colors::{Mode, StraightPixels};
 use super::compare::check_against_merged;
 use super::effects::RecordEffects;
+use super::gray::GrayTones;
 use super::parse::{ParsedPsd, parse};
 use super::pattern::PatternResource;
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks, signature};
 use crate::Budget;
 use crate::document::{Content, Document, Group, Guides, Layer, LayerLock, LayerMask, MaskKind};
 use crate::math::Size;
-use crate::paint::LayerEffect;
 use crate::paint::effect::EffectPattern;
+use crate::paint::{ColorAdjustment, LayerEffect};
 use crate::pixels;
 use crate::project::archive::Archive;
 use crate::project::manifest::Manifest;
@@ -84,6 +85,7 @@ pub(super) fn build_document(
         patterns: &parsed.patterns,
         is_light: parsed.header.bits == 32,
         has_profile: parsed.has_profile,
+        gray: parsed.gray.as_ref(),
         open: vec![Vec::new()],
         is_less: false,
         notes: std::mem::take(notes),
@@ -207,6 +209,7 @@ struct TreeBuilder<'a> {
     is_light: bool,
     /// Its values have a profile of their own.
     has_profile: bool,
+    gray: Option<&'a GrayTones>,
     open: Vec<Vec<Arc<Layer>>>,
     /// Something was left out.
     is_less: bool,
@@ -241,7 +244,7 @@ impl TreeBuilder<'_> {
             }
             RecordSection::Layer => {
                 let content = match record.adjustment.take() {
-                    Some(adjustment) => adjustment.into(),
+                    Some(adjustment) => self.adjust(&mut record, adjustment),
                     None => filled::content(&mut record, self.size, self.patterns),
                 };
                 self.layer(record, content)
@@ -250,6 +253,22 @@ impl TreeBuilder<'_> {
         if let Some(list) = self.open.last_mut() {
             list.push(Arc::new(layer));
         }
+    }
+
+    /// An adjustment of the values that the file has.
+    fn adjust(&self, record: &mut LayerRecord, adjustment: ColorAdjustment) -> Content {
+        let Some(lookup) = self.gray.and_then(|gray| gray.lookup(&adjustment)) else {
+            if self.has_profile {
+                record.note_conversion(
+                    "it adjusts sRGB values, and in other programs those of the file's color profile",
+                );
+            }
+            return adjustment.into();
+        };
+        record.note_conversion(
+            "it adjusts the values of the file's gray profile, and became a table of tones",
+        );
+        ColorAdjustment::ColorLookup(lookup).into()
     }
 
     /// An artboard's ground is beneath its layers, and what is beyond it is cut off.
@@ -286,11 +305,6 @@ impl TreeBuilder<'_> {
         if record.clipped && record.visible && self.is_clipped_to_passing() {
             record.note_conversion(
                 "in other programs it is blended with all that its group lets through, too",
-            );
-        }
-        if self.has_profile && matches!(content, Content::Adjustment(_)) {
-            record.note_conversion(
-                "it adjusts sRGB values, and in other programs those of the file's color profile",
             );
         }
         let known = BlendMode::from_photoshop(record.blend);
