@@ -19,17 +19,28 @@ const ISOLATING = {
   "Cross-Origin-Embedder-Policy": "require-corp",
 };
 
-/** Serves a folder on a port of this machine, with the two headers or without. */
-export function serve(folder, port, isIsolating = true) {
+/** The bytes of a file in the first of these folders that has it. */
+async function found(folders, name) {
+  for (const folder of folders) {
+    const bytes = await readFile(join(folder, name)).catch(() => null);
+    if (bytes) {
+      return bytes;
+    }
+  }
+  return null;
+}
+
+/** Serves folders on a port of this machine, as one, with the two headers or without. */
+export function serve(folders, port, isIsolating = true) {
   const server = createServer(async (request, response) => {
     const name = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
-    const file = join(folder, normalize(name === "/" ? "/index.html" : name));
-    try {
-      const bytes = await readFile(file);
+    const file = normalize(name === "/" ? "/index.html" : name);
+    const bytes = await found([folders].flat(), file);
+    if (bytes) {
       const headers = { "Content-Type": TYPES[extname(file)] ?? "application/octet-stream" };
       response.writeHead(200, { ...headers, "Content-Length": bytes.length, ...(isIsolating ? ISOLATING : {}) });
       response.end(bytes);
-    } catch {
+    } else {
       response.writeHead(404).end();
     }
   });

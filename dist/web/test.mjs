@@ -4,10 +4,11 @@
 //
 // FOLDER is what dist/web/build made; pictures of each step go to PICTURES. Needs Chromium (CHROMIUM names
 // it, or /usr/bin/chromium) and playwright-core (npm install in dist/web); RILIEVO names the native program
-// that bytes are compared with.
+// that bytes are compared with, and STORIES a folder of stories (RILIEVO_STORIES=FOLDER cargo test -p
+// rilievo-program stories_are_written -- --ignored), which are played and compared with their pictures.
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 import { serve } from "./server.mjs";
@@ -23,7 +24,8 @@ function check(name, isRight, detail = "") {
   failures += isRight ? 0 : 1;
 }
 
-const servers = [await serve(folder, WITH_HEADERS), await serve(folder, WITHOUT_HEADERS, false)];
+const served = [folder, process.env.STORIES].filter(Boolean);
+const servers = [await serve(served, WITH_HEADERS), await serve(served, WITHOUT_HEADERS, false)];
 const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const options = {
   executablePath,
@@ -82,6 +84,14 @@ async function downloaded(page, name, act) {
   await (await download)?.saveAs(file);
   return existsSync(file) ? file : null;
 }
+
+/** The document in front as a PNG. */
+const exportedPicture = (page, name) =>
+  downloaded(page, name, async () => {
+    await page.keyboard.press("Control+Alt+e");
+    await rest(page, 1500);
+    await page.keyboard.press("Enter");
+  });
 
 /** The picture of a document, by the native program. */
 function rendered(file, name) {
@@ -171,18 +181,26 @@ const recipe = "sample_normals/bronze_muse.json";
 const muse = await opened(WITH_HEADERS, `?open=${recipe}`);
 await rest(muse.page, 3000);
 await shot(muse.page, "muse");
-const exported = await downloaded(muse.page, "muse_exported.png", async () => {
-  await muse.page.keyboard.press("Control+Alt+e");
-  await rest(muse.page, 1500);
-  await shot(muse.page, "export");
-  await muse.page.keyboard.press("Enter");
-});
+const exported = await exportedPicture(muse.page, "muse_exported.png");
+await shot(muse.page, "exported");
 check("a recipe and the files that it names are opened, and exported", Boolean(exported), `${muse.took} ms`);
 if (exported && hasNative) {
   const same = readFileSync(exported).equals(rendered(join(folder, recipe), "muse_native.png"));
   check("the exported picture has the native program's bytes", same);
 }
 await muse.page.close();
+
+// The stories of the tests.
+const stories = process.env.STORIES ? readdirSync(process.env.STORIES).filter((name) => name.endsWith(".jsonl")) : [];
+for (const story of stories) {
+  const { page, took } = await opened(WITH_HEADERS, `?open=${story}`);
+  await rest(page, 1000);
+  const picture = await exportedPicture(page, `${story}.png`);
+  const expected = readFileSync(join(process.env.STORIES, story.replace(".jsonl", ".png")));
+  check(`${story} ends with the same bytes`, Boolean(picture) && readFileSync(picture).equals(expected), `${took} ms`);
+  await shot(page, story);
+  await page.close();
+}
 
 // Without the two headers; on a tablet and on a phone.
 const plain = await opened(WITHOUT_HEADERS);

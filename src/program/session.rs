@@ -15,6 +15,7 @@ mod path;
 mod picture_part;
 pub mod property;
 pub mod replay;
+pub mod script;
 pub mod storage;
 pub mod stored_preview;
 pub mod swatch;

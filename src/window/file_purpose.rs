@@ -5,7 +5,7 @@ use crate::io::palette::PaletteFormat;
 use crate::session::PicturePart;
 use crate::session::brushes::EXTENSIONS;
 use crate::session::storage::{
-    DOCUMENTS, PICTURES, SAVED, export_extensions, with_document_extension,
+    DOCUMENTS, PICTURES, SAVED, SCRIPTS, export_extensions, with_document_extension,
 };
 use std::path::PathBuf;
 
@@ -77,9 +77,10 @@ impl FilePurpose {
         let pictures = || PICTURES.to_vec();
         match self {
             FilePurpose::Open => vec![
-                ("All supported files", [DOCUMENTS.to_vec(), pictures()].concat()),
+                ("All supported files", [&DOCUMENTS[..], &PICTURES, &SCRIPTS].concat()),
                 ("Documents", DOCUMENTS.to_vec()),
                 ("Pictures and maps", pictures()),
+                ("Scripts", SCRIPTS.to_vec()),
             ],
             FilePurpose::Brush => vec![("Brushes", EXTENSIONS.to_vec())],
             FilePurpose::Palette => vec![("Palettes", PaletteFormat::EXTENSIONS.to_vec())],

@@ -32,6 +32,26 @@ fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
 }
 
 #[test]
+fn a_script_is_played_beside_what_is_open_and_its_documents_have_their_history() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("story.jsonl");
+    let lines = [
+        r##"{"in":"file","do":"new","width":60,"height":40,"background":"#804020"}"##,
+        r#"{"in":"layer","do":"add","kind":"paint"}"#,
+        r#"{"in":"file","do":"save","file":"never.ora"}"#,
+    ];
+    std::fs::write(&script, lines.join("\n")).unwrap();
+    let mut harness = window();
+    let open = session(&harness).open_documents.len();
+    harness.state_mut().as_mut().unwrap().begin(vec![script]);
+    until(&mut harness, |harness| session(harness).open_documents.len() > open);
+    let shown = session(&harness).active().unwrap();
+    assert_eq!((shown.document().size.width, shown.document().layers.len()), (60, 2));
+    assert_eq!(shown.history.past_names().count(), 1);
+    assert!(harness.query_by_label_contains("story.jsonl was played").is_some());
+}
+
+#[test]
 fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window();

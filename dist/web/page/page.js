@@ -37,6 +37,22 @@ async function isIsolated() {
   return false;
 }
 
+/** The workers that are started before the program asks for them, besides those that paint. */
+const AHEAD = 3;
+
+/** Workers that wait for what they are: starting one takes as long as a frame or more. */
+class Workers {
+  #idle = [];
+
+  constructor(count) {
+    this.#idle = Array.from({ length: count }, () => new Worker("worker.js", { type: "module" }));
+  }
+
+  take() {
+    return this.#idle.shift() ?? new Worker("worker.js", { type: "module" });
+  }
+}
+
 /** Compiles the program while it is loaded, and shows how far that is. */
 async function compiled() {
   const response = await fetch("rilievo_bg.wasm");
@@ -87,15 +103,16 @@ async function fetched(address) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-/** What a recipe names that looks like a file. */
+/** What a recipe or a script names that looks like a file. */
 const FILE = /"([^"]+\.(?:png|jpe?g|webp|tiff?|exr|hdr|bmp|tga|svg|json|ora|psd|obj|ttf|otf|cube|gpl))"/gi;
 
-/** The files that a recipe names, from where it is: a list of [path, bytes]. */
-async function filesOfRecipe(address, bytes) {
+/** The files that a document names, from beside it or from beside the page: a list of [path, bytes]. */
+async function filesNamedIn(address, bytes) {
   const named = new TextDecoder().decode(bytes).matchAll(FILE);
   const names = [...new Set([...named].map(([, name]) => name))];
   const files = names.map(async (name) => {
-    const found = await fetched(new URL(name, address)).catch(() => null);
+    const beside = [address, location].map((base) => new URL(name, base).href);
+    const found = await fetched(beside[0]).catch(() => fetched(beside[1])).catch(() => null);
     return found && [new URL(name, "file:///documents/").pathname, found];
   });
   return (await Promise.all(files)).filter(Boolean);
@@ -110,7 +127,7 @@ async function namedFiles() {
   const address = new URL(named, location);
   const name = decodeURIComponent(address.pathname.split("/").pop()) || "document";
   const bytes = await fetched(address);
-  const others = name.endsWith(".json") ? await filesOfRecipe(address, bytes) : [];
+  const others = /\.jsonl?$/.test(name) ? await filesNamedIn(address, bytes) : [];
   return [[`/documents/${name}`, bytes], ...others];
 }
 
@@ -119,21 +136,24 @@ async function start() {
     return;
   }
   const canvas = document.getElementById("canvas");
-  const [id, living] = [pageId(), await livingPages()];
+  const asked = new URLSearchParams(location.hash.slice(1));
+  const threads = Number(asked.get("threads")) || Math.max(1, Math.min(navigator.hardwareConcurrency || 2, 8));
+  const id = pageId();
   const storage = new Worker("storage.js", { type: "module" });
+  const workers = new Workers(1 + threads + AHEAD);
   const [module, stored, opened] = await Promise.all([
     compiled(),
-    storedFiles(storage, living),
+    livingPages().then((living) => storedFiles(storage, living)),
     namedFiles(),
   ]);
   let memory;
   const thread = () => {
-    const worker = new Worker("worker.js", { type: "module", name: "thread" });
+    const worker = workers.take();
     worker.onmessage = hear;
     worker.onerror = fail;
     worker.postMessage({ kind: "thread", module, memory, id });
   };
-  const program = new Worker("worker.js", { type: "module", name: "program" });
+  const program = workers.take();
   const tell = (message, transfer = []) => program.postMessage(message, transfer);
   const told = {
     memory: (data) => (memory = data.memory),
@@ -165,10 +185,8 @@ async function start() {
   program.onerror = fail;
   const input = listen(canvas, document.getElementById("typed"), tell, notePaste);
   const offscreen = canvas.transferControlToOffscreen();
-  const asked = new URLSearchParams(location.hash.slice(1));
   const sample = asked.get("sample") ?? "";
   const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
-  const threads = Number(asked.get("threads")) || Math.max(1, Math.min(navigator.hardwareConcurrency || 2, 8));
   const files = [...stored, ...opened];
   tell(
     { kind: "start", module, canvas: offscreen, id, threads, isMac, files, open: opened.slice(0, 1).map(([path]) => path), sample },

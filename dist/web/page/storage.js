@@ -51,6 +51,12 @@ const doing = {
     handle.flush();
   },
   async rename({ from, to }) {
+    [from, to].forEach(close);
+    const handle = await (await folderOf()).getFileHandle(nameOf(from));
+    const isMoved = await handle.move?.(nameOf(to)).then(() => true, () => false);
+    if (isMoved) {
+      return;
+    }
     const bytes = await bytesOf(from);
     await doing.store({ path: to, from: 0, bytes });
     await doing.remove({ path: from });

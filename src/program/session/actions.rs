@@ -40,6 +40,7 @@ use super::Session;
 use super::replay::ReplayValue;
 use crate::Result;
 use serde_json::Value;
+use std::path::PathBuf;
 
 /// One action for each of the enums, by the word that its room has in replays.
 macro_rules! rooms {
@@ -103,6 +104,26 @@ rooms! {
 }
 
 impl Action {
+    /// Whether it writes a file of the user's.
+    pub fn has_output(&self) -> bool {
+        match self {
+            Action::File(action) => action.has_output(),
+            Action::Palette(action) => matches!(action, PaletteAction::Export { .. }),
+            _ => false,
+        }
+    }
+
+    /// The files that it names.
+    pub fn files_mut(&mut self) -> Vec<&mut PathBuf> {
+        match self {
+            Action::File(action) => action.files_mut(),
+            Action::Palette(
+                PaletteAction::Import { file } | PaletteAction::Export { file, .. },
+            ) => vec![file],
+            _ => Vec::new(),
+        }
+    }
+
     /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file
     /// could hold is refused in a note.
     pub fn apply(&self, session: &mut Session) -> Result<()> {

@@ -5,8 +5,8 @@ mod endings;
 mod maps;
 
 pub use endings::{
-    DOCUMENTS, PICTURES, SAVED, export_extensions, is_document, is_openable, is_saved_to,
-    is_whole_document, with_document_extension, without_ending,
+    DOCUMENTS, PICTURES, SAVED, SCRIPTS, export_extensions, is_document, is_openable, is_saved_to,
+    is_script, is_whole_document, with_document_extension, without_ending,
 };
 pub use maps::{
     SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of,
@@ -15,7 +15,6 @@ pub use maps::{
 
 use super::stored_preview::StoredPreview;
 use super::{OpenDocument, drawing};
-use crate::Result;
 use crate::document::parts::drawing::DrawingTraits;
 use crate::document::source::SurfaceSource;
 use crate::document::{Content, Document, Layer, Live, Progress};
@@ -29,6 +28,7 @@ use crate::paint::{
 };
 use crate::raster::{Outside, Picture};
 use crate::surface::{Bend, Operator};
+use crate::{Error, Result};
 use maps::with_own_depth;
 use std::path::Path;
 use std::sync::Arc;
@@ -44,6 +44,8 @@ pub enum FileUse {
     Normals,
     /// Perhaps a depth map: gray, and named like one.
     Depth,
+    /// Actions to play.
+    Script,
 }
 
 /// A document that was opened, ready to be shown.
@@ -60,6 +62,9 @@ pub struct OpenedFile {
 pub fn kind_of(file: &Path) -> Result<FileUse> {
     if is_document(file) {
         return Ok(FileUse::Document);
+    }
+    if is_script(file) {
+        return Ok(FileUse::Script);
     }
     let budget = Budget::of_this_machine();
     let bytes = read_file(file, budget.file_bytes)?;
@@ -108,6 +113,10 @@ pub fn open(file: &Path) -> Result<OpenedFile> {
         }
         FileUse::Normals => open_maps(&with_own_depth(file)),
         FileUse::Depth => open_maps(&maps_of(None, Some(file))),
+        FileUse::Script => Err(Error::unsupported_file(
+            file,
+            "this is a script; open it in the window, or play it with “rilievo replay”",
+        )),
     }
 }
 

@@ -21,6 +21,7 @@ use crate::session::actions::LayerAction;
 use crate::session::actions::placing::{place, read_picture};
 use crate::session::actions::{ClipboardAction, FileAction, PaletteAction, PastedPicture};
 use crate::session::actions::{palettes, pictures};
+use crate::session::script::{self, PlayedScript};
 use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
 use crate::session::{Action, PaletteShelf, PicturePart, Property, Session, brushes};
 use eframe::egui;
@@ -64,6 +65,7 @@ impl MainWindow {
                 let use_of = use_of.filter(|_| kind == FileUse::Picture);
                 JobResult::then(move |window: &mut Self, _| match use_of {
                     Some(use_of) => window.read_layer(file, use_of),
+                    None if kind == FileUse::Script => window.play_script(file),
                     None => window.read_document(file),
                 })
             }));
@@ -78,6 +80,29 @@ impl MainWindow {
             JobResult::of(opened, |window: &mut Self, opened| window.add_opened(Some(file), opened))
                 .in_front()
         });
+    }
+
+    /// Plays a script; the documents that it leaves open come in front.
+    fn play_script(&mut self, file: PathBuf) {
+        let name = format!("Playing {}", short(&file));
+        self.jobs.start(name, JobKind::Working, move |progress| {
+            match script::play(&file, progress) {
+                Ok(Some(played)) => JobResult::then(move |window: &mut Self, _| {
+                    window.show_played(&file, played);
+                })
+                .in_front(),
+                Ok(None) => JobResult::nothing(),
+                Err(error) => JobResult::from_error(error),
+            }
+        });
+    }
+
+    fn show_played(&mut self, file: &Path, played: PlayedScript) {
+        played.open_documents.into_iter().for_each(|open| self.session.add_document(open));
+        self.messages.extend(played.notes);
+        if played.skipped > 0 {
+            self.jobs.say(format!("{} was played, without writing files", short(file)));
+        }
     }
 
     /// A document was opened, from a file if it has one.

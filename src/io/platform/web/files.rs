@@ -289,6 +289,8 @@ impl Write for File {
         let mut body = lock(&self.body);
         body.bytes.try_reserve(from.len()).map_err(|_| ErrorKind::OutOfMemory)?;
         body.bytes.extend_from_slice(from);
+        // The page has it, whatever becomes of the program.
+        body.store();
         Ok(from.len())
     }
 

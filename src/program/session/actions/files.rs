@@ -94,6 +94,42 @@ actions! {
 }
 
 impl FileAction {
+    /// Whether it writes a file.
+    pub(super) fn has_output(&self) -> bool {
+        matches!(
+            self,
+            FileAction::Save { .. }
+                | FileAction::Export { .. }
+                | FileAction::ExportAgain {}
+                | FileAction::ExportMaps { .. }
+                | FileAction::ExportUnwrapped { .. }
+        )
+    }
+
+    /// The files that it names.
+    pub(super) fn files_mut(&mut self) -> Vec<&mut PathBuf> {
+        match self {
+            FileAction::Open { file }
+            | FileAction::Place { file, .. }
+            | FileAction::ImportBrush { file }
+            | FileAction::Save { file }
+            | FileAction::Export { file, .. }
+            | FileAction::ExportMaps { file, .. }
+            | FileAction::ExportUnwrapped { file, .. }
+            | FileAction::ImportUnwrapped { file }
+            | FileAction::Use { file, .. } => vec![file],
+            FileAction::OpenMaps { normal, depth }
+            | FileAction::ReplaceMaps { normal, depth }
+            | FileAction::AddMaps { normal, depth } => normal.iter_mut().chain(depth).collect(),
+            FileAction::New { .. }
+            | FileAction::KeepBrush { .. }
+            | FileAction::RemoveBrush { .. }
+            | FileAction::ExportAgain {}
+            | FileAction::Show { .. }
+            | FileAction::Close { .. } => Vec::new(),
+        }
+    }
+
     /// Performs it.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         session.drop_gesture();

@@ -14,9 +14,17 @@ pub const PICTURES: [&str; 19] = [
     "pbm", "pgm", "ppm", "pam", "pfm", "svg",
 ];
 
+/// The extension of files that hold actions.
+pub const SCRIPTS: [&str; 1] = ["jsonl"];
+
 /// Whether a file is a document by the ending of its name.
 pub fn is_document(file: &Path) -> bool {
     has_extension(file, &DOCUMENTS)
+}
+
+/// Whether a file holds actions by the ending of its name.
+pub fn is_script(file: &Path) -> bool {
+    has_extension(file, &SCRIPTS)
 }
 
 /// Whether a document can be saved to a file of this name.
@@ -41,7 +49,7 @@ pub(super) fn has_extension(file: &Path, extensions: &[&str]) -> bool {
 
 /// The files of a folder that a document could be opened from, for a picker.
 pub fn is_openable(file: &Path) -> bool {
-    has_extension(file, &DOCUMENTS) || has_extension(file, &PICTURES)
+    is_document(file) || is_script(file) || has_extension(file, &PICTURES)
 }
 
 /// With one of these extensions, else with this one: it is appended, because what follows a name's

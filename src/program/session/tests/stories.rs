@@ -24,9 +24,10 @@ pub use dice::{Dice, Roll};
 
 use super::*;
 use crate::session::actions::{Action, PartAction, StrokeAction};
+use crate::session::script;
 use play::story;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Stories of the ordinary test run.
 const FEW: u64 = 200;
@@ -116,6 +117,43 @@ fn whatever_happens_in_a_night_documents_are_kept_undone_and_drawn_the_same() {
         story => story,
     };
     assert_no_faults(first, number_from_environment("PROPTEST_CASES").unwrap_or(MANY));
+}
+
+/// Stories as scripts with their pictures, for a program that is tried from outside
+/// (`dist/web/test.mjs`). `RILIEVO_STORIES`: the folder they are written to; `PROPTEST_CASES`: how
+/// many.
+#[test]
+#[ignore = "writes files"]
+fn stories_are_written_with_their_pictures() {
+    let target = std::env::var_os("RILIEVO_STORIES").map(PathBuf::from).expect("RILIEVO_STORIES");
+    starts::write_assets(&target);
+    let count = number_from_environment("PROPTEST_CASES").unwrap_or(12) as usize;
+    let written = (0..).filter(|seed| try_write(*seed, &target)).take(count);
+    assert_eq!(written.count(), count);
+}
+
+/// Writes the story of a seed, and the picture that it ends with; not where it leaves no document,
+/// or opens a file that it wrote.
+fn try_write(seed: u64, target: &Path) -> bool {
+    let folder = starts::StoryFolder::new();
+    let played = story(seed, &folder);
+    let here = format!("{}/", folder.path().display());
+    let lines = played.actions.iter().map(|action| action.to_value().to_string() + "\n");
+    let text = lines.collect::<String>().replace(&here, "");
+    let script = target.join(format!("story-{seed}.jsonl"));
+    std::fs::write(&script, text).unwrap();
+    let left = script::play(&script, &Progress::default()).ok().flatten();
+    let shown = left.and_then(|mut left| left.open_documents.pop());
+    let is_written = shown.is_some_and(|open| {
+        let (file, terms) = (script.with_extension("png"), Overwrite::Anything.into());
+        let settings = ExportSettings::default();
+        actions::files::export(open.document(), &file, &settings, terms, &Progress::default())
+            .is_ok()
+    });
+    if !is_written {
+        std::fs::remove_file(script).unwrap();
+    }
+    is_written
 }
 
 /// A word that is spelled wrongly would weigh nothing.
