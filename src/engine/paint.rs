@@ -67,7 +67,8 @@ pub use gradient::{Gradient, GradientStop};
 pub use image::{PictureOrigin, PictureSource, PlacedImage, Placement};
 pub use liquify::{LiquifySettings, LiquifyStroke, LiquifyTool};
 pub use path::{
-    Figure, FigureKind, LivePath, PathCap, PathGeometry, PathJoin, PathNode, PathRule, Subpath,
+    Figure, FigureKind, FlatLine, LinePlace, LivePath, PathCap, PathGeometry, PathJoin, PathNode,
+    PathRule, Subpath,
 };
 pub use ramp_colors::RampColors;
 pub use ramp_style::RampStyle;
@@ -77,4 +78,4 @@ pub use scene::{ImageFilter, Scene};
 pub use selection::{Selection, StrokeSelection};
 pub use stabilizer::StabilizedPen;
 pub use stroke::{ActiveStrokes, Backdrop, Stroke};
-pub use text::{Text, TextAlign, TextRun, TextStyle};
+pub use text::{Text, TextAlign, TextPath, TextRun, TextStyle};

@@ -21,7 +21,7 @@ pub fn write(path: &LivePath) -> String {
 }
 
 /// One line in the commands of SVG's path data.
-fn line(line: &Subpath) -> String {
+pub(crate) fn line(line: &Subpath) -> String {
     let mut out = String::new();
     let Some(first) = line.nodes.first() else { return out };
     let point = |p: Vec2| format!("{} {}", number(p.x), number(p.y));

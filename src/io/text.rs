@@ -2,10 +2,12 @@
 //! the same on every machine. Floor 5. Not here: what a text says (`paint::text`), SVG files (`svg`).
 //!
 //! A text becomes an SVG with one `text` element a line, which `usvg` shapes: ligatures, kerning,
-//! scripts from right to left, letters along a curve. Its outlines are the file of the picture.
+//! scripts from right to left, letters along a curve; columns are shaped here (`columns`). Its outlines
+//! are the file of the picture.
 
 #![warn(missing_docs)]
 
+mod columns;
 mod lines;
 mod markup;
 
@@ -37,8 +39,12 @@ pub struct TextPicture {
 pub struct Caret {
     /// The bytes of the text before it.
     pub byte: usize,
+    /// Of which line, counted from 0.
+    pub line: usize,
     /// Where it stands on the baseline, px from where the first baseline begins.
     pub at: Vec2,
+    /// Where the baseline goes there, of length 1: down in columns.
+    pub direction: Vec2,
     /// The size of the type, px.
     pub height: f32,
 }
@@ -97,8 +103,11 @@ fn parse(markup: &str) -> Result<Tree> {
 /// All that is inked, in whole px, with a pixel around it; a pixel where nothing is.
 fn bounds(tree: &Tree) -> Rect {
     let mut bounds: Option<usvg::Rect> = None;
-    for text in texts(tree.root()) {
-        let inked = text.flattened().abs_stroke_bounding_box();
+    let texts = texts(tree.root());
+    let lines = texts.iter().map(|text| text.flattened().abs_stroke_bounding_box());
+    // Columns are outlines already.
+    let columns = texts.is_empty().then(|| tree.root().abs_stroke_bounding_box());
+    for inked in lines.chain(columns) {
         let is_inked = inked.width() > 0.0 || inked.height() > 0.0;
         if is_inked {
             let joined = bounds.map_or(Some(inked), |known| union(known, inked));
@@ -138,9 +147,15 @@ fn texts(group: &usvg::Group) -> Vec<&usvg::Text> {
 
 /// A line of text as it is measured: where each of its letters begins along the line, and its end.
 fn advances(text: &Text, line: &Line) -> Vec<(usize, f32)> {
+    if text.is_in_columns() {
+        let mut column = columns::lay(line);
+        let begin = columns::begin(text.align, column.length());
+        column.letters.iter_mut().for_each(|(_, at)| *at += begin);
+        return column.letters;
+    }
     let tree = parse(&markup::of_lines(text, std::slice::from_ref(line)));
     let Ok(tree) = tree else { return vec![(0, 0.0)] };
-    lines::letters(text, line, &texts(tree.root()))
+    lines::letters(line, &texts(tree.root()))
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ mod subpath;
 pub use drawing::PathDrawing;
 pub use figure::{Figure, FigureKind};
 pub use fit::fit_closed;
-pub use flatten::FlatLine;
+pub use flatten::{FlatLine, LinePlace};
 pub use live_path::{LivePath, PathCap, PathGeometry, PathJoin, PathRule};
 pub use nodes::{NodeHandle, PathPlace};
 pub use subpath::{PathNode, Subpath};

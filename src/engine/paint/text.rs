@@ -4,6 +4,7 @@
 use crate::math::range::Range;
 use crate::math::srgb::Color;
 use crate::math::{Vec2, range};
+use crate::paint::Subpath;
 
 /// A text. Lines end with `\n`.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +21,19 @@ pub struct Text {
     pub vertical: bool,
     /// Degrees of a circle along which a line without `width` runs: positive arches up.
     pub arc: f32,
+    /// A line along which it runs instead, its points from where the first baseline would begin.
+    pub path: Option<TextPath>,
     /// Where the first baseline begins, px from the corner of the picture that shows it.
     pub origin: Vec2,
+}
+
+/// A line that a text runs along. Where it ends, letters are left out; a closed one goes on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextPath {
+    /// What it runs along.
+    pub line: Subpath,
+    /// How much farther along it than the alignment says, px.
+    pub shift: f32,
 }
 
 /// A piece of text in one style.
@@ -105,6 +117,7 @@ impl Default for Text {
             width: 0.0,
             vertical: false,
             arc: 0.0,
+            path: None,
             origin: Vec2::ZERO,
         }
     }
@@ -117,6 +130,8 @@ impl Text {
     pub const WIDTH: Range = 0.0..=65_536.0;
     /// The range of an arc, degrees.
     pub const ARC: Range = -360.0..=360.0;
+    /// The range of a shift along a path, px.
+    pub const SHIFT: Range = range::COORDINATE;
     /// The range of its origin, px.
     pub const ORIGIN: Range = range::COORDINATE;
     /// The most letters.
@@ -132,6 +147,11 @@ impl Text {
     /// All that it says.
     pub fn string(&self) -> String {
         self.runs.iter().map(|run| run.string.as_str()).collect()
+    }
+
+    /// Whether its lines are columns.
+    pub fn is_in_columns(&self) -> bool {
+        self.vertical && self.path.is_none()
     }
 
     /// The style of the letter that ends at a byte, or of the first one; of an empty text the

@@ -17,7 +17,9 @@ impl RecipeValue for LivePath {
         let mut out = JsonObject::default();
         match &self.geometry {
             PathGeometry::Figure(figure) => out.set("figure", figure.to_json()),
-            PathGeometry::Nodes(lines) => out.set("lines", lines.iter().map(write_line).collect()),
+            PathGeometry::Nodes(lines) => {
+                out.set("lines", lines.iter().map(RecipeValue::to_json).collect())
+            }
         }
         out.set_some("fill", self.fill, object::color);
         out.word("rule", &PathRule::ALL, self.rule, plain.rule);
@@ -88,28 +90,35 @@ impl RecipeValue for Figure {
 }
 
 /// `{ "nodes": [ … ], "closed": true }`.
-fn write_line(line: &Subpath) -> Value {
-    let mut out = JsonObject::default();
-    out.set("nodes", line.nodes.iter().map(write_node).collect());
-    out.flag("closed", line.closed, false);
-    out.into_value()
+impl RecipeValue for Subpath {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        out.set("nodes", self.nodes.iter().map(write_node).collect());
+        out.flag("closed", self.closed, false);
+        out.into_value()
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields: Fields = node.fields()?;
+        let nodes = fields.require("nodes")?.list(LivePath::MOST_NODES)?;
+        let nodes = nodes.iter().map(read_node).collect::<Result<Vec<_>>>()?;
+        let line = Subpath { nodes, closed: fields.boolean("closed", false)? };
+        fields.finish()?;
+        Ok(line)
+    }
 }
 
 fn read_lines(node: &JsonNode) -> Result<Vec<Subpath>> {
     let mut count = 0;
     let mut lines = Vec::new();
     for item in node.list(LivePath::MOST_LINES)? {
-        let mut fields: Fields = item.fields()?;
-        let nodes = fields.require("nodes")?;
-        let nodes =
-            nodes.list(LivePath::MOST_NODES)?.iter().map(read_node).collect::<Result<Vec<_>>>()?;
-        count += nodes.len();
+        let line = Subpath::from_json(&item)?;
+        count += line.nodes.len();
         if count > LivePath::MOST_NODES {
             let most = LivePath::MOST_NODES;
             return Err(node.too_large(format!("has more than {most} nodes")));
         }
-        lines.push(Subpath { nodes, closed: fields.boolean("closed", false)? });
-        fields.finish()?;
+        lines.push(line);
     }
     Ok(lines)
 }

@@ -2,7 +2,7 @@
 
 use super::value::RecipeValue;
 use crate::json::{Fields, JsonNode, JsonObject, object};
-use crate::paint::{Text, TextAlign, TextRun, TextStyle};
+use crate::paint::{Subpath, Text, TextAlign, TextPath, TextRun, TextStyle};
 use crate::{Error, Result};
 use serde_json::Value;
 
@@ -25,6 +25,7 @@ impl RecipeValue for Text {
         out.number("width", self.width, plain.width);
         out.flag("vertical", self.vertical, plain.vertical);
         out.number("arc", self.arc, plain.arc);
+        out.set_some("path", self.path.as_ref(), RecipeValue::to_json);
         if self.origin != plain.origin {
             out.set("origin", object::point(self.origin));
         }
@@ -47,6 +48,7 @@ impl RecipeValue for Text {
             width: fields.number("width", plain.width, Text::WIDTH)?,
             vertical: fields.boolean("vertical", plain.vertical)?,
             arc: fields.number("arc", plain.arc, Text::ARC)?,
+            path: fields.get("path").map(|node| TextPath::from_json(&node)).transpose()?,
             origin: fields.point("origin", plain.origin)?,
         };
         fields.finish()?;
@@ -56,6 +58,24 @@ impl RecipeValue for Text {
             return Err(node.too_large(format!("has {letters} letters; {most} are allowed")));
         }
         Ok(text)
+    }
+}
+
+/// `{ "line": { "nodes": [ … ] }, "shift": 12 }`.
+impl RecipeValue for TextPath {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        out.set("line", self.line.to_json());
+        out.number("shift", self.shift, 0.0);
+        out.into_value()
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let line = Subpath::from_json(&fields.require("line")?)?;
+        let path = TextPath { line, shift: fields.number("shift", 0.0, Text::SHIFT)? };
+        fields.finish()?;
+        Ok(path)
     }
 }
 
@@ -116,6 +136,7 @@ fn write_run(out: &mut JsonObject, run: &TextRun) {
 mod tests {
     use super::*;
     use crate::math::vec2;
+    use crate::paint::PathNode;
 
     #[test]
     fn a_text_is_read_as_it_was_written() {
@@ -125,6 +146,12 @@ mod tests {
             style.outline = 2.5;
         });
         (text.arc, text.width, text.origin) = (90.0, 200.0, vec2(1.0, 30.0));
+        assert_eq!(Text::from_value(&text.to_json()), Ok(text.clone()));
+        let nodes = vec![
+            PathNode::smooth(vec2(1.0, 2.0), vec2(9.0, 0.0)),
+            PathNode::corner(vec2(90.0, 4.5)),
+        ];
+        text.path = Some(TextPath { line: Subpath { nodes, closed: true }, shift: -3.5 });
         assert_eq!(Text::from_value(&text.to_json()), Ok(text));
         let short = Text::new("Hello", TextStyle::default());
         assert_eq!(short.to_json(), serde_json::json!({ "string": "Hello" }));

@@ -2,7 +2,8 @@
 
 use super::Caret;
 use crate::math::{Vec2, vec2};
-use crate::paint::{Text, TextAlign, TextRun};
+use crate::paint::{FlatLine, Text, TextAlign, TextPath, TextRun};
+use crate::path_svg;
 use crate::{Error, Result};
 use resvg::usvg;
 use std::fmt::Write;
@@ -17,8 +18,22 @@ pub(super) struct Line {
     pub start: usize,
     /// Where its baseline begins, ends or has its middle, px, by the alignment.
     pub at: Vec2,
-    /// The path that it runs along instead, as SVG writes it.
-    pub curve: Option<String>,
+    /// What it runs along instead.
+    pub curve: Option<Curve>,
+}
+
+/// What a line runs along.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    /// As SVG writes it.
+    pub data: String,
+    /// In straight pieces.
+    flat: FlatLine,
+    /// How far along it the line begins, has its middle or ends, px, by this alignment.
+    pub along: f32,
+    pub align: TextAlign,
+    /// How far to the right of it the baseline lies, px.
+    pub below: f32,
 }
 
 impl Line {
@@ -66,7 +81,7 @@ pub(super) fn lines(text: &Text) -> Result<Vec<Line>> {
     }
     let mut lines = Vec::new();
     for paragraph in paragraphs(text) {
-        if text.width > 0.0 && text.arc == 0.0 {
+        if text.width > 0.0 && text.arc == 0.0 && text.path.is_none() {
             lines.extend(break_lines(text, paragraph));
         } else {
             lines.push(paragraph);
@@ -153,16 +168,42 @@ fn place(text: &Text, lines: &mut [Line]) {
             TextAlign::Middle => text.width / 2.0,
             TextAlign::End => text.width,
         };
-        lines[i].at = if text.vertical { vec2(-along, side) } else { vec2(side, along) };
-        if text.arc != 0.0 && !text.vertical {
+        lines[i].at = if text.is_in_columns() { vec2(-along, side) } else { vec2(side, along) };
+        if let Some(path) = &text.path {
+            lines[i].curve = Some(along_path(path, text.align, along));
+        } else if text.arc != 0.0 && !text.vertical {
             lines[i].curve = Some(arc(text, &lines[0], along));
         }
     }
 }
 
+/// A path that a line runs along, so far below it. One that is closed goes around twice, so that
+/// text that begins anywhere on it goes once around.
+fn along_path(path: &TextPath, align: TextAlign, below: f32) -> Curve {
+    let mut flat = path.line.flatten(&Some).unwrap_or_default();
+    let length = flat.length();
+    let share = match align {
+        TextAlign::Start => 0.0,
+        TextAlign::Middle => 0.5,
+        TextAlign::End => 1.0,
+    };
+    let mut along = share * length + path.shift;
+    let mut data = path_svg::line(&path.line);
+    if path.line.closed && length > 0.0 {
+        along = along.rem_euclid(length) + share * length;
+        data = format!("{data} {data}").replace(" Z M", " L");
+        flat.points.extend_from_within(..);
+        flat.widths.extend_from_within(..);
+    }
+    Curve { data, flat, along, align, below }
+}
+
+/// The straight pieces of a circle that carets stand on.
+const ARC_PIECES: usize = 360;
+
 /// The circle along which a line runs whose distance from the first one is given. The middle of
 /// the first line stays where it is.
-fn arc(text: &Text, first: &Line, along: f32) -> String {
+fn arc(text: &Text, first: &Line, along: f32) -> Curve {
     let measured = super::advances(text, first);
     let (start, end) = (measured.first(), measured.last());
     let length = start.zip(end).map_or(0.0, |((_, from), (_, to))| to - from).max(1.0);
@@ -178,32 +219,36 @@ fn arc(text: &Text, first: &Line, along: f32) -> String {
     // where letters hang, the bottom).
     let (y0, y1) = (along + up * 2.0 * radius, along);
     let sweep = if up > 0.0 { 1 } else { 0 };
-    let mut path = String::new();
+    let mut data = String::new();
     let _ = write!(
-        path,
+        data,
         "M{middle} {y0} A{radius} {radius} 0 0 {sweep} {middle} {y1} A{radius} {radius} 0 0 {sweep} {middle} {y0}"
     );
-    path
+    let center = vec2(middle, along + up * radius);
+    let points = (0..=ARC_PIECES).map(|piece| {
+        let turn = std::f32::consts::TAU * piece as f32 / ARC_PIECES as f32;
+        center + radius * up * vec2(-turn.sin(), turn.cos())
+    });
+    let flat = FlatLine { points: points.collect(), widths: vec![1.0; ARC_PIECES + 1] };
+    let along = flat.length() / 2.0;
+    Curve { data, flat, along, align: TextAlign::Middle, below: 0.0 }
 }
 
 /// Where the letters of a line that was laid out begin: bytes within the line, and px along it;
 /// the last one is its end. A letter from right to left begins at its right side.
-pub(super) fn letters(text: &Text, line: &Line, laid: &[&usvg::Text]) -> Vec<(usize, f32)> {
+pub(super) fn letters(line: &Line, laid: &[&usvg::Text]) -> Vec<(usize, f32)> {
     let string = line.string();
-    let along = |x: f32, y: f32| if text.vertical { y - line.at.y } else { x - line.at.x };
+    let along = |x: f32| x - line.at.x;
     let glyphs = laid.iter().flat_map(|text| text.layouted()).flat_map(|s| &s.positioned_glyphs);
     let mut glyphs: Vec<(&str, f32, f32)> = glyphs
         .map(|glyph| {
             let at = glyph.transform();
-            let begin = along(at.tx, at.ty);
+            let begin = along(at.tx);
             (glyph.text.as_str(), begin, begin)
         })
         .collect();
-    let side = laid.first().map(|laid| {
-        let bounds = laid.abs_bounding_box();
-        if text.vertical { bounds.bottom() } else { bounds.right() }
-    });
-    let end = side.map_or(0.0, |side| along(side, side));
+    let side = laid.first().map(|laid| laid.abs_bounding_box().right());
+    let end = side.map_or(0.0, along);
     for i in 0..glyphs.len() {
         glyphs[i].2 = glyphs.get(i + 1).map_or(end, |next| next.1);
     }
@@ -234,20 +279,47 @@ fn is_from_right_to_left(string: &str) -> bool {
         .is_some_and(|c| matches!(u32::from(c), 0x590..=0x8ff | 0xfb1d..=0xfdff | 0xfe70..=0xfeff))
 }
 
+impl Curve {
+    /// Where a place of a line that was measured straight lies, and the direction of the baseline
+    /// there.
+    fn place(&self, along: f32, measured: &[(usize, f32)]) -> (Vec2, Vec2) {
+        let ends = measured.first().zip(measured.last());
+        let (from, to) = ends.map_or((0.0, 0.0), |((_, from), (_, to))| (*from, *to));
+        let held = match self.align {
+            TextAlign::Start => from,
+            TextAlign::Middle => 0.5 * (from + to),
+            TextAlign::End => to,
+        };
+        let place = self.flat.place_at(self.along + along - held);
+        place.map_or((Vec2::ZERO, Vec2::X), |place| {
+            (place.at + self.below * place.direction.perp(), place.direction)
+        })
+    }
+}
+
 /// The places between the letters of a text.
 pub(super) fn carets(text: &Text, lines: &[Line]) -> Vec<Caret> {
     let mut found = Vec::new();
-    for line in lines {
+    for (number, line) in lines.iter().enumerate() {
         let straight = Line { curve: None, ..line.clone() };
         let measured = super::advances(text, &straight);
         let string = line.string();
         let ends = string.char_indices().map(|(byte, _)| byte).chain([string.len()]);
         for byte in ends {
             let along = interpolate(&measured, byte);
-            let at =
-                if text.vertical { line.at + vec2(0.0, along) } else { line.at + vec2(along, 0.0) };
-            let height = text.style_at(line.start + byte).size;
-            found.push(Caret { byte: line.start + byte, at, height });
+            let (at, direction) = match &line.curve {
+                Some(curve) => curve.place(along, &measured),
+                None if text.is_in_columns() => (line.at + vec2(0.0, along), Vec2::Y),
+                None => (line.at + vec2(along, 0.0), Vec2::X),
+            };
+            let byte = line.start + byte;
+            found.push(Caret {
+                byte,
+                line: number,
+                at,
+                direction,
+                height: text.style_at(byte).size,
+            });
         }
     }
     found

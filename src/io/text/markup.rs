@@ -1,6 +1,7 @@
 //! The SVG of a text. Floor 5.
 
-use super::lines::Line;
+use super::columns;
+use super::lines::{Curve, Line};
 use crate::math::Rect;
 use crate::math::srgb::Color;
 use crate::paint::{Text, TextAlign, TextRun, TextStyle};
@@ -14,24 +15,23 @@ const NAMESPACES: &str =
 pub(super) fn of_lines(text: &Text, lines: &[Line]) -> String {
     let mut out = format!(r#"<svg {NAMESPACES} width="1" height="1">"#);
     for (i, line) in lines.iter().enumerate() {
-        if line.curve.is_none() {
+        if text.is_in_columns() {
+            push_column(&mut out, text, line);
+        } else if line.curve.is_none() {
             let (x, y) = (line.at.x, line.at.y);
-            let mode = if text.vertical { r#" writing-mode="tb""# } else { "" };
             let anchor = anchor(text.align);
+            let runs = runs(&line.pieces);
             let _ = write!(
                 out,
-                r#"<text xml:space="preserve" x="{x}" y="{y}" text-anchor="{anchor}"{mode}>"#
+                r#"<text xml:space="preserve" x="{x}" y="{y}" text-anchor="{anchor}">{runs}</text>"#
             );
-            line.pieces.iter().for_each(|run| push_run(&mut out, run));
-            out.push_str("</text>");
-        } else if let Some(curve) = &line.curve {
+        } else if let Some(Curve { data, along, align, below, .. }) = &line.curve {
+            let (anchor, runs) = (anchor(*align), runs(&line.pieces));
             let _ = write!(
                 out,
-                r##"<path id="c{i}" fill="none" d="{curve}"/>
-<text xml:space="preserve" text-anchor="middle"><textPath xlink:href="#c{i}" startOffset="50%">"##
+                r##"<path id="c{i}" fill="none" d="{data}"/>
+<text xml:space="preserve" text-anchor="{anchor}"><textPath xlink:href="#c{i}" startOffset="{along}"><tspan dy="{below}">{runs}</tspan></textPath></text>"##
             );
-            line.pieces.iter().for_each(|run| push_run(&mut out, run));
-            out.push_str("</textPath></text>");
         }
     }
     out.push_str("</svg>");
@@ -61,8 +61,25 @@ fn anchor(align: TextAlign) -> &'static str {
     }
 }
 
+/// Runs as `tspan` elements.
+fn runs(pieces: &[TextRun]) -> String {
+    let mut out = String::new();
+    pieces.iter().for_each(|run| push_run(&mut out, run));
+    out
+}
+
+/// The outlines of a column.
+fn push_column(out: &mut String, text: &Text, line: &Line) {
+    let column = columns::lay(line);
+    let (x, y) = (line.at.x, line.at.y + columns::begin(text.align, column.length()));
+    for (data, style) in column.outlines.iter().filter(|(data, _)| !data.is_empty()) {
+        let look = look(style);
+        let _ = write!(out, r#"<path transform="translate({x} {y})" d="{data}"{look}/>"#);
+    }
+}
+
 fn push_run(out: &mut String, run: &TextRun) {
-    let TextStyle { family, size, weight, italic, color, tracking, kerning, .. } = &run.style;
+    let TextStyle { family, size, weight, italic, tracking, kerning, .. } = &run.style;
     let family = if family.is_empty() {
         "sans-serif".to_owned()
     } else {
@@ -71,26 +88,32 @@ fn push_run(out: &mut String, run: &TextRun) {
     let slant = if *italic { r#" font-style="italic""# } else { "" };
     let kern = if *kerning { "" } else { r#" font-kerning="none""# };
     let spacing = tracking * size / 1000.0;
+    let (look, string) = (look(&run.style), escape(&run.string));
     let _ = write!(
         out,
         r#"<tspan font-family="{family}" font-size="{size}" font-weight="{weight}"
-letter-spacing="{spacing}"{slant}{kern} fill="{}" fill-opacity="{}""#,
-        hex(*color),
-        f32::from(color.a) / 255.0
+letter-spacing="{spacing}"{slant}{kern}{look}>{string}</tspan>"#
     );
-    if run.style.outline > 0.0 {
-        let color = run.style.outline_color;
+}
+
+/// The colors of letters, as attributes.
+fn look(style: &TextStyle) -> String {
+    let opacity = |color: Color| f32::from(color.a) / 255.0;
+    let mut out =
+        format!(r#" fill="{}" fill-opacity="{}""#, hex(style.color), opacity(style.color));
+    if style.outline > 0.0 {
+        let color = style.outline_color;
         // The half of the line that lies within the letters is beneath them.
         let _ = write!(
             out,
             r#" stroke="{}" stroke-opacity="{}" stroke-width="{}"
 stroke-linejoin="round" paint-order="stroke""#,
             hex(color),
-            f32::from(color.a) / 255.0,
-            2.0 * run.style.outline
+            opacity(color),
+            2.0 * style.outline
         );
     }
-    let _ = write!(out, ">{}</tspan>", escape(&run.string));
+    out
 }
 
 fn hex(Color { r, g, b, .. }: Color) -> String {

@@ -131,3 +131,92 @@ fn a_text_is_drawn_larger_where_it_is_seen_larger() {
     let shares = ink(&picture, 1, 1)[0][0] * 4.0 / ink(&twice, 1, 1)[0][0];
     assert!((shares - 1.0).abs() < 0.01, "{shares}");
 }
+
+#[test]
+fn letters_stand_on_their_path_and_carets_between_them() {
+    use crate::paint::{PathNode, Subpath, TextPath};
+    // A square that is written on from inside to outside: its corner, then up along its right side.
+    let corners = [vec2(0.0, 0.0), vec2(0.0, -100.0), vec2(100.0, -100.0), vec2(100.0, 0.0)];
+    let nodes = corners.map(PathNode::corner).to_vec();
+    let on = |closed, shift, align| {
+        let line = Subpath { nodes: nodes.clone(), closed };
+        Text { path: Some(TextPath { line, shift }), align, ..text("abcd") }
+    };
+    let up = on(false, 10.0, TextAlign::Start);
+    let places = carets(&up).unwrap();
+    assert_eq!(places.len(), 5);
+    for caret in &places {
+        assert!(caret.at.x.abs() < 0.1 && caret.direction.distance(-Vec2::Y) < 1e-3, "{caret:?}");
+    }
+    assert!(
+        (places[0].at.y + 10.0).abs() < 0.1 && (places[4].at.y + 58.2).abs() < 0.5,
+        "{places:?}"
+    );
+    // The letters are left of the line that goes up.
+    let laid = layout(&up);
+    let (left, right) = (-laid.text.origin.x, laid.size.x - laid.text.origin.x);
+    assert!((-25.0..-10.0).contains(&left) && (0.0..8.0).contains(&right), "{left} {right}");
+    // Where an open line ends letters are left out; around a closed one they go on.
+    let width = |closed| layout(&on(closed, 280.0, TextAlign::Start)).picture.size;
+    assert!(width(false).width * width(false).height < width(true).width * width(true).height);
+    // Two lines: the second below the first.
+    let path = up.path.clone();
+    let second = carets(&Text { path, ..text("a\nb") }).unwrap();
+    assert!((second[2].at.x - 24.0).abs() < 0.1 && second[2].line == 1, "{second:?}");
+    // Nothing to run along: nothing is drawn.
+    let nowhere = TextPath { line: Subpath::default(), shift: 0.0 };
+    let lost = layout(&Text { path: Some(nowhere), ..text("abc") });
+    assert_eq!(lost.size, vec2(1.0, 1.0));
+}
+
+/// The box of a letter's outline in its column, in sizes of the type: left, top, right, bottom.
+fn box_in_column(letter: &str, family: &str) -> [f32; 4] {
+    let style = TextStyle { family: family.into(), size: 100.0, ..TextStyle::default() };
+    let words = Text { vertical: true, ..Text::new(letter, style) };
+    let column = columns::lay(&lines(&words).unwrap()[0]);
+    let numbers = column.outlines[0].0.split(|c: char| c.is_alphabetic() || c == ' ');
+    let numbers: Vec<f32> = numbers.filter_map(|number| number.parse().ok()).collect();
+    let side = |at: usize, of: fn(f32, f32) -> f32| {
+        numbers.iter().skip(at).step_by(2).copied().reduce(of).unwrap() / 100.0
+    };
+    [side(0, f32::min), side(1, f32::min), side(0, f32::max), side(1, f32::max)]
+}
+
+#[test]
+fn letters_of_lines_are_turned_in_columns_and_stand_around_the_axis() {
+    let [left, top, right, bottom] = box_in_column("l", "Hack");
+    assert!(bottom - top < right - left, "it stands: {left} {top} {right} {bottom}");
+    assert!(left < 0.0 && right > 0.0 && top >= 0.0 && bottom < 0.61);
+    let text = Text { vertical: true, ..text("abc") };
+    let places: Vec<Vec2> = carets(&text).unwrap().iter().map(|caret| caret.at).collect();
+    let steps: Vec<f32> = places.windows(2).map(|pair| pair[1].y - pair[0].y).collect();
+    assert!(steps.iter().all(|step| (step - 12.04).abs() < 0.1), "{places:?}");
+    let ends = [TextAlign::Start, TextAlign::Middle, TextAlign::End]
+        .map(|align| carets(&Text { align, ..text.clone() }).unwrap().last().unwrap().at.y);
+    assert!((ends[0] - 36.1).abs() < 0.1 && (ends[1] - 18.06).abs() < 0.1 && ends[2].abs() < 0.1);
+}
+
+#[test]
+fn japanese_columns_have_the_forms_that_the_font_has_for_them() {
+    const FAMILY: &str = "Noto Sans CJK JP";
+    if !families().iter().any(|family| family == FAMILY) {
+        eprintln!("skipped: {FAMILY} is not installed");
+        return;
+    }
+    let middle = |letter: &str| {
+        let [left, top, right, bottom] = box_in_column(letter, FAMILY);
+        vec2(0.5 * (left + right), 0.5 * (top + bottom))
+    };
+    // A comma and a small kana stand in the upper right of their square, which is 1 wide and high.
+    for letter in ["、", "。", "ょ", "ッ"] {
+        let at = middle(letter);
+        assert!(at.x > 0.02 && at.y < 0.5, "{letter}: {at}");
+    }
+    assert!(middle("本").distance(vec2(0.0, 0.5)) < 0.06);
+    // A bracket that opens is at the lower end of its square, and wider than it is high.
+    let [left, top, right, bottom] = box_in_column("「", FAMILY);
+    assert!(top > 0.4 && right - left > bottom - top, "{left} {top} {right} {bottom}");
+    // A long vowel sign stands.
+    let [left, top, right, bottom] = box_in_column("ー", FAMILY);
+    assert!(bottom - top > 2.0 * (right - left), "{left} {top} {right} {bottom}");
+}

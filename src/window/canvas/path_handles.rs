@@ -50,7 +50,8 @@ fn draw_line(painter: &Painter, points: Vec<Pos2>) {
 fn draw_figure(painter: &Painter, figure: &Figure, on_screen: &impl Fn(Vec2) -> Option<Pos2>) {
     let handles: Option<Vec<Pos2>> = figure.handles().into_iter().map(on_screen).collect();
     let Some(handles) = handles else { return };
-    draw_line(painter, handles.iter().chain(&handles[..1]).copied().collect());
+    let corners = &handles[..handles.len().min(figure.box_handles().len())];
+    draw_line(painter, corners.iter().chain(&corners[..1]).copied().collect());
     handles.iter().for_each(|at| draw_square(painter, *at, false));
     if let Some(at) = on_screen(figure.center()) {
         for look in LOOKS {

@@ -31,27 +31,24 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     let typed = painter.ctx().data(|data| data.get_temp::<Option<TypedRange>>(typed_range()));
     let Some(typed) = typed.flatten().filter(|typed| typed.layer == layer.id) else { return };
     let carets = carets(painter, text);
-    let ends = |caret: &Caret, byte_along: Vec2| {
+    let ends = |caret: &Caret| {
         let at = text.origin + caret.at;
         let (up, down) = (ASCENT * caret.height, DESCENT * caret.height);
-        let across = if text.vertical { vec2(1.0, 0.0) } else { vec2(0.0, -1.0) };
-        Some([
-            on_screen(at + across * up + byte_along)?,
-            on_screen(at - across * down + byte_along)?,
-        ])
+        let across = -caret.direction.perp();
+        Some([on_screen(at + across * up)?, on_screen(at - across * down)?])
     };
     for pair in carets.windows(2) {
         let is_selected = typed.bytes.contains(&pair[0].byte) && pair[1].byte > pair[0].byte;
-        let is_on_line = pair[1].at.y == pair[0].at.y || text.vertical;
+        let is_on_line = pair[1].line == pair[0].line;
         if let (true, Some([a, b]), Some([d, c])) =
-            (is_selected && is_on_line, ends(&pair[0], Vec2::ZERO), ends(&pair[1], Vec2::ZERO))
+            (is_selected && is_on_line, ends(&pair[0]), ends(&pair[1]))
         {
             let tint = Color32::from_rgba_unmultiplied(60, 130, 240, 90);
             painter.add(Shape::convex_polygon(vec![a, b, c, d], tint, Stroke::NONE));
         }
     }
     let caret = carets.iter().rev().find(|caret| caret.byte == typed.caret);
-    if let Some([a, b]) = caret.and_then(|caret| ends(caret, Vec2::ZERO)) {
+    if let Some([a, b]) = caret.and_then(ends) {
         for stroke in [Stroke::new(3.0, Color32::WHITE), Stroke::new(1.4, Color32::BLACK)] {
             painter.line_segment([a, b], stroke);
         }

@@ -1,7 +1,7 @@
 //! The submenu Path of the Layer menu. Floor 7.
 
 use super::row::{MenuCommand, row};
-use crate::document::Content;
+use crate::document::{Content, LayerId};
 use crate::io::path_svg;
 use crate::paint::LivePath;
 use crate::raster::coverage::SelectionMode;
@@ -34,16 +34,29 @@ fn act(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPa
     requests.actions.extend(session.layer_path().map(action).map(Action::Path));
 }
 
-/// The paint or stroke layer that is selected beside the path.
-fn painted_beside(session: &Session) -> Option<LayerPath> {
+/// The first of the selected layers that is of a kind.
+fn selected_beside(session: &Session, is_it: fn(&Content) -> bool) -> Option<LayerPath> {
     let open = session.active()?;
     let document = open.document();
-    let holds_strokes = |id: &crate::document::LayerId| {
-        let layer = document.layer(*id);
-        layer.is_some_and(|l| matches!(l.content, Content::Pixels(_) | Content::Strokes(_)))
-    };
-    let found = open.selected_layers().into_iter().find(holds_strokes)?;
-    LayerPath::of(document, found)
+    let is_of_kind = |id: &LayerId| document.layer(*id).is_some_and(|l| is_it(&l.content));
+    LayerPath::of(document, open.selected_layers().into_iter().find(is_of_kind)?)
+}
+
+/// The path and the text that are selected.
+fn path_and_text(session: &Session) -> Option<(LayerPath, LayerPath)> {
+    selected_beside(session, is_path).zip(selected_beside(session, is_text))
+}
+
+fn is_painted(content: &Content) -> bool {
+    matches!(content, Content::Pixels(_) | Content::Strokes(_))
+}
+
+fn is_path(content: &Content) -> bool {
+    matches!(content, Content::Image(live) if live.params().source.path().is_some())
+}
+
+fn is_text(content: &Content) -> bool {
+    matches!(content, Content::Image(live) if live.params().source.text().is_some())
 }
 
 pub const COMMANDS: &[MenuCommand] = &[
@@ -71,8 +84,19 @@ pub const COMMANDS: &[MenuCommand] = &[
          above it",
         has_path,
         |session, requests| {
-            let onto = painted_beside(session);
+            let onto = selected_beside(session, is_painted);
             act(session, requests, |layer| PathAction::Stroke { layer, onto });
+        },
+    ),
+    row(
+        "Text along path",
+        &[],
+        "The text that is selected with the path runs along it",
+        |session| path_and_text(session).is_some(),
+        |session, requests| {
+            let found = path_and_text(session);
+            let action = found.map(|(layer, text)| PathAction::CarryText { layer, text });
+            requests.actions.extend(action.map(Action::Path));
         },
     ),
     row(

@@ -5,7 +5,7 @@ use super::colors;
 use super::setter::LayerSetter;
 use crate::document::{Content, LayerId};
 use crate::io::text;
-use crate::paint::{Text, TextAlign, TextStyle};
+use crate::paint::{Text, TextAlign, TextPath, TextStyle};
 use crate::panel_layout::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
@@ -97,6 +97,9 @@ fn lines(ui: &mut Ui, words: &Text, setter: &mut LayerSetter) {
     let width = NumberField::new("Width", 0.0..=4000.0, "Where lines are broken; 0: nowhere");
     let width = width.px().decimals(0).row(ui, words.width);
     setter.take(width.map(|c| c.map(|to| changed(&|text| text.width = to))));
+    if let Some(path) = &words.path {
+        return along_path(ui, path, words, setter);
+    }
     let arc = NumberField::new("Arc", -360.0..=360.0, "Bends lines along a circle").degrees();
     let arc = arc.row(ui, words.arc);
     setter.take(arc.map(|c| c.map(|to| changed(&|text| text.arc = to))));
@@ -104,6 +107,25 @@ fn lines(ui: &mut Ui, words: &Text, setter: &mut LayerSetter) {
     if let Some(vertical) = check(ui, "Vertical", hint, words.vertical) {
         setter.set(changed(&|text| text.vertical = vertical), true);
     }
+}
+
+/// Where on its path a text is.
+fn along_path(ui: &mut Ui, path: &TextPath, words: &Text, setter: &mut LayerSetter) {
+    let worded = |path: Option<TextPath>| Property::Worded { text: Text { path, ..words.clone() } };
+    let shift = NumberField::new("Shift", -2000.0..=2000.0, "Moves the text along its path");
+    let shift = shift.px().decimals(0).row(ui, path.shift);
+    setter.take(shift.map(|c| c.map(|shift| worded(Some(TextPath { shift, ..path.clone() })))));
+    ui.horizontal(|ui| {
+        let hint = "The text runs the other way, on the other side of its path";
+        if ui.button("Other side").on_hover_text(hint).clicked() {
+            let line = path.line.reversed();
+            setter.set(worded(Some(TextPath { line, shift: 0.0 })), true);
+        }
+        let hint = "Lines are straight again";
+        if ui.button("Take off the path").on_hover_text(hint).clicked() {
+            setter.set(worded(None), true);
+        }
+    });
 }
 
 /// Typing on the canvas: a field that is not seen, for the text that the text tool was pressed on.

@@ -1,4 +1,5 @@
-//! Figures: rectangles, ellipses, polygons, stars, lines and arrows, as numbers. Floor 3.
+//! Figures: rectangles, ellipses, polygons, stars, lines, arrows and speech balloons, as numbers.
+//! Floor 3.
 
 use super::subpath::{PathNode, Subpath};
 use crate::math::number_settings::number_settings;
@@ -16,6 +17,7 @@ crate::named! {
         Star = "star" => ("Star", "Points around an inner circle"),
         Line = "line" => ("Line", "A straight line, drawn by its outline"),
         Arrow = "arrow" => ("Arrow", "A shaft and a head, which are filled"),
+        Balloon = "balloon" => ("Speech balloon", "An ellipse with a tail; drag the tip to who speaks"),
     }
 }
 
@@ -34,6 +36,12 @@ number_settings! {
         head: "Head", "The length of an arrow's head", 0.0..=65_536.0, 40.0, px;
         /// Of arrows.
         shaft: "Shaft", "The thickness of an arrow's shaft", 0.0..=65_536.0, 12.0, px;
+        /// Of balloons.
+        tail: "Tail", "How wide a balloon's tail begins", 0.0..=65_536.0, 24.0, px;
+        /// Of balloons: where the tail ends.
+        tail_x: "Tip, across", "From the middle, in halves of the width", -100.0..=100.0, -0.5;
+        /// Of balloons.
+        tail_y: "Tip, down", "From the middle, in halves of the height", -100.0..=100.0, 1.8;
         and
         /// What it is.
         kind: FigureKind = FigureKind::Rectangle;
@@ -48,6 +56,12 @@ number_settings! {
 /// The length of the handles of a quarter circle of radius 1.
 const QUARTER: f32 = 0.552_284_8;
 
+/// The handles that are corners of a box.
+const BOX_HANDLES: usize = 4;
+
+/// Half of the widest tail of a balloon, radians of its ellipse.
+const WIDEST_TAIL: f32 = 0.8;
+
 impl FigureKind {
     /// The names of the numbers that a figure of this kind shows.
     pub fn numbers(self) -> &'static [&'static str] {
@@ -58,6 +72,7 @@ impl FigureKind {
             FigureKind::Star => &["sides", "inner", "corner", "rotation"],
             FigureKind::Line => &[],
             FigureKind::Arrow => &["head", "shaft"],
+            FigureKind::Balloon => &["tail", "tail_x", "tail_y", "rotation"],
         }
     }
 
@@ -84,8 +99,8 @@ impl Figure {
         Vec2::from_angle(-self.rotation.to_radians())
     }
 
-    /// Where its four handles lie: the corners of its box, turned with it; of lines and arrows the
-    /// two ends.
+    /// Where its handles lie: the four corners of its box, turned with it, and of balloons the tip
+    /// of the tail; of lines and arrows the two ends.
     pub fn handles(&self) -> Vec<Vec2> {
         if self.kind.is_along_line() {
             return vec![self.from, self.to];
@@ -93,10 +108,37 @@ impl Figure {
         let (center, axis) = (self.center(), self.axis());
         let corners =
             [self.from, vec2(self.to.x, self.from.y), self.to, vec2(self.from.x, self.to.y)];
-        corners.map(|corner| center + axis.rotate(corner - center)).to_vec()
+        let corners = corners.map(|corner| center + axis.rotate(corner - center));
+        let tip = (self.kind == FigureKind::Balloon).then(|| self.tip());
+        corners.into_iter().chain(tip).collect()
     }
 
-    /// The same figure with one of its handles at a point; the opposite one stays.
+    /// The corners of the box that its handles span.
+    pub fn box_handles(&self) -> Vec<Vec2> {
+        self.handles().into_iter().take(BOX_HANDLES).collect()
+    }
+
+    /// From the middle to the tip of a balloon's tail, before it is turned.
+    fn tail(&self) -> Vec2 {
+        self.half() * vec2(self.tail_x, self.tail_y)
+    }
+
+    /// Where a balloon's tail ends.
+    fn tip(&self) -> Vec2 {
+        self.center() + self.axis().rotate(self.tail())
+    }
+
+    /// The same balloon with its tail to a point, as far as the numbers allow.
+    fn with_tip(&self, at: Vec2) -> Self {
+        let axis = self.axis();
+        let tail = vec2(axis.x, -axis.y).rotate(at - self.center()) / self.half();
+        let limit =
+            |to: f32, was: f32| if to.is_finite() { to.max(-100.0).min(100.0) } else { was };
+        Self { tail_x: limit(tail.x, self.tail_x), tail_y: limit(tail.y, self.tail_y), ..*self }
+    }
+
+    /// The same figure with one of its handles at a point; the opposite one stays, and so does the
+    /// tip of a balloon's tail.
     ///
     /// * `keeps_aspect`: its box keeps its aspect, a line one of eight directions.
     pub fn with_handle(&self, handle: usize, at: Vec2, keeps_aspect: bool) -> Self {
@@ -109,15 +151,20 @@ impl Figure {
                 _ => Self { to: at, ..*self },
             };
         }
-        let (fixed, axis) = (handles[(handle + 2) % 4], self.axis());
+        let is_balloon = self.kind == FigureKind::Balloon;
+        if is_balloon && handle >= BOX_HANDLES {
+            return self.with_tip(at);
+        }
+        let (fixed, axis) = (handles[(handle + 2) % BOX_HANDLES], self.axis());
         let mut across = vec2(axis.x, -axis.y).rotate(at - fixed);
         if keeps_aspect {
             across = with_aspect(across, self.half());
         }
         let center = fixed + 0.5 * axis.rotate(across);
         let signs = [vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)];
-        let half = 0.5 * across * signs[handle % 4];
-        Self { from: center - half, to: center + half, ..*self }
+        let half = 0.5 * across * signs[handle % BOX_HANDLES];
+        let next = Self { from: center - half, to: center + half, ..*self };
+        if is_balloon { next.with_tip(self.tip()) } else { next }
     }
 
     /// The same figure between two points of a drag.
@@ -166,6 +213,7 @@ impl Figure {
                 vec![Subpath { nodes, closed: false }]
             }
             FigureKind::Arrow => vec![self.arrow()],
+            FigureKind::Balloon => in_plane(balloon(half, self.tail(), self.tail)),
         }
     }
 
@@ -211,6 +259,29 @@ fn ellipse(half: Vec2) -> Subpath {
         PathNode::smooth(half * at, QUARTER * half * along)
     });
     Subpath { nodes: nodes.collect(), closed: true }
+}
+
+/// An ellipse with a tail of a width to a tip; without one where the tip is inside.
+fn balloon(half: Vec2, tip: Vec2, width: f32) -> Subpath {
+    let on_circle = tip / half;
+    let is_outside = on_circle.is_finite() && on_circle.length() > 1.0;
+    if !is_outside || width <= 0.0 {
+        return ellipse(half);
+    }
+    let middle = on_circle.to_angle();
+    let px_per_radian = (half * Vec2::from_angle(middle).perp()).length();
+    let aside = (0.5 * width / px_per_radian).min(WIDEST_TAIL);
+    // The rest of the ellipse in four curves.
+    let step = 0.25 * (std::f32::consts::TAU - 2.0 * aside);
+    let handle = 4.0 / 3.0 * (0.25 * step).tan();
+    let around = (0..=4).map(|i| {
+        let direction = Vec2::from_angle(middle + aside + step * i as f32);
+        let along = handle * half * direction.perp();
+        let before = if i > 0 { -along } else { Vec2::ZERO };
+        let after = if i < 4 { along } else { Vec2::ZERO };
+        PathNode { before, after, ..PathNode::corner(half * direction) }
+    });
+    Subpath { nodes: around.chain([PathNode::corner(tip)]).collect(), closed: true }
 }
 
 /// A closed polygon whose corners are arcs of a radius, or of what the sides leave room for.

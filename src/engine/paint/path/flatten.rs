@@ -1,7 +1,7 @@
 //! Paths as polygons: curves in straight pieces, for selections and strokes along them. Floor 3.
 
 use super::live_path::LivePath;
-use super::subpath::even_point_at;
+use super::subpath::{Subpath, even_point_at};
 use crate::math::Vec2;
 
 /// How far a straight piece may run from its curve, px.
@@ -23,26 +23,77 @@ impl LivePath {
     /// Its lines in straight pieces, each point moved by a map, such as onto the canvas. Lines with
     /// a point that the map has none for are left out.
     pub fn flatten(&self, map: impl Fn(Vec2) -> Option<Vec2>) -> Vec<FlatLine> {
-        let lines = self.subpaths();
-        let flat = lines.iter().map(|line| {
-            let mut out = FlatLine::default();
-            if let Some(first) = line.nodes.first() {
-                out.points.push(map(first.at)?);
-                out.widths.push(first.width);
+        self.subpaths().iter().filter_map(|line| line.flatten(&map)).collect()
+    }
+}
+
+impl Subpath {
+    /// The line in straight pieces, each point moved by a map; `None` where the map has none for
+    /// one.
+    pub fn flatten(&self, map: &impl Fn(Vec2) -> Option<Vec2>) -> Option<FlatLine> {
+        let mut out = FlatLine::default();
+        if let Some(first) = self.nodes.first() {
+            out.points.push(map(first.at)?);
+            out.widths.push(first.width);
+        }
+        for (i, curve) in self.curves().enumerate() {
+            let [a, b] = self.ends(i).map(|node| node.width);
+            let moved = [map(curve[0])?, map(curve[1])?, map(curve[2])?, map(curve[3])?];
+            let pieces = count_pieces(moved);
+            for piece in 1..=pieces {
+                let t = piece as f32 / pieces as f32;
+                out.points.push(map(even_point_at(curve, t))?);
+                out.widths.push(a + (b - a) * t);
             }
-            for (i, curve) in line.curves().enumerate() {
-                let [a, b] = line.ends(i).map(|node| node.width);
-                let moved = [map(curve[0])?, map(curve[1])?, map(curve[2])?, map(curve[3])?];
-                let pieces = count_pieces(moved);
-                for piece in 1..=pieces {
-                    let t = piece as f32 / pieces as f32;
-                    out.points.push(map(even_point_at(curve, t))?);
-                    out.widths.push(a + (b - a) * t);
-                }
-            }
-            Some(out)
+        }
+        Some(out)
+    }
+}
+
+/// A place on a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinePlace {
+    /// Where it is.
+    pub at: Vec2,
+    /// Where the line goes there, of length 1.
+    pub direction: Vec2,
+    /// How far it is along the line, px.
+    pub along: f32,
+}
+
+impl FlatLine {
+    /// Its straight pieces that have a length: where each begins along the line, its ends and its
+    /// direction.
+    fn pieces(&self) -> impl Iterator<Item = (f32, [Vec2; 2], Vec2)> + '_ {
+        let mut along = 0.0;
+        self.points.windows(2).filter_map(move |ends| {
+            let (from, length) = (along, ends[0].distance(ends[1]));
+            along += length;
+            (length > 0.0).then(|| (from, [ends[0], ends[1]], (ends[1] - ends[0]) / length))
+        })
+    }
+
+    /// Its length, px.
+    pub fn length(&self) -> f32 {
+        self.pieces().last().map_or(0.0, |(from, [a, b], _)| from + a.distance(b))
+    }
+
+    /// The place so many px along it; beyond its ends it goes straight on. `None` for a point.
+    pub fn place_at(&self, along: f32) -> Option<LinePlace> {
+        let mut pieces = self.pieces().peekable();
+        let first = *pieces.peek()?;
+        let (from, [a, _], direction) =
+            pieces.take_while(|(from, ..)| *from <= along).last().unwrap_or(first);
+        Some(LinePlace { at: a + direction * (along - from), direction, along })
+    }
+
+    /// Its place that is nearest to a point. `None` for a line that is a point.
+    pub fn nearest_place(&self, to: Vec2) -> Option<LinePlace> {
+        let places = self.pieces().map(|(from, [a, b], direction)| {
+            let along = (to - a).dot(direction).max(0.0).min(a.distance(b));
+            LinePlace { at: a + direction * along, direction, along: from + along }
         });
-        flat.flatten().collect()
+        places.min_by(|a, b| a.at.distance_squared(to).total_cmp(&b.at.distance_squared(to)))
     }
 }
 
@@ -71,6 +122,21 @@ mod tests {
             assert!(apart.abs() < 0.08, "{apart}");
         }
         assert!(points.len() < 130, "{}", points.len());
+    }
+
+    #[test]
+    fn places_along_a_line_and_nearest_to_points_agree() {
+        let corner = [vec2(0.0, 0.0), vec2(3.0, 0.0), vec2(3.0, 0.0), vec2(3.0, 4.0)];
+        let line = FlatLine { points: corner.to_vec(), widths: vec![1.0; 4] };
+        assert_eq!(line.length(), 7.0);
+        let place = line.place_at(5.0).unwrap();
+        assert_eq!((place.at, place.direction), (vec2(3.0, 2.0), vec2(0.0, 1.0)));
+        assert_eq!(line.place_at(-1.0).unwrap().at, vec2(-1.0, 0.0));
+        assert_eq!(line.place_at(9.0).unwrap().at, vec2(3.0, 6.0));
+        assert_eq!(line.nearest_place(vec2(5.0, 2.0)), Some(place));
+        let point = FlatLine { points: corner[1..3].to_vec(), widths: vec![1.0; 2] };
+        assert!(point.place_at(0.0).is_none() && point.nearest_place(Vec2::ZERO).is_none());
+        assert_eq!(point.length(), 0.0);
     }
 
     #[test]

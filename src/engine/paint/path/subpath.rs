@@ -70,6 +70,16 @@ impl Subpath {
         })
     }
 
+    /// The same line the other way round; a closed one begins where it began.
+    pub fn reversed(&self) -> Self {
+        let turned = |node: &PathNode| PathNode { before: node.after, after: node.before, ..*node };
+        let mut nodes: Vec<PathNode> = self.nodes.iter().rev().map(turned).collect();
+        if self.closed && !nodes.is_empty() {
+            nodes.rotate_right(1);
+        }
+        Self { nodes, ..*self }
+    }
+
     /// The same line, moved by a map of its plane.
     pub fn mapped(&self, point: impl Fn(Vec2) -> Vec2) -> Self {
         let nodes = self.nodes.iter().map(|node| {
@@ -105,6 +115,22 @@ pub(super) fn split_at([a, b, c, d]: [Vec2; 4], t: f32) -> [[Vec2; 4]; 2] {
 mod tests {
     use super::*;
     use crate::math::vec2;
+
+    #[test]
+    fn a_reversed_line_runs_through_the_same_points() {
+        let node = |x: f32, y: f32| PathNode::smooth(vec2(x, y), vec2(4.0, x));
+        let nodes = vec![node(0.0, 0.0), node(10.0, 5.0), node(20.0, -5.0)];
+        for closed in [false, true] {
+            let line = Subpath { nodes: nodes.clone(), closed };
+            let mut curves: Vec<_> =
+                line.reversed().curves().map(|[a, b, c, d]| [d, c, b, a]).collect();
+            curves.reverse();
+            assert_eq!(curves, line.curves().collect::<Vec<_>>());
+            assert_eq!(line.reversed().reversed(), line);
+        }
+        let closed = Subpath { nodes: nodes.clone(), closed: true };
+        assert_eq!(closed.reversed().nodes[0].at, nodes[0].at);
+    }
 
     #[test]
     fn a_cut_curve_runs_where_it_ran() {

@@ -1,7 +1,7 @@
 //! Actions on paths: figures and nodes that stay parameters. What cannot be done says why. Floor 6.
 //! Not here: another path for a layer, which is a property of it (`Property::Drawn`).
 
-use super::layers::slot_above;
+use super::layers::{slot_above, texts};
 use crate::paint::{Figure, LivePath, PathCap, PathGeometry, PathJoin, Selection};
 use crate::raster::coverage::SelectionMode;
 use crate::session::replay::{actions, as_in_recipes, names, record};
@@ -31,6 +31,8 @@ actions! {
         "select" Select { layer: LayerPath, how: SelectionMode }
         /// The brush in hand goes along it, on another layer, or on strokes above it.
         "stroke" Stroke { layer: LayerPath, onto: Option<LayerPath> }
+        /// A text runs along the path, where that lies now.
+        "carry text" CarryText { layer: LayerPath, text: LayerPath }
         /// A figure becomes nodes, which the path tool moves.
         "to nodes" ToNodes { layer: LayerPath }
     }
@@ -63,6 +65,7 @@ impl PathAction {
             PathAction::Draw { path } => draw(open, path),
             PathAction::ToNodes { layer } => to_nodes(open, layer),
             PathAction::Select { layer, how } => select(open, layer, *how),
+            PathAction::CarryText { layer, text } => carry_text(open, layer, text),
             PathAction::Settings { .. }
             | PathAction::End {}
             | PathAction::Back {}
@@ -144,6 +147,17 @@ fn stroke(session: &mut Session, path: &LayerPath, onto: Option<&LayerPath>) -> 
         if open.commit("Stroke path", next) {
             open.active_layer = select.or(open.active_layer);
         }
+    }
+    Ok(())
+}
+
+fn carry_text(open: &mut OpenDocument, path: &LayerPath, text: &LayerPath) -> Result<(), String> {
+    let document = open.document();
+    let [path, text] = [path, text].map(|layer| layer.find(document).map(|layer| layer.id));
+    let (path, text) = path.zip(text).ok_or(NO_LAYER)?;
+    if let Some(next) = texts::put_on_path(document, text, path)? {
+        open.commit("Text along path", next);
+        open.active_layer = Some(text);
     }
     Ok(())
 }

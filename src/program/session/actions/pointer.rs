@@ -14,8 +14,8 @@ use crate::tools::path;
 use crate::tools::snap::{SnapTargets, ViewAids};
 use crate::tools::unwrapped;
 use crate::tools::{
-    self, BrushTarget, DocumentChoice, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext,
-    ToolKind,
+    self, BrushTarget, DocumentChoice, GRAB_PT, GestureStart, ModifierKeys, Outcome, PenSample,
+    ToolContext, ToolKind,
 };
 use serde_json::Value;
 use std::sync::Arc;
@@ -96,7 +96,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         return session.notes.push(why);
     }
     if tool == ToolKind::Text {
-        return texts::press(session, pen.place());
+        return texts::press(session, pen.place(), GRAB_PT * px_per_pt);
     }
     let place = on_canvas(session, pen.place());
     let clone_offset = begin_clone(session, tool, pen, place);

@@ -16,10 +16,13 @@ fn write(lines: &[&str]) -> Session {
     session
 }
 
+/// The first layer that is a text.
 fn text_of(session: &Session) -> (String, PlacedImage) {
     let document = session.active().unwrap().document();
     let found = document.walk().into_iter().find_map(|(_, layer)| match &layer.content {
-        Content::Image(live) => Some((layer.name.clone(), live.params().clone())),
+        Content::Image(live) if live.params().source.text().is_some() => {
+            Some((layer.name.clone(), live.params().clone()))
+        }
         _ => None,
     });
     found.unwrap()
@@ -31,6 +34,63 @@ fn render(document: &Document) -> TileGrid {
 
 const WRITE: &str = r##"{"in":"layer","do":"write","at":[40,60],
 "text":{"string":"Rel","font":"Hack","size":30,"color":"#c03020"}}"##;
+
+/// A half circle above its ends, and a text of the same document.
+const BOW: &str = r##"{"in":"path","do":"draw","path":{"outline":1,"lines":[{"nodes":
+[[40,100,0,33,0,-80],[160,100,0,-80,0,33]]}]}}"##;
+
+/// Where the middle of all that is inked in a color of its own is, and how much that is.
+fn ink(session: &Session, is_inked: impl Fn([u8; 4]) -> bool) -> (f32, f32, usize) {
+    let picture = render(session.active().unwrap().document());
+    let all = (0..200 * 120).filter(|i| is_inked(picture.pixel(i % 200, i / 200)));
+    let (mut x, mut y, mut count) = (0.0, 0.0, 0);
+    all.for_each(|i| {
+        (x, y, count) = (x + (i % 200) as f32, y + (i / 200) as f32, count + 1);
+    });
+    (x / count.max(1) as f32, y / count.max(1) as f32, count)
+}
+
+#[test]
+fn a_text_runs_along_a_path_and_straight_again() {
+    let text = r##"{"in":"layer","do":"write","at":[40,60],
+"text":{"string":"bows","font":"Hack","size":24,"align":"middle","color":"#c03020"}}"##;
+    let carry = r#"{"in":"path","do":"carry text","layer":"0","text":"1"}"#;
+    let is_red = |[r, g, _, a]: [u8; 4]| a > 200 && r > 150 && g < 90;
+    let mut session = write(&[BOW, text]);
+    let straight = ink(&session, is_red);
+    session.replay(Path::new("story"), carry).unwrap();
+    // The middle of the letters is above the top of the bow, which is at y = 40.
+    let (x, y, count) = ink(&session, is_red);
+    assert!((x - 100.0).abs() < 3.0 && (25.0..42.0).contains(&y), "{x} {y}");
+    assert!((count as f32 / straight.2 as f32 - 1.0).abs() < 0.1, "{count} of {}", straight.2);
+    // It is kept in files, and as it was once it is undone.
+    let (_, image) = text_of(&session);
+    let words = image.source.text().unwrap();
+    assert!(words.path.as_ref().is_some_and(|path| path.line.nodes.len() == 2));
+    session.replay(Path::new("story"), r#"{"in":"edit","do":"undo"}"#).unwrap();
+    assert_eq!(ink(&session, is_red), straight);
+    // A layer that is no path, and one that is no text.
+    for wrong in [r#""layer":"1","text":"1""#, r#""layer":"0","text":"0""#] {
+        let line = format!("{{\"in\":\"path\",\"do\":\"carry text\",{wrong}}}");
+        session.said.clear();
+        session.replay(Path::new("story"), &line).unwrap();
+        assert_eq!(session.said.len(), 1, "{line}");
+    }
+}
+
+#[test]
+fn a_press_of_the_text_tool_on_a_path_begins_a_text_there() {
+    let press = r#"{"in":"pointer","do":"press","tool":"text","pen":[100,40],"px_per_pt":1}"#;
+    let session = write(&[BOW, press]);
+    let (_, image) = text_of(&session);
+    let path = image.source.text().unwrap().path.clone().unwrap();
+    // Half of the bow is before it.
+    let length = path.line.flatten(&Some).unwrap().length();
+    assert!((path.shift / length - 0.5).abs() < 0.02, "{} of {length}", path.shift);
+    let beside = press.replace("[100,40]", "[100,80]");
+    let session = write(&[BOW, &beside]);
+    assert_eq!(text_of(&session).1.source.text().unwrap().path, None);
+}
 
 #[test]
 fn a_text_is_seen_where_it_was_written_and_keeps_its_place_while_it_is_retyped() {

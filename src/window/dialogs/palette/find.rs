@@ -103,6 +103,7 @@ const SYNONYMS: [(&str, &[&str]); 79] = [
     ("polygon", &["figure", "lasso"]),
     ("star", &["figure"]),
     ("arrow", &["figure"]),
+    ("bubble", &["figure"]),
     ("trace", &["path from selection"]),
     ("vectorize", &["path from selection"]),
     ("inflate", &["give it a shape", "puff up"]),

@@ -19,6 +19,7 @@ fn each_kind_has_its_corners() {
     assert_eq!(count(FigureKind::Star), 10);
     assert_eq!(count(FigureKind::Line), 2);
     assert_eq!(count(FigureKind::Arrow), 7);
+    assert_eq!(count(FigureKind::Balloon), 6);
     let rounded = Figure { corner: 8.0, ..figure(FigureKind::Rectangle) };
     assert_eq!(rounded.subpaths()[0].nodes.len(), 8);
 }
@@ -104,4 +105,26 @@ fn what_files_cannot_hold_is_named() {
     let far = Figure { to: vec2(1e9, 0.0), ..figure(FigureKind::Line) };
     assert!(far.fits().is_err());
     assert!(Figure { from: Vec2::NAN, ..far }.fits().is_err());
+}
+
+#[test]
+fn a_balloon_has_its_tail_to_its_tip_which_stays_while_the_box_changes() {
+    let balloon = Figure { rotation: 20.0, ..figure(FigureKind::Balloon) };
+    let tip = balloon.handles()[4];
+    assert!(points(&balloon).iter().any(|p| p.distance(tip) < 1e-3));
+    // The tail begins as wide as it is said to.
+    let [first, last] = [0, 4].map(|i| points(&balloon)[i]);
+    assert!((first.distance(last) - balloon.tail).abs() < 0.5, "{}", first.distance(last));
+    let dragged = balloon.with_handle(4, vec2(200.0, 150.0), false);
+    assert!(dragged.handles()[4].distance(vec2(200.0, 150.0)) < 1e-3);
+    for handle in 0..4 {
+        let larger =
+            dragged.with_handle(handle, dragged.handles()[handle] + vec2(9.0, -4.0), false);
+        assert!(larger.handles()[4].distance(vec2(200.0, 150.0)) < 1e-2, "{handle}");
+    }
+    // Inside there is no tail, and a balloon without a height is no failure.
+    let inside = balloon.with_handle(4, balloon.center(), false);
+    assert_eq!(inside.subpaths()[0].nodes.len(), 4);
+    let flat = Figure { to: vec2(110.0, 20.0), ..balloon };
+    assert!(points(&flat.with_handle(4, vec2(9.0, 9.0), false)).iter().all(|p| p.is_finite()));
 }

@@ -7,12 +7,14 @@ use crate::document::{Content, Document, Layer, LayerId, Live};
 use crate::io::{Budget, text};
 use crate::math::{Size, Vec2};
 use crate::paint::{
-    Adjust, ImageFilter, PictureOrigin, PictureSource, PlacedImage, Placement, Text, TextStyle,
+    Adjust, ImageFilter, PictureOrigin, PictureSource, PlacedImage, Placement, Subpath, Text,
+    TextPath, TextStyle,
 };
 use crate::raster::Outside;
 use crate::session::actions::file_names::free_file;
 use crate::session::{OpenDocument, Session, Writing};
 use crate::surface::{Anchor, Bend};
+use crate::tools::path;
 use std::sync::Arc;
 use text::{Caret, TextPicture};
 
@@ -27,7 +29,10 @@ const FIRST_SIZE: f32 = 0.1;
 
 /// The pen comes down with the text tool: on a text, to go on in it, or beside, to begin one in the
 /// style of the selected text.
-pub(in crate::session::actions) fn press(session: &mut Session, at: Vec2) {
+///
+/// Beside texts, on the line of a path, the text runs along that from there. `reach`: how near
+/// counts as on it, canvas px.
+pub(in crate::session::actions) fn press(session: &mut Session, at: Vec2, reach: f32) {
     let turn = session.writing.map_or(0, |writing| writing.turn.wrapping_add(1));
     let color = session.tools.color;
     let Some(open) = session.active_mut() else { return };
@@ -46,7 +51,11 @@ pub(in crate::session::actions) fn press(session: &mut Session, at: Vec2) {
         },
         |text| text.style_at(0),
     );
-    match write(open, &Text::new(PLACEHOLDER, style), at) {
+    let mut text = Text::new(PLACEHOLDER, style);
+    text.path = path_under(open.document(), at, reach);
+    // The points of a path are canvas points.
+    let begin = if text.path.is_some() { Vec2::ZERO } else { at };
+    match write(open, &text, begin) {
         Ok(()) => {
             let layer = open.active_layer;
             session.writing = layer.map(|layer| Writing { layer, byte: None, turn });
@@ -75,6 +84,64 @@ fn text_under(document: &Document, at: Vec2) -> Option<(LayerId, Option<usize>)>
             (layer.id, nearest.map(|caret| caret.byte))
         })
     })
+}
+
+/// The line of the topmost visible path that a canvas point lies on, in canvas px, for a text that
+/// begins there.
+fn path_under(document: &Document, at: Vec2, reach: f32) -> Option<TextPath> {
+    document.walk().into_iter().rev().filter(|(_, layer)| layer.visible).find_map(|(_, layer)| {
+        let lines = lines_on_canvas(document, layer, &Some);
+        lines.into_iter().find_map(|line| {
+            let place = line.flatten(&Some)?.nearest_place(at)?;
+            (place.at.distance(at) <= reach).then_some(TextPath { line, shift: place.along })
+        })
+    })
+}
+
+/// The lines of a layer that is a path, moved from the canvas by a map; without those that have a
+/// point that it has none for.
+fn lines_on_canvas(
+    document: &Document,
+    layer: &Layer,
+    map: &impl Fn(Vec2) -> Option<Vec2>,
+) -> Vec<Subpath> {
+    let Some(image) = path::of_layer(layer) else { return Vec::new() };
+    let Some(live) = image.source.path() else { return Vec::new() };
+    let to_canvas = path::to_canvas(image, document.size);
+    let moved = |point| map(to_canvas(point)?).filter(|at| at.is_finite());
+    let is_whole = |line: &&Subpath| {
+        let mut points = line.nodes.iter().flat_map(|n| [n.at, n.at + n.before, n.at + n.after]);
+        points.all(|point| moved(point).is_some())
+    };
+    let lines = live.subpaths();
+    let mapped = lines.iter().filter(is_whole);
+    mapped.map(|line| line.mapped(|point| moved(point).unwrap_or(point))).collect()
+}
+
+/// The document with a text that runs along the longest line of a path, where that lies now.
+pub(in crate::session::actions) fn put_on_path(
+    document: &Document,
+    text: LayerId,
+    path: LayerId,
+) -> std::result::Result<Option<Document>, String> {
+    const NO_TEXT: &str = "That layer is no text.";
+    let layers = document.layer(text).zip(document.layer(path));
+    let (layer, path) = layers.ok_or("There is no such layer.")?;
+    let Content::Image(live) = &layer.content else { return Err(NO_TEXT.into()) };
+    let image = live.params();
+    let words = image.source.text().ok_or(NO_TEXT)?;
+    let to_own = image.frame_from_own(document.size).inverse();
+    let to_text = |at: Vec2| {
+        let (in_frame, _) = image.frame.from_canvas(at)?;
+        Some(to_own.transform_point2(in_frame) - words.origin)
+    };
+    let lines = lines_on_canvas(document, path, &to_text);
+    let length = |line: &Subpath| line.flatten(&Some).map_or(0.0, |flat| flat.length());
+    let longest = lines.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+    let line = longest.filter(|line| length(line) > 0.0);
+    let line = line.ok_or("That layer is no path that a text could run along.")?;
+    let next = Text { path: Some(TextPath { line, shift: 0.0 }), ..Text::clone(words) };
+    replace_texts(document, &[text], &next).map_err(|why| why.to_string())
 }
 
 fn text_of(layer: &Arc<Layer>) -> Option<Arc<Text>> {

@@ -36,15 +36,18 @@ impl Roll for PathNode {
     }
 }
 
+impl Roll for Subpath {
+    fn roll(dice: &mut Dice) -> Self {
+        let nodes = (0..dice.below(5)).map(|_| PathNode::roll(dice)).collect();
+        Subpath { nodes, closed: dice.is(50) }
+    }
+}
+
 impl Roll for LivePath {
     fn roll(dice: &mut Dice) -> Self {
-        let line = |dice: &mut Dice| {
-            let nodes = (0..dice.below(5)).map(|_| PathNode::roll(dice)).collect();
-            Subpath { nodes, closed: dice.is(50) }
-        };
         let geometry: PathGeometry = match dice.is(50) {
             true => Figure::roll(dice).into(),
-            false => (0..dice.below(3)).map(|_| line(dice)).collect::<Vec<_>>().into(),
+            false => (0..dice.below(3)).map(|_| Subpath::roll(dice)).collect::<Vec<_>>().into(),
         };
         LivePath {
             fill: if dice.is(60) { Some(dice.value(dice.word, "color")) } else { None },

@@ -15,7 +15,8 @@ use crate::paint::adjustment::{
 use crate::paint::effect::{EffectField, EffectPattern};
 use crate::paint::{
     Adjust, BrushMode, ColorAdjustment, ColorPalette, DrawingHand, EffectKind, EffectLight,
-    GradientStop, LayerEffect, NamedColor, PictureFilter, Placement, Text, TextAlign, TextStyle,
+    GradientStop, LayerEffect, NamedColor, PictureFilter, Placement, Subpath, Text, TextAlign,
+    TextPath, TextStyle,
 };
 use crate::raster::{Picture, Resampling};
 use crate::session::ExportSize;
@@ -114,6 +115,10 @@ impl Roll for Text {
             width: if dice.is(30) { dice.within(10.0, 90.0) } else { 0.0 },
             vertical: dice.is(20),
             arc: if dice.is(20) { dice.in_range(-180.0..=180.0, Text::ARC) } else { 0.0 },
+            path: dice.is(20).then(|| TextPath {
+                line: Subpath::roll(dice),
+                shift: dice.in_range(-20.0..=20.0, Text::SHIFT),
+            }),
             ..text
         }
     }
