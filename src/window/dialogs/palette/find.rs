@@ -30,7 +30,7 @@ const BRUSH: [(&str, &str); 8] = [
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 79] = [
+const SYNONYMS: [(&str, &[&str]); 80] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
