@@ -44,7 +44,7 @@ pub(super) fn begin(align: TextAlign, length: f32) -> f32 {
 }
 
 /// Letters of one font that lie the same way.
-struct Piece<'a> {
+struct ColumnPiece<'a> {
     text: &'a str,
     font: ID,
     is_upright: bool,
@@ -79,10 +79,10 @@ pub(super) fn lay(line: &Line) -> Column {
 }
 
 /// A run in pieces; letters that no font has are in the font of the run.
-fn pieces<'a>(fonts: &Database, run: &'a TextRun) -> Vec<Piece<'a>> {
+fn pieces<'a>(fonts: &Database, run: &'a TextRun) -> Vec<ColumnPiece<'a>> {
     let Some(own) = own_font(fonts, &run.style) else { return Vec::new() };
     let mut known = vec![own];
-    let mut found: Vec<Piece> = Vec::new();
+    let mut found: Vec<ColumnPiece> = Vec::new();
     let mut begin = 0;
     for (byte, letter) in run.string.char_indices() {
         let end = byte + letter.len_utf8();
@@ -94,7 +94,7 @@ fn pieces<'a>(fonts: &Database, run: &'a TextRun) -> Vec<Piece<'a>> {
             }
             _ => {
                 begin = byte;
-                found.push(Piece { text: &run.string[byte..end], font, is_upright });
+                found.push(ColumnPiece { text: &run.string[byte..end], font, is_upright });
             }
         }
     }
@@ -172,7 +172,13 @@ struct Shaped {
 }
 
 /// Shapes a piece that begins so far down its column; `None` for a broken font.
-fn shape(data: &[u8], face: u32, piece: &Piece, style: &TextStyle, begin: f32) -> Option<Shaped> {
+fn shape(
+    data: &[u8],
+    face: u32,
+    piece: &ColumnPiece,
+    style: &TextStyle,
+    begin: f32,
+) -> Option<Shaped> {
     let font = FontRef::from_index(data, face).ok()?;
     let metrics = font.metrics(Size::unscaled(), LocationRef::default());
     let scale = style.size / f32::from(metrics.units_per_em.max(1));

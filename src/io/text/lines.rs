@@ -19,12 +19,12 @@ pub(super) struct Line {
     /// Where its baseline begins, ends or has its middle, px, by the alignment.
     pub at: Vec2,
     /// What it runs along instead.
-    pub curve: Option<Curve>,
+    pub curve: Option<LineCurve>,
 }
 
 /// What a line runs along.
 #[derive(Clone, Debug)]
-pub(super) struct Curve {
+pub(super) struct LineCurve {
     /// As SVG writes it.
     pub data: String,
     /// In straight pieces.
@@ -179,7 +179,7 @@ fn place(text: &Text, lines: &mut [Line]) {
 
 /// A path that a line runs along, so far below it. One that is closed goes around twice, so that
 /// text that begins anywhere on it goes once around.
-fn along_path(path: &TextPath, align: TextAlign, below: f32) -> Curve {
+fn along_path(path: &TextPath, align: TextAlign, below: f32) -> LineCurve {
     let mut flat = path.line.flatten(&Some).unwrap_or_default();
     let length = flat.length();
     let share = match align {
@@ -195,7 +195,7 @@ fn along_path(path: &TextPath, align: TextAlign, below: f32) -> Curve {
         flat.points.extend_from_within(..);
         flat.widths.extend_from_within(..);
     }
-    Curve { data, flat, along, align, below }
+    LineCurve { data, flat, along, align, below }
 }
 
 /// The straight pieces of a circle that carets stand on.
@@ -203,7 +203,7 @@ const ARC_PIECES: usize = 360;
 
 /// The circle along which a line runs whose distance from the first one is given. The middle of
 /// the first line stays where it is.
-fn arc(text: &Text, first: &Line, along: f32) -> Curve {
+fn arc(text: &Text, first: &Line, along: f32) -> LineCurve {
     let measured = super::advances(text, first);
     let (start, end) = (measured.first(), measured.last());
     let length = start.zip(end).map_or(0.0, |((_, from), (_, to))| to - from).max(1.0);
@@ -231,7 +231,7 @@ fn arc(text: &Text, first: &Line, along: f32) -> Curve {
     });
     let flat = FlatLine { points: points.collect(), widths: vec![1.0; ARC_PIECES + 1] };
     let along = flat.length() / 2.0;
-    Curve { data, flat, along, align: TextAlign::Middle, below: 0.0 }
+    LineCurve { data, flat, along, align: TextAlign::Middle, below: 0.0 }
 }
 
 /// Where the letters of a line that was laid out begin: bytes within the line, and px along it;
@@ -279,7 +279,7 @@ fn is_from_right_to_left(string: &str) -> bool {
         .is_some_and(|c| matches!(u32::from(c), 0x590..=0x8ff | 0xfb1d..=0xfdff | 0xfe70..=0xfeff))
 }
 
-impl Curve {
+impl LineCurve {
     /// Where a place of a line that was measured straight lies, and the direction of the baseline
     /// there.
     fn place(&self, along: f32, measured: &[(usize, f32)]) -> (Vec2, Vec2) {

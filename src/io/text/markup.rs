@@ -1,7 +1,7 @@
 //! The SVG of a text. Floor 5.
 
 use super::columns;
-use super::lines::{Curve, Line};
+use super::lines::{Line, LineCurve};
 use crate::math::Rect;
 use crate::math::srgb::Color;
 use crate::paint::{Text, TextAlign, TextRun, TextStyle};
@@ -25,7 +25,7 @@ pub(super) fn of_lines(text: &Text, lines: &[Line]) -> String {
                 out,
                 r#"<text xml:space="preserve" x="{x}" y="{y}" text-anchor="{anchor}">{runs}</text>"#
             );
-        } else if let Some(Curve { data, along, align, below, .. }) = &line.curve {
+        } else if let Some(LineCurve { data, along, align, below, .. }) = &line.curve {
             let (anchor, runs) = (anchor(*align), runs(&line.pieces));
             let _ = write!(
                 out,
