@@ -27,11 +27,11 @@ pub(super) fn of_lines(text: &Text, lines: &[Line]) -> String {
             );
         } else if let Some(LineCurve { data, along, align, below, .. }) = &line.curve {
             let (anchor, runs) = (anchor(*align), runs(&line.pieces));
-            let _ = write!(
-                out,
-                r##"<path id="c{i}" fill="none" d="{data}"/>
-<text xml:space="preserve" text-anchor="{anchor}"><textPath xlink:href="#c{i}" startOffset="{along}"><tspan dy="{below}">{runs}</tspan></textPath></text>"##
-            );
+            let _ = write!(out, r##"<path id="c{i}" fill="none" d="{data}"/>"##);
+            let text = format!(r#"text xml:space="preserve" text-anchor="{anchor}""#);
+            let place = format!(r##"xlink:href="#c{i}" startOffset="{along}""##);
+            let runs = format!(r#"<tspan dy="{below}">{runs}</tspan>"#);
+            let _ = write!(out, "<{text}><textPath {place}>{runs}</textPath></text>");
         }
     }
     out.push_str("</svg>");
