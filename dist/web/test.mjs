@@ -155,7 +155,7 @@ if (hasNative) {
 
 // A tab that is killed in the middle of a stroke.
 await stroke(page, [420, 200], [700, 260]);
-await rest(page, 3000);
+await rest(page, 300);
 await stroke(page, [380, 420], [560, 640], false);
 await page.close({ runBeforeUnload: false });
 ({ page } = await opened());
