@@ -59,7 +59,11 @@ impl GrayTones {
         }
         let gray = self.gray(tone);
         let gray = if self.is_deep { gray } else { (255.0 * gray).round() / 255.0 };
-        let [after, ..] = adjustment.color([gray; 3]);
+        let after = match adjustment {
+            // Of 16 bits, tones are not those of bytes.
+            ColorAdjustment::Posterize(own) if self.is_deep => own.tone_of_16_bits(gray),
+            all => all.color([gray; 3])[0],
+        };
         self.tone(after)
     }
 

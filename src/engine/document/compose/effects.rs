@@ -60,8 +60,16 @@ impl Composer<'_> {
             }
             full.mix_toward(&inside, &shape);
         }
+        let mut ground = None;
         for number in effects.at_place(EffectPlace::Over) {
-            self.lay(node, effects, number, &mut full, atop);
+            let is_line = effects.effects[number].kind == EffectKind::Stroke;
+            match ground.as_ref().filter(|_| is_line) {
+                Some(ground) => self.lay_upper_line(node, effects, number, ground, &mut full, atop),
+                None => {
+                    ground = is_line.then(|| full.clone()).or(ground);
+                    self.lay(node, effects, number, &mut full, atop);
+                }
+            }
         }
         onto.mix_toward(&full, &coverage.opacity_only());
         ControlFlow::Continue(())
@@ -94,34 +102,68 @@ impl Composer<'_> {
         onto: &mut PlanarTile,
         atop: bool,
     ) {
+        let amounts = effects.amounts(number, self.at, &|at: TileAt| self.cover(node, at));
+        if !amounts.is_nothing() {
+            self.lay_amounts(node, effects, number, &amounts, onto, atop);
+        }
+    }
+
+    /// Paints one effect as far as each pixel of a tile gets it.
+    fn lay_amounts(
+        &self,
+        node: &PreparedLayer,
+        effects: &EffectTiles,
+        number: usize,
+        amounts: &EffectTile,
+        onto: &mut PlanarTile,
+        atop: bool,
+    ) {
         let cover = |at: TileAt| self.cover(node, at);
-        let amounts = effects.amounts(number, self.at, &cover);
-        let Some(effect) = effects.effects.get(number).filter(|_| !amounts.is_nothing()) else {
-            return;
-        };
+        let Some(effect) = effects.effects.get(number) else { return };
         let s = &effect.settings;
         let linear = node.layer.blend_linear;
         let mix = |mode| Mix { mode, linear, atop, ..Mix::default() }.on(self.at);
         if effect.kind == EffectKind::Bevel {
-            let light = self.share(&amounts, |v| v.max(0.0) * s.opacity);
+            let light = self.share(amounts, |v| v.max(0.0) * s.opacity);
             self.blend(onto, mix(s.blend), TilePaint::Solid(s.color.premultiplied()), &light);
-            let shade = self.share(&amounts, |v| (-v).max(0.0) * s.shade_opacity);
+            let shade = self.share(amounts, |v| (-v).max(0.0) * s.shade_opacity);
             return self.blend(onto, mix(s.shade_blend), TilePaint::Solid(effect.shade()), &shade);
         }
         let filled = match effect.fill() {
             EffectFill::Color => self.at.rect(),
             _ => effects.filled_rect(number, &cover),
         };
-        let Some(paint) = effect.paint(self.at, filled, &amounts) else { return };
+        let Some(paint) = effect.paint(self.at, filled, amounts) else { return };
         let runs_with_amounts = effect.fill() == EffectFill::Gradient
             && matches!(effect.kind, EffectKind::OuterGlow | EffectKind::InnerGlow);
         let share = |v: f32| if runs_with_amounts && v > 0.0 { s.opacity } else { v * s.opacity };
-        let coverage = self.share(&amounts, share);
+        let coverage = self.share(amounts, share);
         let paint = match (paint, &self.far) {
             (EffectPaint::Tile(tile), Some(far)) => EffectPaint::Tile(far.same_pixels(&tile)),
             (paint, _) => paint,
         };
         self.blend(onto, mix(s.blend), paint.as_paint(), &coverage);
+    }
+
+    /// Paints a line around a layer that replaces those beneath it.
+    ///
+    /// * `ground`: what the lowest line lies on, which this one is blended with.
+    fn lay_upper_line(
+        &self,
+        node: &PreparedLayer,
+        effects: &EffectTiles,
+        number: usize,
+        ground: &PlanarTile,
+        onto: &mut PlanarTile,
+        atop: bool,
+    ) {
+        let amounts = effects.amounts(number, self.at, &|at: TileAt| self.cover(node, at));
+        if amounts.is_nothing() {
+            return;
+        }
+        let mut lined = ground.clone();
+        self.lay_amounts(node, effects, number, &EffectTile::Even(1.0), &mut lined, atop);
+        onto.mix_toward(&lined, &self.share(&amounts, |v| v));
     }
 
     /// A function of the amounts, for the pixels that are composed.

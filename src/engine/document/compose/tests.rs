@@ -105,6 +105,20 @@ fn a_line_is_around_the_layer_on_transparency_too() {
 }
 
 #[test]
+fn an_upper_line_replaces_a_lower_one_and_is_blended_with_the_ground() {
+    let line = |size: f32, blend, color| {
+        of(EffectKind::Stroke, |s| (s.size, s.blend, s.color) = (size, blend, color))
+    };
+    let yellow = Color { r: 255, g: 255, b: 0, a: 255 };
+    let blue = Color { r: 0, g: 0, b: 255, a: 255 };
+    let effects = vec![line(3.0, BlendMode::Multiply, yellow), line(8.0, BlendMode::Normal, blue)];
+    let document = with(effects, |_| {});
+    assert_eq!(pixel(&document, 58, 75), [128, 128, 0, 255]);
+    assert_eq!(pixel(&document, 54, 75), [0, 0, 255, 255]);
+    assert_eq!(pixel(&document, 50, 75), [128, 128, 128, 255]);
+}
+
+#[test]
 fn a_group_has_effects_of_all_that_is_in_it() {
     for pass_through in [false, true] {
         let layers = [Rect::new(60, 60, 80, 90), Rect::new(80, 60, 100, 90)]

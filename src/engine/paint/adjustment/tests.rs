@@ -180,6 +180,15 @@ fn posterized_bytes_on_a_step_are_not_rounded_below_it() {
 }
 
 #[test]
+fn values_between_bytes_are_posterized_in_equal_parts() {
+    let halves = Posterize { levels: 2.0 };
+    assert_eq!([32_767.0, 32_768.0].map(|v| halves.tone(v / 65535.0)), [0.0, 1.0]);
+    // A third is a byte, which stays below, and not a value a little above it.
+    let thirds = Posterize { levels: 3.0 };
+    assert_eq!([21_845.0, 21_846.0].map(|v| thirds.tone(v / 65535.0)), [0.0, 0.5]);
+}
+
+#[test]
 fn a_stop_of_exposure_doubles_the_light() {
     let tone = Exposure { exposure: 1.0, ..Exposure::default() }.tone(0.5);
     assert!((tone - 0.5 * 2f32.powf(1.0 / 2.2)).abs() < 1e-6);

@@ -264,12 +264,24 @@ impl Default for Posterize {
 }
 
 impl Posterize {
-    /// ⌊n x 255/256⌋ / (n − 1).
+    /// ⌊n x 255/256⌋ / (n − 1) of what a byte can hold, as Photoshop does; of 16 bits ⌊n x⌋ / (n − 1).
     pub fn tone(&self, x: f32) -> f32 {
+        let value = (x * 65535.0).round();
+        if value % 257.0 != 0.0 {
+            return self.tone_of_16_bits(x);
+        }
+        self.step(f64::from(value) / 65535.0 * (255.0 / 256.0))
+    }
+
+    /// ⌊n x⌋ / (n − 1).
+    pub fn tone_of_16_bits(&self, x: f32) -> f32 {
+        // The nearest value first: one on a step is not to be rounded below it.
+        self.step(f64::from((x * 65535.0).round()) / 65535.0)
+    }
+
+    fn step(&self, x: f64) -> f32 {
         let n = self.levels.round();
-        // The nearest 16-bit value first: a byte on a step is not to be rounded below it.
-        let x = f64::from((x * 65535.0).round()) / 65535.0;
-        let step = (x * f64::from(n) * (255.0 / 256.0) + 1e-9).floor() as f32;
+        let step = (x * f64::from(n) + 1e-9).floor() as f32;
         step.min(n - 1.0) / (n - 1.0)
     }
 }
