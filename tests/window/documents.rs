@@ -391,6 +391,14 @@ fn what_an_open_document_was_made_from_is_never_exported_over() {
     press(&mut harness, "Replace");
     until(&mut harness, |harness| harness.query_by_label_contains("made from it").is_some());
     assert_eq!(std::fs::read(&photo).unwrap(), before);
+    // A picture that was opened is not proposed as the file of its own export.
+    harness.state_mut().as_mut().unwrap().begin(vec![photo.clone()]);
+    until(&mut harness, |harness| session(harness).open_documents.len() == 2);
+    steps(&mut harness);
+    command(&mut harness, "Export…");
+    press(&mut harness, "Export…");
+    until(&mut harness, |harness| harness.query_by_label("File name").is_some());
+    assert_eq!(harness.get_by_label("File name").value().as_deref(), Some("photo 2.png"));
 }
 
 #[test]

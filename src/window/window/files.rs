@@ -349,7 +349,17 @@ impl MainWindow {
             FilePurpose::ExportMaps => self.maps.maps().first().map_or("", |map| map.name()),
             _ => "",
         };
-        format!("{stem}{suffix}.{extension}")
+        self.name_beside_sources(&format!("{stem}{suffix}"), extension)
+    }
+
+    /// A file name, counted on where a file of it is what an open document was made from: that one
+    /// may not be replaced.
+    fn name_beside_sources(&self, stem: &str, extension: &str) -> String {
+        let reads = self.session.reads();
+        let is_source = |name: &str| reads.iter().any(|read| read.ends_with(name));
+        let plain = format!("{stem}.{extension}");
+        let counted = (2..).map(|count| format!("{stem} {count}.{extension}"));
+        std::iter::once(plain).chain(counted).find(|name| !is_source(name)).unwrap_or_default()
     }
 
     /// The folder to begin in.
