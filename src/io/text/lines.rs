@@ -27,10 +27,12 @@ pub(super) struct Line {
 pub(super) struct LineCurve {
     /// As SVG writes it.
     pub data: String,
+    /// Where on it the line begins, has its middle or ends, as SVG writes that.
+    pub start: String,
     /// In straight pieces.
     flat: FlatLine,
-    /// How far along it the line begins, has its middle or ends, px, by this alignment.
-    pub along: f32,
+    /// The same place in px, and the alignment that tells which it is.
+    along: f32,
     pub align: TextAlign,
     /// How far to the right of it the baseline lies, px.
     pub below: f32,
@@ -195,7 +197,7 @@ fn along_path(path: &TextPath, align: TextAlign, below: f32) -> LineCurve {
         flat.points.extend_from_within(..);
         flat.widths.extend_from_within(..);
     }
-    LineCurve { data, flat, along, align, below }
+    LineCurve { data, start: along.to_string(), flat, along, align, below }
 }
 
 /// The straight pieces of a circle that carets stand on.
@@ -231,7 +233,7 @@ fn arc(text: &Text, first: &Line, along: f32) -> LineCurve {
     });
     let flat = FlatLine { points: points.collect(), widths: vec![1.0; ARC_PIECES + 1] };
     let along = flat.length() / 2.0;
-    LineCurve { data, flat, along, align: TextAlign::Middle, below: 0.0 }
+    LineCurve { data, start: "50%".into(), flat, along, align: TextAlign::Middle, below: 0.0 }
 }
 
 /// Where the letters of a line that was laid out begin: bytes within the line, and px along it;

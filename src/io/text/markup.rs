@@ -25,11 +25,11 @@ pub(super) fn of_lines(text: &Text, lines: &[Line]) -> String {
                 out,
                 r#"<text xml:space="preserve" x="{x}" y="{y}" text-anchor="{anchor}">{runs}</text>"#
             );
-        } else if let Some(LineCurve { data, along, align, below, .. }) = &line.curve {
+        } else if let Some(LineCurve { data, start, align, below, .. }) = &line.curve {
             let (anchor, runs) = (anchor(*align), runs(&line.pieces));
             let _ = write!(out, r##"<path id="c{i}" fill="none" d="{data}"/>"##);
             let text = format!(r#"text xml:space="preserve" text-anchor="{anchor}""#);
-            let place = format!(r##"xlink:href="#c{i}" startOffset="{along}""##);
+            let place = format!(r##"xlink:href="#c{i}" startOffset="{start}""##);
             let runs = format!(r#"<tspan dy="{below}">{runs}</tspan>"#);
             let _ = write!(out, "<{text}><textPath {place}>{runs}</textPath></text>");
         }
