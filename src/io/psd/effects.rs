@@ -103,6 +103,27 @@ const BLENDS: [(BlendMode, &str); 27] = [
     (BlendMode::Divide, "blendDivide"),
 ];
 
+/// Their words in files of 2026 and later, where those differ.
+const NEWER_BLENDS: [(BlendMode, &str); 17] = [
+    (BlendMode::Normal, "normal"),
+    (BlendMode::Dissolve, "dissolve"),
+    (BlendMode::Multiply, "multiply"),
+    (BlendMode::Screen, "screen"),
+    (BlendMode::Overlay, "overlay"),
+    (BlendMode::SoftLight, "softLight"),
+    (BlendMode::HardLight, "hardLight"),
+    (BlendMode::ColorDodge, "colorDodge"),
+    (BlendMode::ColorBurn, "colorBurn"),
+    (BlendMode::Darken, "darken"),
+    (BlendMode::Lighten, "lighten"),
+    (BlendMode::Difference, "difference"),
+    (BlendMode::Exclusion, "exclusion"),
+    (BlendMode::Hue, "hue"),
+    (BlendMode::Saturation, "saturation"),
+    (BlendMode::Color, "color"),
+    (BlendMode::Luminosity, "luminosity"),
+];
+
 /// Reads a block into the effects of a record, unless they came from one that counts more.
 pub fn take(effects: &mut Option<RecordEffects>, key: [u8; 4], data: ByteCursor, colors: &Colors) {
     let of_layers = if key == OF_GROUPS { KEYS[0] } else { key };
@@ -162,6 +183,10 @@ fn effect(
 ) {
     let mut effect = LayerEffect { on, ..LayerEffect::new(kind) };
     common(&mut effect.settings, said, colors);
+    let is_unknown = |name: &str| said.word(name).is_some() && blend(said, name).is_none();
+    if on && ["Md  ", "hglM", "sdwM"].into_iter().any(is_unknown) {
+        lose(found, "the blend mode of an effect is unknown");
+    }
     for name in ["TrnS", "MpgS"] {
         effect.contour = said.object(name).and_then(contour).unwrap_or(effect.contour);
     }
@@ -189,9 +214,11 @@ fn lose(found: &mut RecordEffects, what: &'static str) {
     }
 }
 
-fn blend(said: &DescriptorObject, name: &str) -> Option<BlendMode> {
+/// The blend mode that Photoshop's word means.
+pub fn blend(said: &DescriptorObject, name: &str) -> Option<BlendMode> {
     let word = said.word(name)?;
-    BLENDS.iter().find(|(_, known)| known.as_bytes() == word).map(|(mode, _)| *mode)
+    let mut known = BLENDS.iter().chain(&NEWER_BLENDS);
+    known.find(|(_, known)| known.as_bytes() == word).map(|(mode, _)| *mode)
 }
 
 /// Points of a curve, 0 to 255.

@@ -2,6 +2,7 @@ use super::*;
 use crate::math::srgb::Color;
 use crate::paint::GradientStop;
 use crate::paint::RampStyle;
+use crate::psd::descriptor::DescriptorValue;
 
 fn read_again(effects: &[LayerEffect]) -> Vec<LayerEffect> {
     as_read(effects).map_or(Vec::new(), |read| {
@@ -81,4 +82,15 @@ fn several_effects_of_one_kind_need_the_newer_block() {
     assert_eq!(read.iter().map(|effect| effect.on).collect::<Vec<_>>(), [true, false]);
     assert_eq!(blocks(&[one]).len(), 1);
     assert!(blocks(&[]).is_empty());
+}
+
+#[test]
+fn blend_modes_are_known_by_older_and_newer_words() {
+    let said = |word: &str| {
+        DescriptorObject::of(vec![("Md  ", DescriptorValue::Word(word.as_bytes().to_vec()))])
+    };
+    for (mode, word) in BLENDS.iter().chain(&NEWER_BLENDS) {
+        assert_eq!(blend(&said(word), "Md  "), Some(*mode), "{word}");
+    }
+    assert_eq!(blend(&said("unheard"), "Md  "), None);
 }
