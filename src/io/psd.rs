@@ -10,10 +10,11 @@
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what follows them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `adjustments` | what adjustment layers do |
-//! | `gray` | adjustments of gray values with a profile, as tables of sRGB |
+//! | `gray`, `inks` | adjustments of gray values and inks with a profile, as tables of sRGB |
 //! | `effects` | shadows, glows and other effects of layers |
 //! | `ramp` | how colors mix between those of a gradient |
-//! | `fill`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
+//! | `fill`, `fill_block`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
+//! | `line` | the line around a shape |
 //! | `alpha_channels` | selections, the channels besides the colors |
 //! | `marks` | guides, and the colors of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
@@ -37,11 +38,14 @@ pub(super) mod descriptor;
 mod effects;
 mod export;
 mod fill;
+mod fill_block;
 mod filled;
 mod gray;
 mod header;
+mod inks;
 mod isolation;
 mod layers;
+mod line;
 mod marks;
 mod masks;
 mod merged;
@@ -64,6 +68,7 @@ use crate::paint::ColorAdjustment;
 use blocks::ArtboardBackground;
 use effects::RecordEffects;
 use fill::LayerFill;
+use line::ShapeLine;
 use outline::VectorPaths;
 
 /// The signature of a file.
@@ -113,6 +118,8 @@ pub struct LayerRecord {
     pub fill: Option<LayerFill>,
     /// It adjusts what is beneath it.
     pub adjustment: Option<ColorAdjustment>,
+    /// What it does to the fourth ink of CMYK, if that is something else.
+    pub adjustment_of_black: Option<ColorAdjustment>,
     /// It is an artboard.
     pub ground: Option<ArtboardBackground>,
     /// The point that patterns of its effects begin at, on the canvas.
@@ -125,6 +132,10 @@ pub struct LayerRecord {
     pub is_shape: bool,
     /// A line is drawn around its shape.
     pub stroked: bool,
+    /// That line, if it is understood.
+    pub line: Option<ShapeLine>,
+    /// It is filled with what is not understood.
+    pub has_unknown_fill: bool,
     /// Its shape is not filled.
     pub unfilled: bool,
     /// Straight RGBA of `rect`, row by row.
@@ -181,12 +192,15 @@ impl Default for LayerRecord {
             outline: None,
             fill: None,
             adjustment: None,
+            adjustment_of_black: None,
             ground: None,
             reference: None,
             effects: None,
             masks_effects: false,
             is_shape: false,
             stroked: false,
+            line: None,
+            has_unknown_fill: false,
             unfilled: false,
             rgba: Vec::new(),
             rgba16: Vec::new(),

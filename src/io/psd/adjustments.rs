@@ -109,20 +109,52 @@ fn float(data: &mut ByteCursor) -> Option<f32> {
     data.u32().map(f32::from_bits).filter(|value| value.is_finite())
 }
 
+/// What levels and curves do to black, the fourth ink of CMYK, as a first channel; `None` of others.
+pub fn read_black(key: [u8; 4], mut data: ByteCursor) -> Option<ColorAdjustment> {
+    let adjustment = match &key {
+        b"levl" => {
+            data.u16().filter(|version| *version == 2)?;
+            let master = levels_range(&mut data)?;
+            data.take(3 * LEVELS_BYTES)?;
+            let channels = [levels_range(&mut data)?; 3];
+            ColorAdjustment::Levels(Levels { master, channels })
+        }
+        b"curv" => {
+            let [master, _, _, _, black] = inks_curves(&mut data)?;
+            let channels = [black.clone(), black.clone(), black];
+            ColorAdjustment::Curves(Curves { master, channels })
+        }
+        _ => return None,
+    };
+    Some(adjustment.clamp_to_ranges())
+}
+
 /// All channels, then each; what follows is for more channels than colors have here.
 fn levels(data: &mut ByteCursor) -> Option<Levels> {
     data.u16().filter(|version| *version == 2)?;
-    let mut range = || {
-        let [black, white, out_black, out_white, gamma] =
-            [number(data)?, number(data)?, number(data)?, number(data)?, number(data)?];
-        Some(LevelsRange { black, white, out_black, out_white, gamma: gamma / 100.0 })
-    };
-    Some(Levels { master: range()?, channels: [range()?, range()?, range()?] })
+    let master = levels_range(data)?;
+    let channels = [levels_range(data)?, levels_range(data)?, levels_range(data)?];
+    Some(Levels { master, channels })
+}
+
+/// Five numbers of two bytes.
+const LEVELS_BYTES: usize = 10;
+
+fn levels_range(data: &mut ByteCursor) -> Option<LevelsRange> {
+    let [black, white, out_black, out_white, gamma] =
+        [number(data)?, number(data)?, number(data)?, number(data)?, number(data)?];
+    Some(LevelsRange { black, white, out_black, out_white, gamma: gamma / 100.0 })
 }
 
 /// Curves by the bits of their channels, or in newer blocks by number; what follows these repeats
 /// them with the numbers of the channels, and is preferred.
 fn curves(data: &mut ByteCursor) -> Option<Curves> {
+    let [master, red, green, blue, _] = inks_curves(data)?;
+    Some(Curves { master, channels: [red, green, blue] })
+}
+
+/// Of all channels, then of as many as colors have at most.
+fn inks_curves(data: &mut ByteCursor) -> Option<[ToneCurve; 5]> {
     const SET: u32 = 32;
     let is_map = data.u8()? != 0;
     let version = data.u16()?;
@@ -131,13 +163,10 @@ fn curves(data: &mut ByteCursor) -> Option<Curves> {
         1 => said & 1 << channel != 0,
         _ => channel < said,
     };
-    let mut curves = Curves::default();
-    let mut put = |channel: usize, curve: ToneCurve| match channel {
-        0 => curves.master = curve,
-        n => {
-            if let Some(slot) = curves.channels.get_mut(n - 1) {
-                *slot = curve;
-            }
+    let mut curves: [ToneCurve; 5] = Default::default();
+    let mut put = |channel: usize, curve: ToneCurve| {
+        if let Some(slot) = curves.get_mut(channel) {
+            *slot = curve;
         }
     };
     for channel in (0..SET).filter(|channel| is_said(*channel)) {

@@ -16,6 +16,8 @@ const UNICODE_NAMES: u16 = 1045;
 pub const NUMBERS: u16 = 1053;
 const SHOWN: u16 = 1077;
 const SHOWN_BEFORE: u16 = 1007;
+/// Where channels are kept, one of these says something of them.
+pub const ABOUT: [u16; 5] = [NAMES, UNICODE_NAMES, NUMBERS, SHOWN, SHOWN_BEFORE];
 /// The name of the transparency among them.
 const TRANSPARENCY: &str = "Transparency";
 /// Channels that a file may have besides its colors and their transparency.

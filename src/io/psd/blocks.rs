@@ -4,9 +4,9 @@
 use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::descriptor;
-use super::fill::LayerFill;
+use super::line::ShapeLine;
 use super::outline::VectorPaths;
-use super::{LayerRecord, RecordSection, adjustments, effects, fill, marks, ramp};
+use super::{LayerRecord, RecordSection, adjustments, effects, fill, fill_block, marks};
 use crate::math::Rect;
 use crate::math::srgb::Color;
 use crate::paint::ColorAdjustment;
@@ -57,12 +57,12 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         }
         b"lclr" => record.label = marks::label(data),
         b"iOpa" => record.fill_opacity = data.u8().unwrap_or(255),
-        b"GdFl" => {
-            let said = descriptor::read(&mut data);
-            let read = said.and_then(|said| ramp::gradient(&said, colors));
-            record.fill = read.map(LayerFill::Gradient);
+        b"GdFl" | b"SoCo" | b"PtFl" => read_fill(record, key, data, colors),
+        b"vscg" if record.fill.is_none() => {
+            if let Some(key) = data.key() {
+                read_fill(record, key, data, colors);
+            }
         }
-        b"SoCo" | b"PtFl" => record.fill = fill::read(key, data, colors),
         b"fxrp" => record.reference = data.f64().zip(data.f64()).filter(|(x, y)| is_near(*x, *y)),
         b"vmsk" | b"vsms" => {
             record.outline = VectorPaths::read(data);
@@ -78,7 +78,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         key if effects::KEYS.contains(key) || [effects::OF_GROUPS, effects::OLD].contains(key) => {
             effects::take(&mut record.effects, *key, data, colors);
         }
-        b"vstk" => read_stroke(record, &mut data),
+        b"vstk" => read_stroke(record, &mut data, colors),
         &adjustments::NEWER => {
             // Only brightness and contrast have newer numbers.
             let is_other = record
@@ -92,6 +92,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         // The newer numbers may have come before the old ones.
         b"brit" if record.adjustment.is_some() => {}
         key if adjustments::KEYS.contains(key) => {
+            record.adjustment_of_black = adjustments::read_black(*key, data);
             record.adjustment = adjustments::read(*key, &mut data, colors);
             if record.adjustment.is_none() {
                 record.leave_out("its adjustment is left out");
@@ -120,12 +121,18 @@ fn section(record: &mut LayerRecord, mut data: ByteCursor) {
     }
 }
 
+fn read_fill(record: &mut LayerRecord, key: [u8; 4], data: ByteCursor, colors: &Colors) {
+    record.fill = fill_block::read(key, data, colors);
+    record.has_unknown_fill = record.fill.is_none();
+}
+
 /// The line around a shape, and whether it is filled.
-fn read_stroke(record: &mut LayerRecord, data: &mut ByteCursor) {
+fn read_stroke(record: &mut LayerRecord, data: &mut ByteCursor, colors: &Colors) {
     record.is_shape = true;
     let Some(stroke) = descriptor::read(data) else { return };
     record.stroked = stroke.is_set("strokeEnabled");
     record.unfilled = stroke.is_false("fillEnabled");
+    record.line = ShapeLine::read(&stroke, colors).filter(|_| record.stroked);
 }
 
 /// Ways to blend that this program has not.

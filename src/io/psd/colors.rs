@@ -238,8 +238,10 @@ fn lab_to_srgb([l, a, b]: [u8; 3]) -> [u8; 3] {
 }
 
 /// A profile of four inks, made ready.
-struct Press {
+pub struct Press {
     transform: std::sync::Arc<moxcms::Transform16BitExecutor>,
+    /// The inks of colors.
+    separation: Option<std::sync::Arc<moxcms::Transform16BitExecutor>>,
     /// The light that the press's black still reflects: it becomes none, as Photoshop shows it
     /// (black point compensation).
     black: f32,
@@ -247,7 +249,7 @@ struct Press {
 
 impl Press {
     /// `None` where the profile is of other colors, or cannot be used.
-    fn new(icc: &[u8]) -> Option<Self> {
+    pub fn new(icc: &[u8]) -> Option<Self> {
         let profile = ColorProfile::new_from_slice(icc)
             .ok()
             .filter(|p| p.color_space == DataColorSpace::Cmyk)?;
@@ -257,7 +259,9 @@ impl Press {
         let seen = by(RenderingIntent::RelativeColorimetric);
         let transform =
             profile.create_transform_16bit(Layout::Rgba, &screen, Layout::Rgb, seen).ok()?;
-        let mut press = Self { transform, black: 0.0 };
+        let separation =
+            screen.create_transform_16bit(Layout::Rgb, &profile, Layout::Rgba, seen).ok();
+        let mut press = Self { transform, separation, black: 0.0 };
         press.black =
             press.blackest(&profile, &screen, by(RenderingIntent::Perceptual)).unwrap_or(0.0);
         Some(press)
@@ -280,13 +284,39 @@ impl Press {
         Some(srgb::luminance(r, g, b).max(0.0).min(0.18))
     }
 
+    /// The light that each ink lets through where colors of encoded sRGB are printed.
+    pub fn separate(&self, colors: &[[f32; 3]]) -> Option<Vec<[f32; 4]>> {
+        let stored = |v: f32| {
+            let light = srgb::decode(v) * (1.0 - self.black) + self.black;
+            srgb::quantize16(srgb::encode(light))
+        };
+        let colors: Vec<u16> = colors.as_flattened().iter().map(|v| stored(*v)).collect();
+        let mut inks = vec![0; colors.len() / 3 * 4];
+        self.separation.as_ref()?.transform(&colors, &mut inks).ok()?;
+        let light = |ink: u16| 1.0 - f32::from(ink) / 65535.0;
+        Some(inks.as_chunks::<4>().0.iter().map(|inks| inks.map(light)).collect())
+    }
+
+    /// The encoded sRGB of the light that inks let through.
+    pub fn show(&self, light: &[[f32; 4]]) -> Option<Vec<[f32; 3]>> {
+        let inks: Vec<u16> =
+            light.as_flattened().iter().map(|v| srgb::quantize16(1.0 - v)).collect();
+        let mut rgb = vec![0; light.len() * 3];
+        self.transform.transform(&inks, &mut rgb).ok()?;
+        let color = |v: u16| srgb::encode(self.remove_black(v));
+        Some(rgb.as_chunks::<3>().0.iter().map(|rgb| rgb.map(color)).collect())
+    }
+
+    /// Light of what the press shows, its black taken as none.
+    fn remove_black(&self, v: u16) -> f32 {
+        let light = (srgb::decode(f32::from(v) / 65535.0) - self.black) / (1.0 - self.black);
+        light.max(0.0)
+    }
+
     /// Puts the inks' colors into straight pixels, some thousand at a time.
     fn print(&self, rgba: &mut [u8], ink: impl Fn(usize) -> [u8; 4]) {
         const AT_ONCE: usize = 4096;
-        let light = |v: u16| {
-            let linear = (srgb::decode(f32::from(v) / 65535.0) - self.black) / (1.0 - self.black);
-            srgb::quantize(srgb::encode(linear.max(0.0)))
-        };
+        let light = |v: u16| srgb::quantize(srgb::encode(self.remove_black(v)));
         for (part, pixels) in rgba.chunks_mut(AT_ONCE * 4).enumerate() {
             let count = pixels.len() / 4;
             let share = |light: u8| u16::from(255 - light) * 257;

@@ -15,7 +15,7 @@ use super::{blocks, filled};
 use crate::document::{Content, Document, Group, Layer, Progress, flatten};
 use crate::math::Size;
 use crate::raster::tile::TILE;
-use crate::raster::{TileAt, TileGrid};
+use crate::raster::{BlendMode, TileAt, TileGrid};
 use std::sync::Arc;
 
 /// Largest differences of pictures that count as alike, of 255: in the mean, and in all but a
@@ -27,6 +27,8 @@ const NEAR_MEAN: f64 = 3.0;
 const NEAR_P99: usize = 16;
 /// As far as edges of text differ, which Photoshop blends by a curve of its own.
 const MOST_OF_TEXT: usize = 40;
+/// What ends the notes of files of other colors.
+const BLENDED_AS_SRGB: &str = "layers blend in those";
 /// Names of what is added.
 pub(super) const PICTURE: &str = "The file's own picture";
 const LAYERS: &str = "Layers";
@@ -114,9 +116,10 @@ pub fn check_against_merged(
             .push("the file's own picture is empty, so it was not compared with the layers".into());
         return document;
     }
+    let cause = name_cause(&document, is_less, notes);
     notes.push(format!(
-        "the layers differ from the file's own picture by {mean:.1} of 255 on average, {most} at most: “{PICTURE}” \
-         is shown, and the layers are hidden below it in the group “{LAYERS}”"
+        "the layers differ from the file's own picture by {mean:.1} of 255 on average, {most} at most, {cause}: \
+         “{PICTURE}” is shown, and the layers are hidden below it in the group “{LAYERS}”"
     ));
     let group = Group { layers: document.layers, pass_through: true };
     let layers = Layer {
@@ -140,6 +143,28 @@ fn name_fitted_part(
         Some("the edges of its text")
     } else {
         None
+    }
+}
+
+/// The likeliest cause of what differs.
+fn name_cause(document: &Document, is_less: bool, notes: &[String]) -> &'static str {
+    let walk = document.walk();
+    let has =
+        |is: &dyn Fn(&Layer) -> bool| walk.iter().any(|(_, layer)| layer.visible && is(layer));
+    if is_less {
+        "because of what is left out"
+    } else if notes.iter().any(|note| note.ends_with(BLENDED_AS_SRGB)) {
+        "because its colors are blended and adjusted as sRGB here"
+    } else if has(&|layer| layer.effects.iter().any(|effect| effect.on)) {
+        "probably because its effects are drawn otherwise here"
+    } else if has(&|layer| matches!(layer.content, Content::Adjustment(_))) {
+        "probably because its adjustments are computed otherwise here"
+    } else if has(&|layer| layer.blend != BlendMode::Normal) {
+        "probably because its layers are blended otherwise here"
+    } else if notes.iter().any(|note| note.ends_with(blocks::TEXT_NOTE)) {
+        "probably at the edges of its text"
+    } else {
+        "perhaps because that picture was made by another program, or before its layers were changed"
     }
 }
 

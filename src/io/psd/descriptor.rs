@@ -16,6 +16,8 @@ const MOST: u32 = 1 << 20;
 #[derive(Debug, PartialEq)]
 pub enum DescriptorValue {
     Number(f64),
+    /// A number and its unit.
+    Measure([u8; 4], f64),
     Flag(bool),
     Text(String),
     Object(DescriptorObject),
@@ -25,6 +27,18 @@ pub enum DescriptorValue {
     Bytes(Vec<u8>),
     /// A kind that is not read.
     Else,
+}
+
+impl DescriptorValue {
+    /// Finite.
+    fn number(&self) -> Option<f32> {
+        match self {
+            Self::Number(number) | Self::Measure(_, number) => {
+                Some(*number as f32).filter(|number| number.is_finite())
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Values by their names.
@@ -43,11 +57,23 @@ impl DescriptorObject {
 
     /// Finite.
     pub fn number(&self, name: &str) -> Option<f32> {
-        match self.get(name)? {
-            DescriptorValue::Number(number) => {
-                Some(*number as f32).filter(|number| number.is_finite())
-            }
-            _ => None,
+        self.get(name)?.number()
+    }
+
+    /// Its unit is a point, a 72nd of an inch.
+    pub fn is_in_points(&self, name: &str) -> bool {
+        matches!(self.get(name), Some(DescriptorValue::Measure(unit, _)) if unit == b"#Pnt")
+    }
+
+    /// The numbers of a list.
+    pub fn numbers(&self, name: &str) -> impl Iterator<Item = f32> {
+        self.list(name).iter().filter_map(DescriptorValue::number)
+    }
+
+    fn list(&self, name: &str) -> &[DescriptorValue] {
+        match self.get(name) {
+            Some(DescriptorValue::List(list)) => list.as_slice(),
+            _ => &[],
         }
     }
 
@@ -91,11 +117,7 @@ impl DescriptorObject {
 
     /// The objects of a list.
     pub fn objects(&self, name: &str) -> impl Iterator<Item = &DescriptorObject> {
-        let list = match self.get(name) {
-            Some(DescriptorValue::List(list)) => list.as_slice(),
-            _ => &[],
-        };
-        list.iter().filter_map(|value| match value {
+        self.list(name).iter().filter_map(|value| match value {
             DescriptorValue::Object(object) => Some(object),
             _ => None,
         })
@@ -149,8 +171,8 @@ fn value(cursor: &mut ByteCursor, deeper: u32, left: &mut u32) -> Option<Descrip
             DescriptorValue::Else
         }
         b"UntF" => {
-            cursor.key()?;
-            DescriptorValue::Number(double(cursor)?)
+            let unit = cursor.key()?;
+            DescriptorValue::Measure(unit, double(cursor)?)
         }
         b"long" => DescriptorValue::Number(f64::from(cursor.i32()?)),
         b"bool" => DescriptorValue::Flag(cursor.u8()? != 0),

@@ -1,9 +1,9 @@
-//! Fill layers: one color, a gradient or a pattern, read from descriptors. Floor 5. Not here: the
-//! pictures of patterns (`pattern`).
+//! What layers are filled with: one color, a gradient or a pattern; colors and ramps as descriptors
+//! say them. Floor 5. Not here: the blocks of fills (`fill_block`), the pictures of patterns
+//! (`pattern`).
 
 use super::colors::{Colors, Mode};
-use super::cursor::ByteCursor;
-use super::descriptor::{self, DescriptorObject};
+use super::descriptor::DescriptorObject;
 use crate::math::srgb::{self, Color};
 use crate::math::{Rect, Size, Vec2, hsv, vec2};
 use crate::paint::RampStyle;
@@ -48,24 +48,6 @@ const ROUNDING: f32 = 1e-3;
 /// No real gradient has more stops.
 const MOST_STOPS: usize = 1000;
 
-/// Reads the block of a fill; `None` where it holds what is not understood.
-pub fn read(key: [u8; 4], mut data: ByteCursor, colors: &Colors) -> Option<LayerFill> {
-    let said = descriptor::read(&mut data)?;
-    Some(match &key {
-        b"SoCo" => LayerFill::Solid(color(said.object("Clr ")?, colors)?),
-        b"GdFl" => LayerFill::Gradient(gradient(&said, colors)?),
-        _ => {
-            let phase = said.object("phase");
-            let along = |name: &str| phase.and_then(|phase| phase.number(name)).unwrap_or(0.0);
-            LayerFill::Pattern(PatternFill {
-                id: said.object("Ptrn")?.text("Idnt")?.to_owned(),
-                scale: share(&said, "Scl ", 1.0).max(0.01).min(100.0),
-                phase: vec2(along("Hrzn"), along("Vrtc")),
-            })
-        }
-    })
-}
-
 /// A percentage as a share.
 pub fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
     object.number(name).map_or(absent, |percent| percent / 100.0)
@@ -100,6 +82,31 @@ pub fn color(said: &DescriptorObject, colors: &Colors) -> Option<Color> {
     let gray = 1.0 - said.number("Gry ")? / 100.0;
     let gray = if colors.is_light { srgb::encode(gray.max(0.0)) } else { gray };
     Some(in_mode(Mode::Gray, [srgb::quantize(gray), 0, 0, 0]))
+}
+
+/// A color that is said in inks or Lab as the values of a file of that mode; `None` of others.
+pub fn own_values(said: &DescriptorObject, mode: Mode) -> Option<[f32; 4]> {
+    let number = |name: &str| said.number(name);
+    match mode {
+        Mode::Cmyk => {
+            let light = |name: &str| Some(1.0 - number(name)? / 100.0);
+            Some([light("Cyn ")?, light("Mgnt")?, light("Ylw ")?, light("Blck")?])
+        }
+        Mode::Lab => {
+            let around = |name: &str| Some((number(name)? + 128.0) / 255.0);
+            Some([number("Lmnc")? / 100.0, around("A   ")?, around("B   ")?, 0.0])
+        }
+        _ => None,
+    }
+}
+
+/// The encoded sRGB of a file's values.
+pub fn show_values(values: &[[f32; 4]], colors: &Colors) -> Vec<[f32; 3]> {
+    let plane = |c: usize| Some(values.iter().map(|value| srgb::quantize(value[c])).collect());
+    let planes = [plane(0), plane(1), plane(2), plane(3)];
+    let rgba = colors.to_srgb(Size::new(values.len() as u32, 1), &planes, None);
+    let color = |&[r, g, b, _]: &[u8; 4]| [r, g, b].map(|v| f32::from(v) / 255.0);
+    rgba.as_chunks::<4>().0.iter().map(color).collect()
 }
 
 /// A color of one mode, of a file in perhaps another.

@@ -3,22 +3,36 @@
 
 use super::effects::RecordEffects;
 use super::fill::{GradientFill, LayerFill};
+use super::line::ShapeLine;
 use super::pattern::PatternResource;
 use super::{LayerRecord, RecordMask};
-use crate::document::{Content, Live, PixelLayer};
+use crate::document::{Content, Group, Layer, Live, PixelLayer};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::TileGrid;
+use std::sync::Arc;
 
 /// How far a fill's pixels may differ from it, of 255, before they win over it.
 const SAME: u8 = 3;
+/// The name of the layer that is a line around a shape.
+const LINE: &str = "Line";
+
+/// What is noted where a line around a shape cannot be drawn.
+const NO_LINE: &str = "the line around its shape is left out";
 
 /// The content of a layer. The shape that its fill's pixels show goes into its mask.
 pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource]) -> Content {
     match record.fill.take() {
         None => {
-            if record.stroked && record.rgba.is_empty() {
-                record.leave_out("the line around its shape is left out");
+            if record.rgba.is_empty() {
+                if record.stroked {
+                    record.leave_out(NO_LINE);
+                }
+                if record.has_unknown_fill {
+                    record.leave_out("its fill is left out: a gradient of noise, or damaged");
+                }
+            } else if record.has_unknown_fill {
+                record.note_conversion("its fill, a gradient of noise or damaged, became pixels");
             }
             own_pixels(record)
         }
@@ -27,19 +41,61 @@ pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource
     }
 }
 
-/// A fill whose pixels the file does not hold.
+/// A fill whose pixels the file does not hold, with the line around it.
 fn draw_fill(
     record: &mut LayerRecord,
     fill: LayerFill,
     size: Size,
     patterns: &[PatternResource],
 ) -> Content {
-    if record.stroked {
-        record.leave_out("the line around its shape is left out");
+    let line = record.line.take().filter(|line| line.coverage.is_some());
+    if record.stroked && line.is_none() {
+        record.leave_out(NO_LINE);
     }
-    if record.unfilled {
-        return pixels(Vec::new(), Rect::EMPTY);
+    let filled = match record.unfilled {
+        true => None,
+        false => Some(fill_content(record, fill, size, patterns)),
+    };
+    let Some(line) = line else {
+        return filled.unwrap_or_else(|| pixels(Vec::new(), Rect::EMPTY));
+    };
+    let inner = filled.map(|filled| {
+        let mask = record.mask.take().map(|mask| mask.to_layer_mask(size));
+        Layer { mask, clip_to_surface: false, ..Layer::new(record.name.clone(), filled) }
+    });
+    record.mask = None;
+    let drawn = line_layer(record, line, size, patterns);
+    let layers = inner.into_iter().chain([drawn]).map(Arc::new).collect();
+    Content::Group(Group { layers, pass_through: false })
+}
+
+/// The line around a shape, as a fill with a mask.
+fn line_layer(
+    record: &mut LayerRecord,
+    line: ShapeLine,
+    size: Size,
+    patterns: &[PatternResource],
+) -> Layer {
+    // What it fills is as large as its mask.
+    let mut own = LayerRecord { mask: line.coverage, ..LayerRecord::default() };
+    let content = fill_content(&mut own, line.fill, size, patterns);
+    std::mem::take(&mut own.lost).into_iter().for_each(|what| record.leave_out(what));
+    Layer {
+        mask: own.mask.map(|mask| mask.to_layer_mask(size)),
+        opacity: line.opacity,
+        blend: line.blend,
+        clip_to_surface: false,
+        ..Layer::new(LINE, content)
     }
+}
+
+/// A fill whose pixels the file does not hold.
+fn fill_content(
+    record: &mut LayerRecord,
+    fill: LayerFill,
+    size: Size,
+    patterns: &[PatternResource],
+) -> Content {
     match fill {
         LayerFill::Solid(color) => Content::Fill(color),
         LayerFill::Gradient(gradient) => {

@@ -8,6 +8,7 @@ use super::cursor::ByteCursor;
 use super::fill::LayerFill;
 use super::header::PsdHeader;
 use super::masks::{MaskData, Softness};
+use super::outline::VectorPaths;
 use super::{LayerRecord, RecordMask};
 use crate::Budget;
 use crate::math::{Rect, Size};
@@ -224,12 +225,30 @@ impl<'a> RecordReader<'a> {
             record.leave_out("its vector mask is left out: it would take too long to draw");
             return Ok(());
         }
-        let drawn = RecordMask::of_canvas(size, outline.coverage(size));
+        let filled = outline.coverage(size);
+        self.draw_line(record, &outline, &filled)?;
+        let drawn = RecordMask::of_canvas(size, filled);
         let drawn = self.soften_mask(drawn, of_outline)?;
         record.mask = Some(match record.mask.take().filter(|mask| !mask.disabled) {
             Some(mask) => mask.times(size, &drawn),
             None => drawn,
         });
+        Ok(())
+    }
+
+    /// The line around a shape whose pixels are not in the file.
+    fn draw_line(
+        &mut self,
+        record: &mut LayerRecord,
+        outline: &VectorPaths,
+        filled: &[u8],
+    ) -> Result<()> {
+        let is_shown = record.rgba.is_empty() && record.mask.is_none();
+        let Some(mut line) = record.line.take().filter(|_| is_shown) else { return Ok(()) };
+        let size = self.header.size;
+        self.spend(size.area() as u64 / 2)?;
+        self.drawn_px += size.area() as u64;
+        record.line = line.try_draw(outline, size, filled).then_some(line);
         Ok(())
     }
 

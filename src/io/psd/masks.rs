@@ -3,8 +3,10 @@
 
 use super::RecordMask;
 use super::cursor::ByteCursor;
+use crate::document::{LayerMask, MaskKind};
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, blur};
+use std::sync::Arc;
 
 /// A mask's place and what its flags say; its values are a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,6 +120,13 @@ impl RecordMask {
             let (x, y) = (self.rect.x0 + x as i32, self.rect.y0 + y as i32);
             all.union(Rect::new(x, y, x + 1, y + 1))
         })
+    }
+
+    /// As a layer's mask.
+    pub fn to_layer_mask(&self, size: Size) -> LayerMask {
+        let coverage = Arc::new(self.plane(size));
+        let kind = MaskKind::File { file: String::new(), coverage };
+        LayerMask { disabled: self.disabled, ..LayerMask::new(kind) }
     }
 
     /// The coverage of the whole canvas.

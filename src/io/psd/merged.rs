@@ -36,8 +36,7 @@ pub fn read_merged<T: ColorValue>(
     count: Option<i16>,
     has_room: bool,
 ) -> Option<Merged> {
-    let has_alpha =
-        usize::from(header.channels) > header.colors() && has_alpha(resources, header.mode, count);
+    let has_alpha = has_alpha(resources, header, count);
     let own = header.colors() + usize::from(has_alpha);
     let wanted = if has_room && header.mode != Mode::Multichannel {
         usize::from(header.channels)
@@ -68,10 +67,17 @@ pub fn read_merged<T: ColorValue>(
 
 /// A channel beyond the colors is the transparency of all layers, not a selection that somebody
 /// kept.
-fn has_alpha(resources: ByteCursor, mode: Mode, count: Option<i16>) -> bool {
+fn has_alpha(resources: ByteCursor, header: &PsdHeader, count: Option<i16>) -> bool {
+    let more = usize::from(header.channels).saturating_sub(header.colors());
+    if more == 0 || header.mode == Mode::Multichannel {
+        return false;
+    }
     let names = resource(resources, alpha_channels::NUMBERS).unwrap_or_default();
     let is_named = !names.is_empty() && names.as_chunks::<4>().0.iter().all(|name| *name != [0; 4]);
-    mode != Mode::Multichannel && !is_named && count.is_none_or(|count| count < 0)
+    // Of a single channel that is kept the file would say something.
+    let is_kept =
+        more > 1 || alpha_channels::ABOUT.iter().any(|about| resource(resources, *about).is_some());
+    !is_named && count.is_none_or(|count| count < 0 || !is_kept)
 }
 
 /// The first channels, `own` at least, and of the others up to `wanted` as many as are whole.

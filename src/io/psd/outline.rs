@@ -2,7 +2,7 @@
 //! Floor 5. Masks that are pictures are `masks`'.
 
 use super::cursor::ByteCursor;
-use crate::math::Size;
+use crate::math::{Size, vec2};
 use tiny_skia::{FillRule, Mask, Path, PathBuilder, Transform};
 
 /// A knot: the handle before it, itself, the handle behind it; each y, x as shares of the canvas.
@@ -99,6 +99,17 @@ impl VectorPaths {
         self.shapes.len()
     }
 
+    /// What a line along its paths follows, and its length in px at most; `None` of several shapes,
+    /// and of what is outside of one.
+    pub fn path_of_line(&self, size: Size) -> Option<(Path, f32)> {
+        match &self.shapes[..] {
+            [shape] if shape.way == PathOperation::Add && !self.inverted => {
+                Some((shape.path(size, false)?, shape.length_px(size)))
+            }
+            _ => None,
+        }
+    }
+
     /// Coverage of every pixel of the canvas, row by row.
     pub fn coverage(&self, size: Size) -> Vec<u8> {
         // What is added first would add nothing to all of the canvas, so it begins.
@@ -121,13 +132,14 @@ impl VectorPaths {
 impl FilledPaths {
     /// `None` if nothing is covered.
     fn fill_mask(&self, size: Size) -> Option<Mask> {
-        let path = self.path(size)?;
+        let path = self.path(size, true)?;
         let mut mask = Mask::new(size.width, size.height)?;
         mask.fill_path(&path, FillRule::EvenOdd, true, Transform::identity());
         Some(mask)
     }
 
-    fn path(&self, size: Size) -> Option<Path> {
+    /// That of what is filled, or of a line, which may be open.
+    fn path(&self, size: Size, is_filled: bool) -> Option<Path> {
         let mut builder = PathBuilder::new();
         let place = |[y, x]: [f32; 2]| (x * size.width as f32, y * size.height as f32);
         for KnotPath { knots, is_open } in &self.paths {
@@ -139,9 +151,25 @@ impl FilledPaths {
                 let ((x1, y1), (x2, y2), (x, y)) = (place(from[2]), place(to[0]), place(to[1]));
                 builder.cubic_to(x1, y1, x2, y2, x, y);
             }
-            builder.close();
+            if is_filled || !is_open {
+                builder.close();
+            }
         }
         builder.finish()
+    }
+
+    /// No curve is longer than the lines between its handles.
+    fn length_px(&self, size: Size) -> f32 {
+        let place = |[y, x]: [f32; 2]| vec2(x * size.width as f32, y * size.height as f32);
+        let of_path = |path: &KnotPath| -> f32 {
+            let pairs = path.knots.iter().zip(path.knots.iter().cycle().skip(1));
+            let pair = |(from, to): (&Knot, &Knot)| {
+                let points = [from[1], from[2], to[0], to[1]].map(place);
+                points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>()
+            };
+            pairs.map(pair).sum()
+        };
+        self.paths.iter().map(of_path).sum()
     }
 }
 

@@ -6,6 +6,7 @@ use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::gray::GrayTones;
 use super::header::{PsdHeader, header, resource};
+use super::inks::InkTones;
 use super::layers::RecordReader;
 use super::merged::{Merged, read_merged};
 use super::pattern::{self, PatternResource};
@@ -33,6 +34,8 @@ pub struct ParsedPsd<'a> {
     pub has_profile: bool,
     /// What its gray values are in sRGB, unless they are the same.
     pub gray: Option<GrayTones>,
+    /// Its inks, if they have a profile and there is something to adjust.
+    pub inks: Option<InkTones>,
     /// The light of effects that have none of their own.
     pub effect_light: EffectLight,
     /// And how many were left out.
@@ -97,6 +100,8 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
             "it holds no layers, and its picture is damaged or cut short",
         ));
     }
+    let adjusts = records.iter().any(|record| record.adjustment.is_some());
+    let inks = if adjusts { InkTones::of(&colors) } else { None };
     let guides = marks::guides(resources);
     let effect_light = marks::effect_light(resources);
     Ok(ParsedPsd {
@@ -107,6 +112,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         patterns,
         has_profile: colors.has_profile(),
         gray: GrayTones::of(&colors, header.bits),
+        inks,
         effect_light,
         guides,
         damage,

@@ -67,6 +67,11 @@ pub fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill
     let is_of_light = colors.is_light && mixing == RampMixing::Classic;
     let mixing = if is_of_light { RampMixing::Linear } else { mixing };
     let smoothness = ramp.number("Intr").unwrap_or(0.0);
+    if mixing == RampMixing::Classic
+        && let Some(stops) = own_stops(ramp, smoothness, colors)
+    {
+        return Some(GradientFill { stops: fill::in_direction(stops, said, read.way), ..read });
+    }
     if smoothness == 0.0 && mixing == RampMixing::Classic {
         return Some(read);
     }
@@ -109,6 +114,21 @@ pub fn stops(
     if is_even || is_plain || inks.len() + opacities.len() > MOST_MARKS {
         return fill::ramp(inks, opacities);
     }
+    let entered =
+        inks.iter().map(|mark| Mark { value: mixing.enter(mark.value), ..*mark }).collect();
+    let leave = |values: Vec<[f32; 3]>| values.into_iter().map(|v| mixing.leave(v)).collect();
+    dense_stops(entered, opacities, smoothness, leave)
+}
+
+/// Stops close to each other, of values that are mixed; all of them in order.
+///
+/// * `leave`: the colors of values.
+fn dense_stops<const N: usize>(
+    inks: Vec<Mark<[f32; N]>>,
+    opacities: Vec<Mark<[f32; 1]>>,
+    smoothness: f32,
+    leave: impl FnOnce(Vec<[f32; N]>) -> Vec<[f32; 3]>,
+) -> Option<Vec<GradientStop>> {
     let mut places: Vec<f32> = inks.iter().map(|mark| mark.t).collect();
     places.extend(opacities.iter().map(|mark| mark.t));
     places.sort_by(f32::total_cmp);
@@ -121,20 +141,36 @@ pub fn stops(
         places.windows(2).flat_map(between).chain(places.last().copied()).collect();
     all.dedup();
     let share = (smoothness / WHOLE).max(0.0).min(1.0);
-    let entered: Vec<Mark<[f32; 3]>> =
-        inks.iter().map(|mark| Mark { value: mixing.enter(mark.value), ..*mark }).collect();
-    let mark = |t: f32, value: [f32; 3]| Mark { t, middle: 0.5, value };
-    let mut dense_inks = Vec::with_capacity(all.len());
-    let mut dense_opacities = Vec::with_capacity(all.len());
+    let mark = |t: f32, value: [f32; 1]| Mark { t, middle: 0.5, value };
+    let (mut values, mut dense_opacities) = (Vec::new(), Vec::new());
     for t in all {
-        let sides = sides(&inks, &opacities, t);
-        for side in sides.into_iter().flatten() {
+        for side in sides(&inks, &opacities, t).into_iter().flatten() {
+            values.push(value_at(&inks, t, side, share)?);
             let opacity = value_at(&opacities, t, side, share).unwrap_or([1.0]);
-            dense_inks.push(mark(t, mixing.leave(value_at(&entered, t, side, share)?)));
-            dense_opacities.push(Mark { t, middle: 0.5, value: opacity });
+            dense_opacities.push(mark(t, opacity));
         }
     }
+    let colors = leave(values).into_iter().zip(&dense_opacities);
+    let dense_inks = colors.map(|(value, at)| Mark { t: at.t, middle: 0.5, value }).collect();
     fill::ramp(dense_inks, dense_opacities)
+}
+
+/// The stops of a ramp whose colors are said as values of the file, which mixes those; `None` of
+/// others.
+fn own_stops(
+    ramp: &DescriptorObject,
+    smoothness: f32,
+    colors: &Colors,
+) -> Option<Vec<GradientStop>> {
+    let mut inks =
+        marks(ramp, "Clrs", |object| fill::own_values(object.object("Clr ")?, colors.mode))?;
+    let mut opacities = marks(ramp, "Trns", |object| Some([share(object, "Opct", 1.0)]))?;
+    if inks.len() + opacities.len() > MOST_MARKS {
+        return None;
+    }
+    inks.sort_by(|a, b| a.t.total_cmp(&b.t));
+    opacities.sort_by(|a, b| a.t.total_cmp(&b.t));
+    dense_stops(inks, opacities, smoothness, |values| fill::show_values(&values, colors))
 }
 
 /// From which side a place is seen.
@@ -145,7 +181,11 @@ enum RampSide {
 }
 
 /// Both sides of a hard edge, one of any other place.
-fn sides(inks: &[Mark<[f32; 3]>], opacities: &[Mark<[f32; 1]>], t: f32) -> [Option<RampSide>; 2] {
+fn sides<const N: usize>(
+    inks: &[Mark<[f32; N]>],
+    opacities: &[Mark<[f32; 1]>],
+    t: f32,
+) -> [Option<RampSide>; 2] {
     let is_edge = inks.iter().filter(|mark| mark.t == t).count() > 1
         || opacities.iter().filter(|mark| mark.t == t).count() > 1;
     [is_edge.then_some(RampSide::Before), Some(RampSide::Behind)]

@@ -1,5 +1,6 @@
 mod adjusted;
 mod foreign;
+mod lines;
 mod made;
 mod marks;
 mod sixteen_bit;

@@ -6,11 +6,12 @@ use super::colors::{Mode, StraightPixels};
 use super::compare::check_against_merged;
 use super::effects::RecordEffects;
 use super::gray::GrayTones;
+use super::inks::InkTones;
 use super::parse::{ParsedPsd, parse};
 use super::pattern::PatternResource;
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks, signature};
 use crate::Budget;
-use crate::document::{Content, Document, Group, Guides, Layer, LayerLock, LayerMask, MaskKind};
+use crate::document::{Content, Document, Group, Guides, Layer, LayerLock};
 use crate::math::Size;
 use crate::paint::effect::EffectPattern;
 use crate::paint::{ColorAdjustment, LayerEffect};
@@ -86,6 +87,7 @@ pub(super) fn build_document(
         is_light: parsed.header.bits == 32,
         has_profile: parsed.has_profile,
         gray: parsed.gray.as_ref(),
+        inks: parsed.inks.as_ref(),
         open: vec![Vec::new()],
         is_less: false,
         notes: std::mem::take(notes),
@@ -210,6 +212,7 @@ struct TreeBuilder<'a> {
     /// Its values have a profile of their own.
     has_profile: bool,
     gray: Option<&'a GrayTones>,
+    inks: Option<&'a InkTones>,
     open: Vec<Vec<Arc<Layer>>>,
     /// Something was left out.
     is_less: bool,
@@ -243,6 +246,8 @@ impl TreeBuilder<'_> {
                 self.layer(record, Content::Group(group))
             }
             RecordSection::Layer => {
+                // A line and what it is around are a group.
+                record.line = record.line.take().filter(|_| self.open.len() <= self.deepest);
                 let content = match record.adjustment.take() {
                     Some(adjustment) => self.adjust(&mut record, adjustment),
                     None => filled::content(&mut record, self.size, self.patterns),
@@ -257,17 +262,26 @@ impl TreeBuilder<'_> {
 
     /// An adjustment of the values that the file has.
     fn adjust(&self, record: &mut LayerRecord, adjustment: ColorAdjustment) -> Content {
-        let Some(lookup) = self.gray.and_then(|gray| gray.lookup(&adjustment)) else {
-            if self.has_profile {
+        let of_black = record.adjustment_of_black.take();
+        let (lookup, note) = if let Some(gray) = self.gray {
+            let note =
+                "it adjusts the values of the file's gray profile, and became a table of tones";
+            (gray.lookup(&adjustment), note)
+        } else if let Some(inks) = self.inks {
+            let note = "it adjusts the file's inks, and became a table of colors";
+            (inks.lookup(&adjustment, of_black.as_ref()), note)
+        } else {
+            (None, "")
+        };
+        let Some(lookup) = lookup else {
+            if self.has_profile || self.inks.is_some() {
                 record.note_conversion(
                     "it adjusts sRGB values, and in other programs those of the file's color profile",
                 );
             }
             return adjustment.into();
         };
-        record.note_conversion(
-            "it adjusts the values of the file's gray profile, and became a table of tones",
-        );
+        record.note_conversion(note);
         ColorAdjustment::ColorLookup(lookup).into()
     }
 
@@ -283,7 +297,7 @@ impl TreeBuilder<'_> {
         let board = RecordMask { rect, outside: 0, values, disabled: false };
         if let Some(color) = ground.color {
             let fill = Layer {
-                mask: Some(self.mask(&board)),
+                mask: Some(board.to_layer_mask(self.size)),
                 clip_to_surface: false,
                 ..Layer::new("Artboard", Content::Fill(color))
             };
@@ -349,7 +363,7 @@ impl TreeBuilder<'_> {
             label: record.label,
             effects: Arc::new(effects),
             fill_opacity,
-            mask: record.mask.as_ref().map(|mask| self.mask(mask)),
+            mask: record.mask.as_ref().map(|mask| mask.to_layer_mask(self.size)),
             clip_to_surface: false,
             ..Layer::new(record.name, content)
         }
@@ -373,12 +387,6 @@ impl TreeBuilder<'_> {
             effect.pattern = made.map(Arc::new);
         }
         (list, lost)
-    }
-
-    fn mask(&self, mask: &RecordMask) -> LayerMask {
-        let kind =
-            MaskKind::File { file: String::new(), coverage: Arc::new(mask.plane(self.size)) };
-        LayerMask { disabled: mask.disabled, ..LayerMask::new(kind) }
     }
 
     /// Groups that were never closed end with the file.

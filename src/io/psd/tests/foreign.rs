@@ -11,7 +11,7 @@ use crate::project::ProjectContents;
 use crate::raster::BlendMode;
 use std::path::Path;
 
-fn open(made: &Made) -> ProjectContents {
+pub fn open(made: &Made) -> ProjectContents {
     let bytes = made.bytes();
     attack(&bytes);
     read_back(&bytes)
@@ -54,7 +54,7 @@ pub fn attack(bytes: &[u8]) {
     }
 }
 
-fn pixel(document: &Document, x: i32, y: i32) -> [u8; 4] {
+pub fn pixel(document: &Document, x: i32, y: i32) -> [u8; 4] {
     flatten(document, &Progress::default()).unwrap().pixel(x, y)
 }
 
@@ -222,7 +222,7 @@ fn effects_of_the_old_block_are_live_where_it_is_alone() {
 }
 
 /// A rectangle's knots, as shares of the canvas: left, top, right, bottom.
-fn rectangle([x0, y0, x1, y1]: [f32; 4]) -> Vec<u8> {
+pub fn rectangle([x0, y0, x1, y1]: [f32; 4]) -> Vec<u8> {
     let mut out = [3u32.to_be_bytes(), [0; 4]].concat();
     let mut begin = [0, 0, 0, 4, 0, 1].to_vec();
     begin.resize(26, 0);
