@@ -88,6 +88,7 @@ pub(super) fn build_document(
         has_profile: parsed.has_profile,
         gray: parsed.gray.as_ref(),
         inks: parsed.inks.as_ref(),
+        tables: 0,
         open: vec![Vec::new()],
         is_less: false,
         notes: std::mem::take(notes),
@@ -201,6 +202,9 @@ fn png(file: &Path, record: &LayerRecord) -> Result<crate::raster::Asset> {
     pixels::encode_texels(file, record.rgba.as_chunks().0, size)
 }
 
+/// Adjustments of one file that become tables, a quarter of a megabyte each.
+const MOST_TABLES: usize = 200;
+
 /// Layers gathered bottom first, each open group a list of its own.
 struct TreeBuilder<'a> {
     size: Size,
@@ -213,6 +217,8 @@ struct TreeBuilder<'a> {
     has_profile: bool,
     gray: Option<&'a GrayTones>,
     inks: Option<&'a InkTones>,
+    /// Adjustments that became tables.
+    tables: usize,
     open: Vec<Vec<Arc<Layer>>>,
     /// Something was left out.
     is_less: bool,
@@ -261,15 +267,16 @@ impl TreeBuilder<'_> {
     }
 
     /// An adjustment of the values that the file has.
-    fn adjust(&self, record: &mut LayerRecord, adjustment: ColorAdjustment) -> Content {
+    fn adjust(&mut self, record: &mut LayerRecord, adjustment: ColorAdjustment) -> Content {
         let of_black = record.adjustment_of_black.take();
+        let has_room = self.tables < MOST_TABLES;
         let (lookup, note) = if let Some(gray) = self.gray {
             let note =
                 "it adjusts the values of the file's gray profile, and became a table of tones";
-            (gray.lookup(&adjustment), note)
+            (has_room.then(|| gray.lookup(&adjustment)).flatten(), note)
         } else if let Some(inks) = self.inks {
             let note = "it adjusts the file's inks, and became a table of colors";
-            (inks.lookup(&adjustment, of_black.as_ref()), note)
+            (has_room.then(|| inks.lookup(&adjustment, of_black.as_ref())).flatten(), note)
         } else {
             (None, "")
         };
@@ -281,6 +288,7 @@ impl TreeBuilder<'_> {
             }
             return adjustment.into();
         };
+        self.tables += 1;
         record.note_conversion(note);
         ColorAdjustment::ColorLookup(lookup).into()
     }
