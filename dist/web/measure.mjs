@@ -1,5 +1,5 @@
 // Measures the page in headless Chromium: how long it loads, how soon a stroke and a dragged picture are
-// seen, how much memory a large document takes. The figures are in docs/PERFORMANCE.md.
+// seen, how much memory a large document takes. The figures are in docs/notes/performance.md.
 //
 //   node dist/web/measure.mjs FOLDER
 //
@@ -29,7 +29,7 @@ function script(name, width, height, layers) {
 }
 script("brush.jsonl", 1920, 1080, 1);
 script("picture.jsonl", 1920, 1080, 0);
-script("large.jsonl", 4096, 4096, 8);
+script("large.jsonl", 4096, 4096, 7);
 
 const server = await serve([folder, scripts], PORT);
 const browser = await chromium.launch({
@@ -144,7 +144,6 @@ async function dragged(name, query, keys) {
   await page.waitForTimeout(500);
   const { frames, seen } = await program.evaluate(() => self.figures);
   console.log(`${name}: frame ${spread(frames)}, seen after ${spread(seen)}`);
-  await page.screenshot({ path: join(scripts, `${name.replace(/\W+/g, "_")}.png`) });
   await context.close();
 }
 

@@ -163,6 +163,11 @@ fn letters_stand_on_their_path_and_carets_between_them() {
     let path = up.path.clone();
     let second = carets(&Text { path, ..text("a\nb") }).unwrap();
     assert!((second[2].at.x - 24.0).abs() < 0.1 && second[2].line == 1, "{second:?}");
+    // A closed line holds a centered text where it begins, however often one goes around.
+    for shift in [0.0, 400.0, -800.0] {
+        let middle = carets(&on(true, shift, TextAlign::Middle)).unwrap()[2];
+        assert!(middle.at.length() < 0.5, "{shift}: {middle:?}");
+    }
     // Nothing to run along: nothing is drawn.
     let nowhere = TextPath { line: Subpath::default(), shift: 0.0 };
     let lost = layout(&Text { path: Some(nowhere), ..text("abc") });

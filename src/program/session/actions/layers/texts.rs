@@ -7,8 +7,8 @@ use crate::document::{Content, Document, Layer, LayerId, Live};
 use crate::io::{Budget, text};
 use crate::math::{Size, Vec2};
 use crate::paint::{
-    Adjust, ImageFilter, PictureOrigin, PictureSource, PlacedImage, Placement, Subpath, Text,
-    TextPath, TextStyle,
+    Adjust, ImageFilter, LivePath, PictureOrigin, PictureSource, PlacedImage, Placement, Subpath,
+    Text, TextPath, TextStyle,
 };
 use crate::raster::Outside;
 use crate::session::actions::file_names::free_file;
@@ -115,7 +115,9 @@ fn lines_on_canvas(
     };
     let lines = live.subpaths();
     let mapped = lines.iter().filter(is_whole);
-    mapped.map(|line| line.mapped(|point| moved(point).unwrap_or(point))).collect()
+    let mapped = mapped.map(|line| line.mapped(|point| moved(point).unwrap_or(point)));
+    // What no file could hold is no line here.
+    mapped.filter(|line| LivePath::new(vec![line.clone()]).fits().is_ok()).collect()
 }
 
 /// The document with a text that runs along the longest line of a path, where that lies now.
