@@ -1,12 +1,13 @@
 //! Hatching: lines that follow the form, equally far apart on the surface, in nested levels, so that
 //! tone decides only which are drawn and how wide. Floor 2. Here: what is asked of them, their
 //! levels, and the cache. `directions` holds the field that they follow, `guided` spreads drawn
-//! strokes over it, `streamlines` places them, `stipples` places points in their stead, `room` measures
+//! strokes over it, `streamlines` places them, `placed` finds those nearby, `stipples` places points in their stead, `room` measures
 //! how densely they lie. Not here: tone, and strokes along them
 //! (`paint::form_drawing`).
 
 mod directions;
 mod guided;
+mod placed;
 mod room;
 mod stipples;
 mod streamlines;
@@ -51,6 +52,8 @@ crate::named! {
         Along = "along" => ("Along the form", "Where the form bends least"),
         /// Down the slope, as rain would run.
         Slope = "slope" => ("Down the slope", "Toward the outline, as rain would run"),
+        /// At one angle in the plane that the form unwraps to.
+        Wires = "wires" => ("Like wires", "Straight on the unwrapped form, as wires around it"),
         /// At one angle on the paper.
         Paper = "paper" => ("On the paper", "At one angle, whatever the form"),
         /// Along strokes that are drawn on another layer.
@@ -139,15 +142,16 @@ impl HatchSettings {
         }
     }
 
-    /// What the lines of each level cover where the tone is so dark, `[0, 1]`, as a share of what
-    /// those before leave free: together they cover `dark`.
+    /// What the lines of each level cover where the tone is so dark, `[0, 1]`: together they cover
+    /// `dark`. Lines of a family lie beside each other, so that what they cover adds up; of what
+    /// the other family covers, they cover their share once more.
     pub fn coverages(&self, dark: f32) -> impl Iterator<Item = f32> {
-        let mut left = 1.0;
+        let mut covered = [0.0f32; 2];
         self.levels().iter().map(move |level| {
-            // What is to stay free, and what one level can cover at most.
-            let wanted = 1.0 - (1.0 - dark).max(0.0) / left;
-            let share = wanted.max(0.0).min(level.share);
-            left *= 1.0 - share;
+            let (own, other) = (usize::from(level.family), usize::from(1 - level.family));
+            let free = (1.0 - dark).max(0.0) / (1.0 - covered[other]).max(1e-6);
+            let share = (1.0 - free - covered[own]).max(0.0).min(level.share);
+            covered[own] += share;
             share
         })
     }
@@ -160,7 +164,7 @@ impl HatchSettings {
         // As many points lie that far apart, of all.
         let share = |level: &HatchLevel| (levels[levels.len() - 1].apart / level.apart).powi(2);
         if dark > STIPPLED_UP_TO {
-            return STIPPLED_UP_TO + overlapping_area(dark) - overlapping_area(STIPPLED_UP_TO);
+            return overlapping_area(dark);
         }
         let before = if level == 0 { 0.0 } else { share(&levels[level - 1]) };
         let own = share(&levels[level]) - before;
@@ -177,11 +181,29 @@ impl HatchSettings {
 /// How dark stippling is when all of its points are drawn, just before they meet.
 const STIPPLED_UP_TO: f32 = 0.45;
 
-/// The area of points that cover so much though they overlap, of what each has for itself: what
-/// points cover that lie anywhere, but for a share.
+/// What discs at such points cover together, and the area of each, of what it has for itself, as
+/// measured; between them straight lines.
+const OVERLAPPING: [(f32, f32); 12] = [
+    (STIPPLED_UP_TO, STIPPLED_UP_TO),
+    (0.529, 0.55),
+    (0.575, 0.6),
+    (0.659, 0.7),
+    (0.734, 0.8),
+    (0.792, 0.9),
+    (0.841, 1.0),
+    (0.882, 1.1),
+    (0.915, 1.2),
+    (0.96, 1.4),
+    (0.983, 1.6),
+    (1.0, 2.2),
+];
+
+/// The area of points that cover so much though they overlap, of what each has for itself.
 fn overlapping_area(dark: f32) -> f32 {
-    // Beyond, points cover everything.
-    -0.8 * (1.0 - dark.min(0.98)).ln()
+    let all = &OVERLAPPING;
+    let i = all.iter().position(|(covered, _)| *covered >= dark).unwrap_or(all.len() - 1).max(1);
+    let ((c0, a0), (c1, a1)) = (all[i - 1], all[i]);
+    a0 + (a1 - a0) * ((dark - c0) / (c1 - c0)).max(0.0).min(1.0)
 }
 
 /// One of the nested levels of lines.
@@ -191,7 +213,7 @@ pub struct HatchLevel {
     pub apart: f32,
     /// 0, or 1 across it.
     pub family: u8,
-    /// The most that its lines cover of what those before leave free.
+    /// The most that its lines cover.
     pub share: f32,
 }
 

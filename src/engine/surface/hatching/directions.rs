@@ -4,12 +4,13 @@
 //! turning it (MATH 8).
 
 use super::guided::guide_directions;
-use super::stretch::{root, scale_along};
+use super::stretch::{PixelStretch, root};
 use super::{GuideLines, HatchSettings, HatchWay};
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::Plane;
 use crate::surface::form_lines::{SmoothNormals, diffuse_copy, gradient_of};
-use crate::surface::unwrap::metric::STEEPEST_NZ;
+use crate::surface::operator::UnwrapSettings;
+use crate::surface::unwrap::Unwrapping;
 use crate::surface::{Surface, links};
 use std::f32::consts::FRAC_PI_2;
 
@@ -19,9 +20,10 @@ const HINT: f32 = 1e-5;
 /// The field that lines follow.
 pub struct DirectionField<'s> {
     surface: &'s Surface,
-    normals: &'s SmoothNormals,
     /// cos 2θ and sin 2θ of the first family at each pixel.
     doubled: Plane<[f32; 2]>,
+    /// How the surface is stretched there.
+    stretch: Plane<PixelStretch>,
 }
 
 /// The principal directions at a pixel.
@@ -76,6 +78,11 @@ impl<'s> DirectionField<'s> {
                 let [nx, ny] = [nbar(0), nbar(1)];
                 of_angle(&|x, y| ny.at(x, y).atan2(nx.at(x, y)) - turned)
             }
+            HatchWay::Wires => {
+                let along = vec2(turned.cos(), -turned.sin());
+                let unwrapped = surface.unwrapping(UnwrapSettings::OF_WIRES);
+                of_angle(&|x, y| wire_angle(&unwrapped, surface, normals, along, (x, y)))
+            }
             HatchWay::Guides => {
                 let form = of_form(surface, normals, settings, -turned);
                 guide_directions(surface, normals, guides, -turned, form)
@@ -88,17 +95,18 @@ impl<'s> DirectionField<'s> {
             way.normalize_or(Vec2::X).to_array()
         };
         let doubled = Plane::from_fn(surface.size(), unit);
-        Self { surface, normals, doubled }
+        let stretch = Plane::from_fn(surface.size(), |x, y| PixelStretch::of(normals, x, y));
+        Self { surface, doubled, stretch }
     }
 
     /// S at a pixel.
     pub fn root(&self, x: usize, y: usize) -> Mat2 {
-        root(self.normals, x, y)
+        self.stretch.at(x, y).root()
     }
 
     /// S⁻¹ at a pixel.
     pub fn inverse_root(&self, x: usize, y: usize) -> Mat2 {
-        scale_along(self.normals.nbar(x, y), self.normals.nz(x, y).max(STEEPEST_NZ).min(1.0))
+        self.stretch.at(x, y).inverse_root()
     }
 
     /// Whether a pixel and the one that a step leads to are of one piece.
@@ -133,6 +141,18 @@ impl<'s> DirectionField<'s> {
         if way.dot(near) < 0.0 { -way } else { way }
     }
 
+    /// Whether a pixel, that beside it and those below both are one piece.
+    fn is_whole(&self, x: i32, y: i32) -> bool {
+        let size = self.surface.size();
+        let is_inside = x >= 0 && y >= 0 && x + 1 < size.width as i32 && y + 1 < size.height as i32;
+        let all = self.surface.links_plane();
+        let linked = |x: i32, y: i32, bits: u8| all.at(x as usize, y as usize) & bits == bits;
+        is_inside
+            && linked(x, y, links::RIGHT | links::DOWN)
+            && linked(x + 1, y, links::DOWN)
+            && linked(x, y + 1, links::RIGHT)
+    }
+
     /// The doubled direction between pixels, of those that are linked to the nearest.
     fn interpolate(&self, at: Vec2) -> Vec2 {
         let size = self.surface.size();
@@ -142,6 +162,15 @@ impl<'s> DirectionField<'s> {
         let (x, y) = (corner.x.floor() as i32, corner.y.floor() as i32);
         let (fx, fy) = (corner.x - x as f32, corner.y - y as f32);
         let own = (middle.0 as usize, middle.1 as usize);
+        if self.is_whole(x, y) {
+            let (x, y) = (x as usize, y as usize);
+            let row = |y: usize| {
+                let [left, right] = [x, x + 1].map(|x| Vec2::from(self.doubled.at(x, y)));
+                left + fx * (right - left)
+            };
+            let (above, below) = (row(y), row(y + 1));
+            return above + fy * (below - above);
+        }
         let mut sum = Vec2::ZERO;
         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             let weight = if dx == 1 { fx } else { 1.0 - fx } * if dy == 1 { fy } else { 1.0 - fy };
@@ -154,14 +183,33 @@ impl<'s> DirectionField<'s> {
     }
 }
 
+/// The angle in the tangent plane of what runs along a direction of the unwrapped plane.
+fn wire_angle(
+    unwrapped: &Unwrapping,
+    surface: &Surface,
+    normals: &SmoothNormals,
+    along: Vec2,
+    (x, y): (usize, usize),
+) -> f32 {
+    let linked = surface.links_plane().at(x, y);
+    let [u, v] = unwrapped.planes().map(|plane| gradient_of(plane, linked, x, y));
+    // The inverse of (∇u, ∇v), but for its scale.
+    let way = vec2(v.y * along.x - u.y * along.y, u.x * along.y - v.x * along.x);
+    let on_surface = root(normals, x, y) * way;
+    on_surface.y.atan2(on_surface.x)
+}
+
 /// The unit direction whose angle is half of another's, with cos ≥ 0: (1 + cos 2θ, sin 2θ) is along
 /// it, and (sin 2θ, 1 − cos 2θ), where the other vanishes.
 fn halve_angle(doubled: Vec2) -> Vec2 {
-    let unit = doubled.normalize_or(Vec2::X);
-    if unit.x >= 0.0 {
-        return vec2(1.0 + unit.x, unit.y).normalize();
+    let length = doubled.length();
+    if length < 1e-12 {
+        return Vec2::X;
     }
-    let half = vec2(unit.y, 1.0 - unit.x).normalize();
+    if doubled.x >= 0.0 {
+        return vec2(length + doubled.x, doubled.y).normalize();
+    }
+    let half = vec2(doubled.y, length - doubled.x).normalize();
     if half.x < 0.0 { -half } else { half }
 }
 

@@ -48,7 +48,7 @@ impl GuideLines {
     }
 
     /// Calls `visit` with the places and directions along the strokes, a pixel apart or less.
-    fn walk(&self, mut visit: impl FnMut(Vec2, Vec2)) {
+    pub(crate) fn walk(&self, mut visit: impl FnMut(Vec2, Vec2)) {
         for pair in self.0.iter().flat_map(|line| line.windows(2)) {
             let (from, along) = (pair[0], pair[1] - pair[0]);
             let length = along.length();

@@ -9,6 +9,7 @@ use crate::math::{Mat2, Vec2, hash, vec2};
 use crate::raster::Plane;
 use crate::surface::Surface;
 use crate::surface::form_lines::SmoothNormals;
+use rayon::prelude::*;
 
 /// The side of a cell of the grid of points, px.
 const CELL_PX: usize = 4;
@@ -67,23 +68,37 @@ impl Stipples<'_> {
         let size = self.surface.size();
         let step = (TRIED_EVERY.0 * apart).max(TRIED_EVERY.1);
         let [columns, rows] = [size.width, size.height].map(|n| (n as f32 / step) as u32 + 1);
-        let mut order: Vec<u32> = (0..columns * rows).collect();
-        order.sort_by_key(|&i| hash::mix(i ^ 0x2c1b_3c6d));
-        for i in order {
+        let place = |i: u32| {
             let [jx, jy] = hash::unit_pair(0x85eb + u32::from(level), i % columns, i / columns);
-            let at = vec2((i % columns) as f32 + jx, (i / columns) as f32 + jy) * step;
-            let (x, y) = (at.x as usize, at.y as usize);
-            let is_inside = x < size.width as usize && y < size.height as usize;
-            if !is_inside || self.surface.coverage(x, y) < 128 {
-                continue;
-            }
-            let object = self.objects.at(x, y);
-            if !self.is_crowded(at, object, root(self.normals, x, y), apart) {
-                let cell = y / CELL_PX * self.columns + x / CELL_PX;
+            vec2((i % columns) as f32 + jx, (i / columns) as f32 + jy) * step
+        };
+        // What is crowded already stays so: most places are sorted out row by row.
+        let rows = (0..rows).into_par_iter();
+        let mut order: Vec<u32> = rows
+            .flat_map_iter(|row| row * columns..(row + 1) * columns)
+            .filter(|i| self.free_object(place(*i), apart).is_some())
+            .collect();
+        order.sort_by_key(|&i| hash::mix(i ^ 0x2c1b_3c6d));
+        for at in order.into_iter().map(place) {
+            if let Some(object) = self.free_object(at, apart) {
+                let cell = at.y as usize / CELL_PX * self.columns + at.x as usize / CELL_PX;
                 self.cells[cell].push(Stipple { at, object });
                 self.placed.push((level, at));
             }
         }
+    }
+
+    /// The object at a place with room for a point.
+    fn free_object(&self, at: Vec2, apart: f32) -> Option<u32> {
+        let (x, y) = (at.x as usize, at.y as usize);
+        let size = self.surface.size();
+        let is_inside = x < size.width as usize && y < size.height as usize;
+        if !is_inside || self.surface.coverage(x, y) < 128 {
+            return None;
+        }
+        let object = self.objects.at(x, y);
+        let is_free = !self.is_crowded(at, object, root(self.normals, x, y), apart);
+        is_free.then_some(object)
     }
 
     /// Whether a point of the same piece is nearer than a distance on the surface.

@@ -2,17 +2,22 @@
 //! surface's own metric). Floor 2. Placed one after the other in a fixed order.
 
 use super::directions::DirectionField;
+use super::placed::{Nearness, PlacedPoint, PlacedPoints};
 use crate::math::{Vec2, hash, vec2};
 use crate::surface::{Objects, Surface};
+use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// The side of a cell of the grid of points, px.
-const CELL_PX: usize = 4;
 /// A line starts where others are this far away, and ends where one comes nearer than the second, of
 /// the distance that was asked.
-const START: f32 = 0.8;
-const STOP: f32 = 0.62;
+const START: f32 = 0.76;
+const STOP: f32 = 0.75;
+/// Lines are placed at this share of the distance: none comes nearer than `STOP`, but where they
+/// part some are farther, so that the mean is what was asked.
+const PLACED_AT: f32 = 0.94;
+/// Between a line and one that is nearer, a new one lies in the middle, of the distance.
+const MIDDLE: f32 = 2.5;
 /// Lines of one family are those whose directions differ by less than 37°.
 const SAME_FAMILY: f32 = 0.8;
 /// The length of the shortest line, in distances, and px.
@@ -20,20 +25,7 @@ const SHORTEST: (f32, f32) = (1.5, 7.0);
 /// A step that turns by more ends a line, cos.
 const SHARPEST: f32 = 0.7;
 /// From one place where a neighbor begins to the next along a line, in distances.
-const SEED_EVERY: f32 = 0.6;
-
-/// A point of a line that was placed.
-#[derive(Clone, Copy)]
-struct PlacedPoint {
-    at: Vec2,
-    /// In the tangent plane.
-    way: Vec2,
-    line: u32,
-    /// Its position along its line, px.
-    along: i32,
-    /// The object that it lies on.
-    object: u32,
-}
+const SEED_EVERY: f32 = 1.2;
 
 /// Lines of one family as they are placed.
 pub struct Streamlines<'f> {
@@ -41,19 +33,18 @@ pub struct Streamlines<'f> {
     size: (usize, usize),
     objects: Arc<Objects>,
     family: u8,
-    columns: usize,
-    cells: Vec<Vec<PlacedPoint>>,
+    placed: PlacedPoints,
     lines: Vec<(u8, Vec<Vec2>)>,
+    /// Which point of each line was its first.
+    firsts: Vec<u32>,
 }
 
 impl<'f> Streamlines<'f> {
     /// None yet.
     pub fn new(surface: &'f Surface, field: &'f DirectionField<'f>, family: u8) -> Self {
         let size = (surface.size().width as usize, surface.size().height as usize);
-        let columns = size.0.div_ceil(CELL_PX);
-        let cells = vec![Vec::new(); columns * size.1.div_ceil(CELL_PX)];
-        let objects = surface.objects();
-        Self { field, size, objects, family, columns, cells, lines: Vec::new() }
+        let (objects, placed) = (surface.objects(), PlacedPoints::new(size));
+        Self { field, size, objects, family, placed, lines: Vec::new(), firsts: Vec::new() }
     }
 
     /// The lines, each with its level.
@@ -63,17 +54,22 @@ impl<'f> Streamlines<'f> {
 
     /// Fills the surface with lines of a level, so far apart, between those that are there.
     pub fn fill(&mut self, level: u8, apart: f32) {
+        let apart = PLACED_AT * apart;
         let mut queue: VecDeque<u32> = (0..self.lines.len() as u32).collect();
         let grid = (0.7 * apart).max(2.0);
         let (columns, rows) =
             ((self.size.0 as f32 / grid) as u32 + 1, (self.size.1 as f32 / grid) as u32 + 1);
-        // In an order that has nothing to do with rows: no seams between scan lines.
-        let mut places: Vec<u32> = (0..columns * rows).collect();
-        places.sort_by_key(|&i| hash::mix(i ^ 0x51ed_270b));
         self.follow(&mut queue, level, apart);
-        for i in places {
+        let place = |i: u32| {
             let [jx, jy] = hash::unit_pair(0x9e37, i % columns, i / columns);
-            let at = vec2((i % columns) as f32 + jx, (i / columns) as f32 + jy) * grid;
+            vec2((i % columns) as f32 + jx, (i / columns) as f32 + jy) * grid
+        };
+        // What is crowded already stays so: most places are sorted out row by row.
+        let all = (0..rows).into_par_iter().flat_map_iter(|row| row * columns..(row + 1) * columns);
+        let mut places: Vec<u32> = all.filter(|i| self.has_room(place(*i), apart)).collect();
+        // In an order that has nothing to do with rows: no seams between scan lines.
+        places.sort_by_key(|&i| hash::mix(i ^ 0x51ed_270b));
+        for at in places.into_iter().map(place) {
             if self.try_line(at, level, apart) {
                 queue.push_back(self.lines.len() as u32 - 1);
                 self.follow(&mut queue, level, apart);
@@ -86,18 +82,47 @@ impl<'f> Streamlines<'f> {
         let every = ((SEED_EVERY * apart) as usize).max(1);
         while let Some(line) = queue.pop_front() {
             let points = std::mem::take(&mut self.lines[line as usize].1);
-            let starts = points.windows(2).step_by(every);
-            let sides = starts.flat_map(|pair| [(pair[0], pair[1], 1.0), (pair[0], pair[1], -1.0)]);
-            for (at, next, side) in sides {
-                let Some((x, y)) = self.pixel(at) else { continue };
-                let along = (self.field.root(x, y) * (next - at)).normalize_or_zero();
-                let beside = at + side * apart * (self.field.inverse_root(x, y) * along.perp());
-                if self.try_line(beside, level, apart) {
-                    queue.push_back(self.lines.len() as u32 - 1);
+            for i in (0..points.len().saturating_sub(1)).step_by(every) {
+                for side in [1.0, -1.0] {
+                    let next = points[i + 1];
+                    let Some(at) = self.place_beside(points[i], next, side, (line, i), apart)
+                    else {
+                        continue;
+                    };
+                    if self.try_line(at, level, apart) {
+                        queue.push_back(self.lines.len() as u32 - 1);
+                    }
                 }
             }
             self.lines[line as usize].1 = points;
         }
+    }
+
+    /// Where a neighbor of a line begins on one side: as far away as was asked, or in the middle
+    /// between it and the next line; `None` where that is too near.
+    fn place_beside(
+        &self,
+        at: Vec2,
+        next: Vec2,
+        side: f32,
+        (line, along): (u32, usize),
+        apart: f32,
+    ) -> Option<Vec2> {
+        let (x, y) = self.pixel(at)?;
+        let root = self.field.root(x, y);
+        let way = (root * (next - at)).normalize_or_zero();
+        let across = side * way.perp();
+        let px = MIDDLE * apart;
+        let near = Nearness { root, px, same_family: SAME_FAMILY, own_px: (3.0 * px) as i32 + 3 };
+        let object = self.objects.labels().at(x, y);
+        let along = along as i32 - self.firsts[line as usize] as i32;
+        let point = PlacedPoint { at, way, line, along, object };
+        let far = match self.placed.gap_beside(&point, across, &near) {
+            Some(gap) if gap < 2.0 * START * apart => return None,
+            Some(gap) => 0.5 * gap,
+            None => apart,
+        };
+        Some(at + far * (self.field.inverse_root(x, y) * across))
     }
 
     /// The pixel of the surface at a place.
@@ -108,6 +133,12 @@ impl<'f> Streamlines<'f> {
             && at.y < self.size.1 as f32 - 1.0;
         let (x, y) = (at.x as usize, at.y as usize);
         (is_inside && self.field.is_on(x, y)).then_some((x, y))
+    }
+
+    /// Whether a line could begin at a place.
+    fn has_room(&self, at: Vec2, apart: f32) -> bool {
+        let is_free = |way| !self.is_crowded(at, way, START * apart, (u32::MAX, 0));
+        self.pixel(at).is_some() && is_free(self.field.direction(at, self.family, Vec2::X))
     }
 
     /// A line through a place, if there is room for one of some length.
@@ -126,11 +157,11 @@ impl<'f> Streamlines<'f> {
         let length = (forth.len() + back.len()) as f32;
         if length < (SHORTEST.0 * apart).max(SHORTEST.1) {
             for at in back.iter().rev().chain(forth.iter().rev()).chain([&at]) {
-                let cell = self.cell(*at);
-                self.cells[cell].pop();
+                self.placed.pop(*at);
             }
             return false;
         }
+        self.firsts.push(back.len() as u32);
         let points = back.into_iter().rev().chain([at]).chain(forth).collect();
         self.lines.push((level, points));
         true
@@ -171,39 +202,18 @@ impl<'f> Streamlines<'f> {
         (self.field.inverse_root(x, y) * way).normalize_or_zero()
     }
 
-    fn cell(&self, at: Vec2) -> usize {
-        let (x, y) = (at.x as usize / CELL_PX, at.y as usize / CELL_PX);
-        (y * self.columns + x).min(self.cells.len() - 1)
-    }
-
     fn put(&mut self, at: Vec2, way: Vec2, (line, along): (u32, i32)) {
-        let cell = self.cell(at);
         let object = self.objects.labels().at(at.x as usize, at.y as usize);
-        self.cells[cell].push(PlacedPoint { at, way, line, along, object });
+        self.placed.push(PlacedPoint { at, way, line, along, object });
     }
 
     /// Whether a line of the family is nearer than a distance on the surface: another one, or the
     /// line itself where it comes back.
     fn is_crowded(&self, at: Vec2, way: Vec2, px: f32, (line, along): (u32, i32)) -> bool {
         let Some((x, y)) = self.pixel(at) else { return true };
-        let root = self.field.root(x, y);
         let object = self.objects.labels().at(x, y);
-        let [low, high] = [-px, px].map(|by| {
-            let cell =
-                |v: f32, n: usize| (v.max(0.0) as usize / CELL_PX).min(n.div_ceil(CELL_PX) - 1);
-            (cell(at.x + by, self.size.0), cell(at.y + by, self.size.1))
-        });
-        let own = (3.0 * px) as i32 + 3;
-        let is_near = |point: &PlacedPoint| {
-            (root * (point.at - at)).length_squared() < px * px
-                && (point.line != line || (point.along - along).abs() > own)
-                && point.way.dot(way).abs() > SAME_FAMILY
-                && point.object == object
-        };
-        (low.1..=high.1).any(|row| {
-            self.cells[row * self.columns + low.0..=row * self.columns + high.0]
-                .iter()
-                .any(|cell| cell.iter().any(is_near))
-        })
+        let (root, own_px) = (self.field.root(x, y), (3.0 * px) as i32 + 3);
+        let near = Nearness { root, px, same_family: SAME_FAMILY, own_px };
+        self.placed.has_near(&PlacedPoint { at, way, line, along, object }, &near)
     }
 }

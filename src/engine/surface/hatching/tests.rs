@@ -52,6 +52,53 @@ fn lines_go_around_a_cylinder_or_along_it() {
     }
 }
 
+/// A torus seen along its axis: its tube bends around circles that point away from the middle.
+fn torus() -> Surface {
+    surface(Size::new(240, 240), |x, y| {
+        let from = vec2(x - 120.0, 120.0 - y);
+        let across = (from.length() - 70.0) / 32.0;
+        let rest = 1.0 - across * across;
+        (rest > 0.02).then(|| (from.normalize() * across).extend(rest.sqrt()))
+    })
+}
+
+#[test]
+fn lines_go_around_the_tube_of_a_torus_or_along_it() {
+    let torus = torus();
+    for (way, is_across) in [(HatchWay::Around, false), (HatchWay::Along, true)] {
+        let settings = HatchSettings { way, style: HatchStyle::Hatch, ..HatchSettings::DEFAULT };
+        let lines = torus.hatch_lines(&settings, &GuideLines::none());
+        let mut off: Vec<f32> = Vec::new();
+        for nine in lines.lines.iter().flat_map(|line| line.points.windows(9)) {
+            let from = nine[4].at - vec2(120.0, 120.0);
+            // Near both rims it is seen too much aslant.
+            if (from.length() - 70.0).abs() < 26.0 {
+                let out = from.normalize();
+                let expected = if is_across { out.perp() } else { out };
+                let way = (nine[8].at - nine[0].at).normalize();
+                off.push(way.dot(expected).abs().min(1.0).acos().to_degrees());
+            }
+        }
+        off.sort_by(f32::total_cmp);
+        let p99 = off[off.len() * 99 / 100];
+        assert!(off.len() > 3000 && p99 < 10.0, "{way:?}: {p99}° of {}", off.len());
+    }
+}
+
+#[test]
+fn lines_like_wires_are_straight_on_the_unwrapped_form() {
+    let cylinder = cylinder();
+    for (angle, along) in [(0.0, Vec2::X), (90.0, Vec2::Y)] {
+        let (way, style) = (HatchWay::Wires, HatchStyle::Hatch);
+        let settings = HatchSettings { way, style, angle, ..HatchSettings::DEFAULT };
+        let lines = cylinder.hatch_lines(&settings, &GuideLines::none());
+        assert!(lines.lines.len() > 20, "{}", lines.lines.len());
+        let cosines = lines.lines.iter().flat_map(directions_of).map(|d| d.dot(along).abs());
+        let least = cosines.fold(1.0, f32::min);
+        assert!(least > 3f32.to_radians().cos(), "{angle}: {}°", least.acos().to_degrees());
+    }
+}
+
 /// How far lines turn from a direction near a place, degrees: the most, and that of how many.
 fn angle_from(lines: &HatchLines, near: Vec2, along: Vec2) -> (f32, usize) {
     let found = lines.lines.iter().flat_map(|line| line.points.windows(9)).filter_map(|nine| {
@@ -177,7 +224,10 @@ fn levels_together_cover_what_tone_asks() {
     for style in [HatchStyle::Crosshatch, HatchStyle::Hatch, HatchStyle::Engraving] {
         let settings = HatchSettings { style, ..HatchSettings::DEFAULT };
         for dark in [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0] {
-            let free = settings.coverages(dark).fold(1.0, |free, share| free * (1.0 - share));
+            let mut covered = [0.0; 2];
+            let levels = settings.levels().iter().zip(settings.coverages(dark));
+            levels.for_each(|(level, share)| covered[usize::from(level.family)] += share);
+            let free = (1.0 - covered[0]) * (1.0 - covered[1]);
             assert!((1.0 - free - dark).abs() < 1e-5, "{style:?} {dark}: {}", 1.0 - free);
         }
     }

@@ -13,6 +13,9 @@ pub struct UnwrapSettings {
 }
 
 impl UnwrapSettings {
+    /// What wires around a form follow.
+    pub(in crate::surface) const OF_WIRES: Self = Self { amount: 1.0, smooth_px: 2.0 };
+
     /// Within what a surface can be unwrapped with; what is no number counts as 0.
     pub(in crate::surface) fn clamp_to_ranges(self, size: Size) -> Self {
         Self {
