@@ -17,6 +17,7 @@ use rilievo_engine::raster::planar::PixelRow;
 use rilievo_engine::shading::radiance::BackdropStats;
 use rilievo_engine::surface::chunks::ChunkSettings;
 use rilievo_engine::surface::shadow::{LampPlace, ShadowLamp};
+use rilievo_io::recipe::LiveLook;
 use std::sync::Arc;
 
 fn main() {
@@ -106,6 +107,19 @@ fn figure_of_a_repainted_ball(bencher: Bencher, run: Run) {
         pool.install(|| {
             tiles.par_iter().for_each(|at| drop(divan::black_box(shading.render_tile(&scene, *at))))
         });
+    });
+}
+
+/// A document's picture in the list of looks, as large as that is, its surface new each time.
+/// Argument: the look.
+#[divan::bench(args = ["oil-sketch", "watercolor", "ink", "engraving", "comic"], sample_count = 5)]
+fn thumbnail_of_a_look(bencher: Bencher, key: &str) {
+    let look = LiveLook::of_key(key).expect("a look");
+    bencher.with_inputs(|| scene((1024, 1024))).bench_local_values(|scene| {
+        let document = Document { surface: scene.surface, ..Document::empty(scene.size) };
+        let small = DocumentReducer::new(0.125).of(&document).expect("a small document");
+        let dressed = look.on(&small).expect("a dressed document");
+        rilievo::flatten(&dressed, &Progress::default())
     });
 }
 

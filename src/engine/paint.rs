@@ -60,7 +60,7 @@ pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;
 pub use filter::{LiveFilter, PictureFilter};
 pub use form_drawing::{
-    DrawingHand, FormDrawing, FormPattern, FoundSources, HatchSources, InkOnCanvas, TonePicture,
+    DrawingHand, DrawingSources, FormDrawing, FormPattern, FoundSources, InkOnCanvas, TonePicture,
     ToneSource,
 };
 pub use gradient::{Gradient, GradientStop};

@@ -16,6 +16,7 @@ pub mod files;
 pub mod fs;
 pub mod inspect;
 pub mod json;
+pub mod line_svg;
 pub mod machine;
 pub mod maps;
 pub mod open;

@@ -30,6 +30,8 @@ pub enum FilePurpose {
     /// Maps of the shape, whose names begin with this one.
     ExportMaps,
     ExportUnwrapped,
+    /// The lines of the form.
+    ExportLines,
     /// The palette that is shown.
     ExportPalette(PaletteFormat),
 }
@@ -40,6 +42,7 @@ const MAPS: [&str; 2] = ["png", "exr"];
 impl FilePurpose {
     /// Extensions of pictures of the unwrapped surface.
     const FLAT: [&'static str; 4] = ["png", "tif", "tiff", "exr"];
+    const VECTORS: [&'static str; 1] = ["svg"];
 
     pub fn title(self) -> &'static str {
         match self {
@@ -57,6 +60,7 @@ impl FilePurpose {
             FilePurpose::Export => "Export the picture",
             FilePurpose::ExportMaps => "Export maps of the shape",
             FilePurpose::ExportUnwrapped => "Export the unwrapped surface",
+            FilePurpose::ExportLines => "Export the lines of the form",
             FilePurpose::ExportPalette(_) => "Export the palette",
         }
     }
@@ -68,6 +72,7 @@ impl FilePurpose {
                 | FilePurpose::Export
                 | FilePurpose::ExportMaps
                 | FilePurpose::ExportUnwrapped
+                | FilePurpose::ExportLines
                 | FilePurpose::ExportPalette(_)
         )
     }
@@ -97,6 +102,7 @@ impl FilePurpose {
             FilePurpose::Export => vec![("Pictures", export_extensions().collect())],
             FilePurpose::ExportMaps => vec![("Maps", MAPS.to_vec())],
             FilePurpose::ExportUnwrapped => vec![("Pictures", Self::FLAT.to_vec())],
+            FilePurpose::ExportLines => vec![("Vector graphics", Self::VECTORS.to_vec())],
             FilePurpose::ExportPalette(format) => vec![("Palettes", vec![format.extension()])],
         }
     }
@@ -111,6 +117,9 @@ impl FilePurpose {
             }
             FilePurpose::ExportUnwrapped => {
                 with_document_extension(file, Self::FLAT[0], &Self::FLAT)
+            }
+            FilePurpose::ExportLines => {
+                with_document_extension(file, Self::VECTORS[0], &Self::VECTORS)
             }
             FilePurpose::ExportPalette(format) => {
                 with_document_extension(file, format.extension(), &[format.extension()])

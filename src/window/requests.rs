@@ -75,6 +75,8 @@ pub enum WindowRequest {
     ExportUnwrappedDialog,
     /// Asks where to.
     ExportUnwrapped,
+    /// Asks where to, for the lines of the form.
+    ExportLines,
     /// Shows the surface unwrapped, once that is computed.
     Unwrap,
     /// Asks first if there is unsaved work.

@@ -63,7 +63,7 @@ impl Document {
             layer.id = id;
             Some(())
         })?;
-        let next = next.with_ink_layers_renamed(self, id).with_hatch_sources_renamed(self, id);
+        let next = next.with_ink_layers_renamed(self, id).with_form_sources_renamed(self, id);
         Some(if self.parts.is_empty() {
             next
         } else {

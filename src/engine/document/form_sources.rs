@@ -1,12 +1,12 @@
 //! Drawings by the form follow the layers that they read: strokes that hatching follows, the picture
-//! whose tone it has, and ink that lines leave out. Floor 4. Not here: what they make of them
+//! whose tone it has, and ink and strokes that lines leave out. Floor 4. Not here: what they make of them
 //! (`paint::form_drawing`).
 
 use super::flatten::{flatten, flatten_layer};
 use super::{Content, Document, Group, Layer, LayerId, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{
-    FormDrawing, FormPattern, FoundSources, HatchSources, InkOnCanvas, Stroke, TonePicture,
+    DrawingSources, FormDrawing, FormPattern, FoundSources, InkOnCanvas, Stroke, TonePicture,
     ToneSource,
 };
 use crate::raster::TileGrid;
@@ -27,7 +27,7 @@ impl Document {
                 (None, None) => true,
                 _ => false,
             };
-            let is_inked = found.ink.is_same(&ink_of(drawing, &ink));
+            let is_inked = found.ink.is_same(&self.ink_of(drawing, &ink));
             is_toned && is_inked && self.guide_lines(drawing) == found.guides
         })
     }
@@ -43,7 +43,7 @@ impl Document {
         let guided = self.with_found(|document, _, drawing| FoundSources {
             guides: document.guide_lines(drawing),
             tone: drawing.found.tone.clone(),
-            ink: ink_of(drawing, &ink),
+            ink: document.ink_of(drawing, &ink),
         });
         guided.with_found(|document, layer, drawing| {
             let measure = |sources| document.measure_tone(layer, drawing, sources);
@@ -79,7 +79,9 @@ impl Document {
             Content::FormDrawing(live) => {
                 let drawing = live.params();
                 let is_reading = match &drawing.pattern {
-                    FormPattern::Lines(lines) => lines.skip_ink,
+                    FormPattern::Lines(lines) => {
+                        lines.skip_ink || !drawing.sources.redrawn.is_empty()
+                    }
                     FormPattern::Hatching(hatch) => {
                         hatch.way == HatchWay::Guides || hatch.tone != HatchTone::Light
                     }
@@ -110,10 +112,27 @@ impl Document {
         InkOnCanvas::of(all)
     }
 
+    /// The ink that a drawing leaves out, and the strokes in the place of its lines.
+    fn ink_of(&self, drawing: &FormDrawing, ink: &InkOnCanvas) -> InkOnCanvas {
+        match &drawing.pattern {
+            FormPattern::Lines(lines) => {
+                let ink = if lines.skip_ink { ink.clone() } else { InkOnCanvas::default() };
+                ink.with_strokes(self.strokes_of(&drawing.sources.redrawn))
+            }
+            FormPattern::Hatching(_) => InkOnCanvas::default(),
+        }
+    }
+
     fn guide_lines(&self, drawing: &FormDrawing) -> GuideLines {
         let is_guided = drawing.hatching().is_some_and(|hatch| hatch.way == HatchWay::Guides);
-        let layer = self.layer_named(&drawing.sources.guides).filter(|_| is_guided);
-        let Some(layer) = layer else { return GuideLines::none() };
+        if is_guided { self.strokes_of(&drawing.sources.guides) } else { GuideLines::none() }
+    }
+
+    /// The strokes of the layer of a name, where they show.
+    fn strokes_of(&self, name: &str) -> GuideLines {
+        let Some(layer) = self.layer_named(name).filter(|_| !name.is_empty()) else {
+            return GuideLines::none();
+        };
         let strokes = self.strokes_on_canvas(layer.id);
         GuideLines::of(strokes.iter().map(|stroke| sparse_points(stroke)))
     }
@@ -168,9 +187,9 @@ impl Document {
         Some(Arc::new(TonePicture::of(&picture, self.size, sources)))
     }
 
-    /// With hatching naming the layers that it reads by their present names; `before`: the document
-    /// in which a layer had another name.
-    pub(super) fn with_hatch_sources_renamed(self, before: &Document, id: LayerId) -> Document {
+    /// With drawings by the form naming the layers that they read by their present names;
+    /// `before`: the document in which a layer had another name.
+    pub(super) fn with_form_sources_renamed(self, before: &Document, id: LayerId) -> Document {
         let names = before.layer(id).zip(self.layer(id)).map(|(old, new)| (&old.name, &new.name));
         let Some((old, new)) = names.filter(|(old, new)| old != new) else { return self };
         if before.layer_named(old).is_none_or(|layer| layer.id != id) {
@@ -179,9 +198,10 @@ impl Document {
         let renamed = |name: &String| if name == old { new.clone() } else { name.clone() };
         let reading = self.walk().into_iter().filter_map(|(_, layer)| match &layer.content {
             Content::FormDrawing(live) => {
-                let HatchSources { guides, tone } = &live.params().sources;
-                let reads = !old.is_empty() && (guides == old || tone == old);
-                let sources = HatchSources { guides: renamed(guides), tone: renamed(tone) };
+                let DrawingSources { guides, redrawn, tone } = &live.params().sources;
+                let reads = !old.is_empty() && [guides, redrawn, tone].contains(&old);
+                let [guides, redrawn, tone] = [guides, redrawn, tone].map(renamed);
+                let sources = DrawingSources { guides, redrawn, tone };
                 reads.then(|| (layer.id, FormDrawing { sources, ..live.params().clone() }))
             }
             _ => None,
@@ -191,14 +211,6 @@ impl Document {
             let content = Content::FormDrawing(Live::new(drawing));
             next.with_layer(id, |layer| layer.content = content).unwrap_or(next)
         })
-    }
-}
-
-/// The ink that a drawing leaves out.
-fn ink_of(drawing: &FormDrawing, ink: &InkOnCanvas) -> InkOnCanvas {
-    match &drawing.pattern {
-        FormPattern::Lines(lines) if lines.skip_ink => ink.clone(),
-        _ => InkOnCanvas::default(),
     }
 }
 

@@ -199,9 +199,12 @@ fn changed_tiles(scene: &Scene, old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> BTr
 mod tests {
     use super::*;
     use crate::document::flatten;
-    use crate::math::{Size, srgb::Color, vec2};
-    use crate::paint::{Brush, Sample};
-    use crate::surface::Operator;
+    use crate::math::{Size, srgb::Color, vec2, vec3};
+    use crate::paint::{Brush, DrawingHand, FormDrawing, FormPattern, Sample};
+    use crate::raster::Plane;
+    use crate::surface::form_lines::LineSettings;
+    use crate::surface::hatching::{HatchSettings, HatchStyle};
+    use crate::surface::{Maps, Operator, Surface};
 
     const SIZE: Size = Size::new(300, 200);
 
@@ -316,6 +319,54 @@ mod tests {
             let apart = now.iter().zip(&before).map(|(a, b)| a.abs_diff(*b)).max();
             // Rims are rounded to bytes once more.
             assert!(apart <= Some(1), "{apart:?}");
+        }
+    }
+
+    /// A ball before a wall that bends.
+    fn ball_before_a_wall() -> Surface {
+        let normal = |x: usize, y: usize| {
+            let from = vec2(x as f32 + 0.5 - 130.0, 100.0 - y as f32 - 0.5) / 80.0;
+            let rest = 1.0 - from.length_squared();
+            if rest > 0.0 {
+                return from.extend(rest.sqrt());
+            }
+            vec3(0.6 * (x as f32 * 0.03).sin(), 0.3, 1.0).normalize()
+        };
+        let is_ball = |x: usize, y: usize| vec2(x as f32 - 129.5, y as f32 - 99.5).length() < 80.0;
+        let maps = Maps {
+            normals: Plane::from_fn(SIZE, normal),
+            depth: Plane::from_fn(SIZE, |x, y| {
+                if is_ball(x, y) { 0.5 - 0.3 * normal(x, y).z } else { 1.0 }
+            }),
+            coverage: Plane::full(SIZE, 255),
+        };
+        Surface::new(maps).unwrap()
+    }
+
+    #[test]
+    fn strokes_made_of_a_drawing_by_the_form_look_like_it() {
+        let surface = Some(Arc::new(ball_before_a_wall()));
+        let lines = FormPattern::Lines(LineSettings::DEFAULT);
+        let styles = HatchStyle::ALL.map(|(style, _)| {
+            FormPattern::Hatching(HatchSettings { style, ..HatchSettings::DEFAULT })
+        });
+        let hand = DrawingHand { wobble: 1.5, overshoot: 3.0, ..DrawingHand::DEFAULT };
+        let soft = Brush { size: 6.0, hardness: 0.2, ..FormDrawing::burin() };
+        for pattern in [lines].into_iter().chain(styles) {
+            for drawing in [
+                FormDrawing::new(pattern),
+                FormDrawing { hand, brush: soft.clone(), ..FormDrawing::new(pattern) },
+            ] {
+                let layer = Layer::new("Drawing", Content::FormDrawing(Live::new(drawing)));
+                let (id, layers) = (layer.id, vec![Arc::new(layer)]);
+                let live = Document { layers, surface: surface.clone(), ..Document::empty(SIZE) };
+                let made = live.with_made_strokes(id).unwrap();
+                assert!(made.strokes(id).len() > 2);
+                let (live, made) = (picture(&live), picture(&made));
+                let ink: usize = live.iter().skip(3).step_by(4).filter(|a| **a > 0).count();
+                let most = live.iter().zip(&made).map(|(a, b)| a.abs_diff(*b)).max();
+                assert!(ink > 500 && most == Some(0), "{pattern:?}: {ink} px, {most:?} off");
+            }
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Drawings by the form: strokes of a brush along the lines that a surface has. Floor 3. Here: what
 //! such a drawing is, and its strokes, which are made once for a scene; `hand` is how a hand follows
-//! a line, `sources` what it reads of other layers, `inked` what ink draws already. Not here: where the lines are
+//! a line, `brush_coverage` how wide strokes become, `sources` what it reads of other
+//! layers, `inked` what ink draws already. Not here: where the lines are
 //! (`surface::form_lines`), how strokes look (`stroke`).
 
+mod brush_coverage;
 mod hand;
 mod hatched;
 mod inked;
@@ -13,7 +15,7 @@ mod tests;
 
 pub use hand::DrawingHand;
 pub use inked::InkOnCanvas;
-pub use sources::{FoundSources, HatchSources, TonePicture, ToneSource};
+pub use sources::{DrawingSources, FoundSources, TonePicture, ToneSource};
 
 use super::brush::Brush;
 use super::dynamics::{Curve, Dynamics, Input, Property};
@@ -47,8 +49,8 @@ pub struct FormDrawing {
     pub brush: Brush,
     /// Its color.
     pub color: Color,
-    /// Which other layers hatching reads, by name.
-    pub sources: HatchSources,
+    /// Which other layers it reads, by name.
+    pub sources: DrawingSources,
     /// What those layers hold now.
     pub found: FoundSources,
     /// Its strokes on the scene that they were last made for.
@@ -72,7 +74,7 @@ impl FormDrawing {
             hand,
             brush,
             color: Self::INK,
-            sources: HatchSources::default(),
+            sources: DrawingSources::default(),
             found: FoundSources::default(),
             made: MadeStrokes::default(),
         }
@@ -138,10 +140,14 @@ impl FormDrawing {
         strokes
     }
 
-    /// Its lines on a surface, without those that ink draws already.
+    /// Its lines on a surface, without those that ink or a hand draws already.
     pub fn lines(&self, surface: &Surface, settings: &LineSettings) -> Arc<FormLines> {
         let all = surface.form_lines(settings);
-        if settings.skip_ink { self.found.ink.leave_out(&all, settings).into() } else { all }
+        if self.found.ink.is_empty() {
+            all
+        } else {
+            self.found.ink.leave_out(&all, settings).into()
+        }
     }
 
     fn draw(&self, scene: &Scene) -> Vec<Arc<Stroke>> {

@@ -41,6 +41,8 @@ crate::named! {
         Ridge = "ridges" => ("Ridges", "Along crests"),
         /// Where the light grazes the form.
         Light = "light" => ("Edge of light", "Where light ends and shade begins"),
+        /// Where a cast shadow ends.
+        Shadow = "shadows" => ("Edges of shadow", "Where shadows that the form casts end"),
         /// Wires around the form: lines of the plane that it unwraps to.
         Wire = "wires" => ("Wires", "Lines around the form, equally far apart on it"),
     }
@@ -48,7 +50,7 @@ crate::named! {
 
 /// Which kinds of lines are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct LineKinds(u8);
+pub struct LineKinds(u16);
 
 impl LineKinds {
     /// No kind.
@@ -58,12 +60,12 @@ impl LineKinds {
 
     /// Whether a kind is among them.
     pub const fn has_kind(self, kind: LineKind) -> bool {
-        self.0 >> kind as u8 & 1 == 1
+        self.0 >> kind as u16 & 1 == 1
     }
 
     /// With a kind, or without it.
     pub const fn with(self, kind: LineKind, is_in: bool) -> Self {
-        let bit = 1 << kind as u8;
+        let bit = 1 << kind as u16;
         Self(if is_in { self.0 | bit } else { self.0 & !bit })
     }
 }
@@ -107,7 +109,8 @@ impl LineSettings {
     }
 
     fn key(&self) -> LineKey {
-        let is_lit = self.kinds.has_kind(LineKind::Light);
+        let is_lit =
+            [LineKind::Light, LineKind::Shadow].into_iter().any(|kind| self.kinds.has_kind(kind));
         let light = if is_lit { self.light.normalize_or(Vec3::Z).to_array() } else { [0.0; 3] };
         let [x, y, z] = light.map(f32::to_bits);
         let own = [self.smooth, self.detail, self.shortest, self.gap, self.wires];
@@ -177,14 +180,14 @@ impl FormLines {
         let is_smooth = |kind| settings.kinds.has_kind(kind);
         let needs_normals = [LineKind::Valley, LineKind::Suggestive, LineKind::Ridge]
             .into_iter()
-            .chain([LineKind::Light])
+            .chain([LineKind::Light, LineKind::Shadow])
             .any(is_smooth);
         if needs_normals {
             let normals = surface.smooth_normals(settings.smooth);
             lines.extend(FormCurves { surface, normals: &normals, settings }.trace());
         }
         if is_smooth(LineKind::Wire) {
-            let unwrapped = surface.unwrapping(UnwrapSettings { amount: 1.0, smooth_px: 2.0 });
+            let unwrapped = surface.unwrapping(UnwrapSettings::OF_WIRES);
             lines.extend(fields::wires(surface, &unwrapped, settings));
         }
         Self { lines: tidy::tidy_lines(lines, settings) }

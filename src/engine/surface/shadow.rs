@@ -22,7 +22,7 @@ pub use share::ShareMap;
 
 use super::Surface;
 use super::contours::FarSide;
-use crate::math::{Vec2, Vec3, fast, vec2, vec3};
+use crate::math::{Size, Vec2, Vec3, fast, vec2, vec3};
 use counts::HiddenCounts;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -51,6 +51,9 @@ pub enum LampPlace {
     At(Vec3),
 }
 
+/// The lamp of drawings by the form: its radius, how far its shadows reach, in longer sides of the
+/// canvas, and its rays.
+const OF_DRAWING: (f32, f32, u32) = (0.08, 0.35, 12);
 /// The most rays of one lamp.
 pub const MOST_RAYS: u32 = 64;
 /// The golden angle, rad: the turn from one ray of the spiral to the next.
@@ -129,6 +132,15 @@ impl ShadowLamp {
                 Some(Aim::To(at + (out * size).extend(0.0)))
             }
         }
+    }
+
+    /// The lamp whose shadows drawings by the form show.
+    ///
+    /// * `toward`: toward it, camera space (y up).
+    pub fn of_drawing(toward: Vec3, canvas: Size) -> Self {
+        let (radius, reach, rays) = OF_DRAWING;
+        let (place, reach_px) = (LampPlace::Afar(toward), reach * canvas.longer_side());
+        Self { place, radius, reach_px, rays, is_coarse: false }
     }
 
     /// What tells it from others.

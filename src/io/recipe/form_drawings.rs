@@ -7,7 +7,7 @@ use super::light::{direction, of_object, settings, write_settings};
 use super::value::RecipeValue;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
-use crate::paint::{DrawingHand, FormDrawing, FormPattern, HatchSources};
+use crate::paint::{DrawingHand, DrawingSources, FormDrawing, FormPattern};
 use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
 use crate::surface::hatching::{HatchSettings, HatchStyle, HatchTone, HatchWay};
 use serde_json::Value;
@@ -16,17 +16,16 @@ impl LayerReader<'_> {
     /// A layer of lines.
     pub fn form_lines(&mut self, fields: &mut Fields) -> Result<FormDrawing> {
         let pattern = FormPattern::Lines(lines(fields)?);
-        self.form_drawing(fields, pattern)
+        let sources =
+            DrawingSources { redrawn: name(fields, "redrawn_on")?, ..DrawingSources::default() };
+        Ok(FormDrawing { sources, ..self.form_drawing(fields, pattern)? })
     }
 
     /// A layer of hatching.
     pub fn hatching(&mut self, fields: &mut Fields) -> Result<FormDrawing> {
         let pattern = FormPattern::Hatching(hatch(fields)?);
-        let mut name = |key| match fields.get(key) {
-            Some(node) => node.text().map(str::to_owned),
-            None => Ok(String::new()),
-        };
-        let sources = HatchSources { guides: name("guides")?, tone: name("tone_of")? };
+        let (guides, tone) = (name(fields, "guides")?, name(fields, "tone_of")?);
+        let sources = DrawingSources { guides, tone, ..DrawingSources::default() };
         Ok(FormDrawing { sources, ..self.form_drawing(fields, pattern)? })
     }
 
@@ -46,6 +45,11 @@ impl LayerReader<'_> {
         let color = fields.color("color", plain.color)?;
         Ok(FormDrawing { hand, brush, color, ..plain })
     }
+}
+
+/// The name of a layer; empty if it is absent.
+fn name(fields: &mut Fields, key: &'static str) -> Result<String> {
+    fields.get(key).map_or(Ok(String::new()), |node| node.text().map(str::to_owned))
 }
 
 /// The numbers of a table, which kinds there are, and the light.
@@ -111,8 +115,9 @@ pub fn write(out: &mut JsonObject, drawing: &FormDrawing) {
         FormPattern::Lines(lines) => write_lines(out, lines),
         FormPattern::Hatching(hatch) => write_hatch(out, hatch),
     }
-    let HatchSources { guides, tone } = &drawing.sources;
+    let DrawingSources { guides, redrawn, tone } = &drawing.sources;
     out.text("guides", guides, "");
+    out.text("redrawn_on", redrawn, "");
     out.text("tone_of", tone, "");
     let plain = FormDrawing::new(drawing.pattern);
     let mut hand = JsonObject::default();

@@ -70,6 +70,8 @@ actions! {
         "hatching" Hatched { hatching: HatchSettings }
         /// The stroke layer whose strokes hatching follows, by its name.
         "guided by" GuidedBy { name: String }
+        /// The stroke layer whose strokes stand in the place of form lines, by its name.
+        "redrawn on" RedrawnOn { name: String }
         /// The layer whose tone hatching has, by its name.
         "tone of" ToneOf { name: String }
         /// How a hand follows the lines of such a drawing.
@@ -157,7 +159,7 @@ impl Property {
             Property::Beyond { .. } => "Outside",
             Property::Filtered { .. } => "Filter",
             Property::Adjusted { .. } => "Adjust image",
-            Property::Lines { .. } => "Form lines",
+            Property::Lines { .. } | Property::RedrawnOn { .. } => "Form lines",
             Property::Hatched { .. } | Property::GuidedBy { .. } | Property::ToneOf { .. } => {
                 "Hatching"
             }
@@ -335,6 +337,9 @@ impl Property {
             (Property::Hatched { hatching }, FormPattern::Hatching(own)) => *own = *hatching,
             (Property::GuidedBy { name }, FormPattern::Hatching(_)) => {
                 next.sources.guides.clone_from(name);
+            }
+            (Property::RedrawnOn { name }, FormPattern::Lines(_)) => {
+                next.sources.redrawn.clone_from(name);
             }
             (Property::ToneOf { name }, FormPattern::Hatching(_)) => {
                 next.sources.tone.clone_from(name);

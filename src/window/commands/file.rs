@@ -75,6 +75,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_surface,
         |_, requests| requests.request(WindowRequest::ExportUnwrappedDialog),
     ),
+    row(
+        "Export lines…",
+        &[],
+        "The lines of the form as paths of an SVG, for other programs",
+        has_surface,
+        |_, requests| requests.request(WindowRequest::ExportLines),
+    ),
     LINE,
     row(
         "Place image…",

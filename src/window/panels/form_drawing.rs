@@ -25,7 +25,10 @@ pub fn show(
         ui.weak("These lines need a shape: give the drawing one, or add maps.");
     }
     match drawing.pattern {
-        FormPattern::Lines(lines) => line_settings(ui, lines, setter),
+        FormPattern::Lines(lines) => {
+            line_settings(ui, lines, setter);
+            redraw_row(ui, session, &drawing.sources.redrawn, setter);
+        }
         FormPattern::Hatching(hatch) => hatch_settings(ui, session, drawing, hatch, setter),
     }
     brush(ui, session, drawing, setter);
@@ -103,6 +106,20 @@ fn guides(ui: &mut Ui, session: &Session, of: &str, setter: &mut LayerSetter) {
     }
     let hint = "Selects a stroke layer; lines follow the strokes that you paint on it";
     if ui.button("Draw guide strokes").on_hover_text(hint).clicked() {
+        setter.act(|layer| LayerAction::DrawGuides { layer });
+    }
+}
+
+/// Which strokes stand in the place of lines, and how they are drawn.
+fn redraw_row(ui: &mut Ui, session: &Session, on: &str, setter: &mut LayerSetter) {
+    let is_strokes = |layer: &Layer| matches!(layer.content, Content::Strokes(_));
+    if !on.is_empty()
+        && let Some(name) = layer_row(ui, session, "Redrawn on", on, is_strokes)
+    {
+        setter.set(Property::RedrawnOn { name }, true);
+    }
+    let hint = "Selects a stroke layer; strokes that you paint along lines take their place";
+    if ui.button("Redraw lines").on_hover_text(hint).clicked() {
         setter.act(|layer| LayerAction::DrawGuides { layer });
     }
 }

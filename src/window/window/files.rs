@@ -18,6 +18,7 @@ use crate::paint::ColorAdjustment;
 use crate::paint::adjustment::ColorLookup;
 use crate::raster::Picture;
 use crate::session::actions::LayerAction;
+use crate::session::actions::files::export_lines;
 use crate::session::actions::placing::{place, read_picture};
 use crate::session::actions::{ClipboardAction, FileAction, PaletteAction, PastedPicture};
 use crate::session::actions::{palettes, pictures};
@@ -262,6 +263,7 @@ impl MainWindow {
             FilePurpose::Save
             | FilePurpose::Export
             | FilePurpose::ExportUnwrapped
+            | FilePurpose::ExportLines
             | FilePurpose::ExportPalette(_) => {
                 self.write_chosen_file(purpose, file);
             }
@@ -286,6 +288,8 @@ impl MainWindow {
         let over = if was_asked { Overwrite::Anything } else { Overwrite::Nothing };
         if let FilePurpose::ExportPalette(format) = purpose {
             self.export_palette(named, format, over);
+        } else if purpose == FilePurpose::ExportLines {
+            self.export_lines(named, over);
         } else if purpose == FilePurpose::Save {
             let then = self.after_saving.take();
             self.save_to(named, over, false, then);
@@ -303,6 +307,14 @@ impl MainWindow {
                 let format = Some(format);
                 self.did(|| Action::Palette(PaletteAction::Export { palette, file, format }));
             }
+            Err(error) => self.messages.extend([with_advice(&error)]),
+        }
+    }
+
+    /// The lines of the form; it takes no time.
+    fn export_lines(&mut self, file: PathBuf, over: Overwrite) {
+        match export_lines(&self.session, &file, over) {
+            Ok(()) => self.did(|| Action::File(FileAction::ExportLines { file })),
             Err(error) => self.messages.extend([with_advice(&error)]),
         }
     }
@@ -332,6 +344,9 @@ impl MainWindow {
         let stem = storage::without_ending(&title);
         if purpose == FilePurpose::ExportUnwrapped {
             return format!("{stem}-unwrapped.png");
+        }
+        if purpose == FilePurpose::ExportLines {
+            return format!("{stem}-lines.svg");
         }
         if let FilePurpose::ExportPalette(format) = purpose {
             let name = self.session.shown_palette().map(|palette| palette.name.as_str());

@@ -51,6 +51,7 @@ impl MainWindow {
                 self.dialogs.push(Dialog::Unwrapped(self.unwrapped.clone()))
             }
             WindowRequest::ExportUnwrapped => self.ask_where(FilePurpose::ExportUnwrapped),
+            WindowRequest::ExportLines => self.ask_where(FilePurpose::ExportLines),
             WindowRequest::Unwrap => self.unwrap_surface(),
             WindowRequest::Close(index) => self.close(ctx, index),
             WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),

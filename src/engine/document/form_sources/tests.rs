@@ -5,6 +5,7 @@ use crate::document::{History, StrokeList};
 use crate::math::{Size, Vec3, srgb::Color, vec2};
 use crate::paint::{Brush, FormPattern, Sample};
 use crate::raster::Plane;
+use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
 use crate::surface::{Maps, Operator, Surface};
 
@@ -28,7 +29,8 @@ fn stroke_layer(name: &str, points: &[Vec2]) -> Layer {
 
 fn hatching(way: HatchWay, tone: HatchTone) -> Layer {
     let settings = HatchSettings { way, tone, ..HatchSettings::DEFAULT };
-    let sources = HatchSources { guides: "Guides".into(), tone: "Tone".into() };
+    let sources =
+        DrawingSources { guides: "Guides".into(), tone: "Tone".into(), ..Default::default() };
     let drawing = FormDrawing { sources, ..FormDrawing::new(FormPattern::Hatching(settings)) };
     Layer::new("Hatching", Content::FormDrawing(Live::new(drawing)))
 }
@@ -92,7 +94,7 @@ fn tone_is_that_of_what_lies_beneath_or_of_one_layer() {
 fn hatching_that_names_itself_has_its_own_light() {
     let mut own = hatching(HatchWay::Paper, HatchTone::Layer);
     if let Content::FormDrawing(live) = &mut own.content {
-        let sources = HatchSources { tone: "Hatching".into(), ..HatchSources::default() };
+        let sources = DrawingSources { tone: "Hatching".into(), ..DrawingSources::default() };
         *live = Live::new(FormDrawing { sources, ..live.params().clone() });
     }
     let document = document(vec![own]).reshaped();
@@ -116,4 +118,58 @@ fn hatching_is_as_dense_as_the_picture_beneath_is_dark() {
     };
     let [dark, middle, light] = [40, 128, 230].map(ink);
     assert!(light < 0.01 && (0.25..0.5).contains(&middle) && dark > 0.6, "{dark} {middle} {light}");
+}
+
+#[test]
+fn lines_that_are_drawn_again_give_way_and_the_rest_stays_live() {
+    let middle = vec2(64.0, 48.0);
+    let disc = |radius_px: f32| {
+        let is_on = move |x: usize, y: usize| {
+            vec2(x as f32 + 0.5, y as f32 + 0.5).distance(middle) < radius_px
+        };
+        let maps = Maps {
+            normals: Plane::from_fn(
+                SIZE,
+                move |x, y| if is_on(x, y) { Vec3::Z } else { Vec3::ZERO },
+            ),
+            depth: Plane::from_fn(SIZE, move |x, y| if is_on(x, y) { 0.5 } else { f32::NAN }),
+            coverage: Plane::from_fn(SIZE, move |x, y| if is_on(x, y) { 255 } else { 0 }),
+        };
+        Some(Arc::new(Surface::new(maps).unwrap()))
+    };
+    // Along the left half of the outline, as a hand would.
+    let arc = (0..=18).map(|i| {
+        let turn = (90.0 + 10.0 * i as f32).to_radians();
+        middle + 41.0 * vec2(turn.cos(), turn.sin())
+    });
+    let strokes = stroke_layer("By hand", &arc.collect::<Vec<_>>());
+    let sources = DrawingSources { redrawn: "By hand".into(), ..Default::default() };
+    let pattern = FormPattern::Lines(LineSettings::DEFAULT);
+    let drawing = FormDrawing { sources, ..FormDrawing::new(pattern) };
+    let lines = Layer::new("Lines", Content::FormDrawing(Live::new(drawing)));
+    let document = Document { surface: disc(40.0), ..document(vec![lines, strokes]) };
+    let ink = |document: &Document| {
+        let id = document.layer_named("Lines").unwrap().id;
+        let picture = flatten_layer(document, id, &Progress::default()).unwrap();
+        let of = |from: i32, to: i32| {
+            let all = (0..96).flat_map(|y| (from..to).map(move |x| (x, y)));
+            all.map(|(x, y)| u32::from(picture.pixel(x, y)[3])).sum::<u32>() / 255
+        };
+        [of(0, 56), of(72, 128)]
+    };
+    let [left, right] = ink(&document);
+    assert!(left > 100 && right > 100, "{left} {right}");
+    let shaped = document.reshaped();
+    let [left, right] = ink(&shaped);
+    assert!(left < 5 && right > 100, "{left} {right}");
+    // Hidden strokes still stand there; the shape may change.
+    let id = shaped.layer_named("By hand").unwrap().id;
+    let hidden = shaped.with_layer(id, |layer| layer.visible = false).unwrap();
+    let larger = Document { surface: disc(44.0), ..hidden }.reshaped();
+    let [left, right] = ink(&larger);
+    assert!(left < 5 && right > 100, "{left} {right}");
+    let renamed = larger.with_layer(id, |layer| layer.name = "Again".into()).unwrap();
+    assert!(ink(&renamed.reshaped())[0] < 5);
+    let none = renamed.without_strokes(id, &[0]).unwrap().reshaped();
+    assert!(ink(&none)[0] > 100);
 }

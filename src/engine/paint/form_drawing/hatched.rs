@@ -1,6 +1,7 @@
 //! Strokes of hatching: where tone asks for a line, and how wide it is there. Floor 3. Lines that
 //! stay do not move when the light does: tone decides width alone.
 
+use super::brush_coverage::BrushCoverage;
 use super::{FormDrawing, TonePicture};
 use crate::math::{Size, Vec2, Vec3, vec3};
 use crate::paint::brush::Brush;
@@ -10,7 +11,7 @@ use crate::raster::Plane;
 use crate::surface::Surface;
 use crate::surface::form_lines::{LinePoint, SmoothNormals};
 use crate::surface::hatching::{HatchLine, HatchPoint, HatchSettings, HatchTone};
-use crate::surface::shadow::{LampPlace, ShadowLamp, ShareMap};
+use crate::surface::shadow::{ShadowLamp, ShareMap};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -25,8 +26,6 @@ const MEAN: usize = 3;
 const WRAP: f32 = 0.1;
 /// The share of light that comes from everywhere.
 const AROUND: f32 = 0.18;
-/// The lamp of cast shadows: its radius, how far its shadows reach, in longer sides, and its rays.
-const LAMP: (f32, f32, u32) = (0.08, 0.35, 12);
 /// Shadows that are kept.
 const KEPT: usize = 3;
 /// How far what makes hollows dark may be, in longer sides.
@@ -81,14 +80,7 @@ impl<'s> LitForm<'s> {
     fn of(surface: &Surface, settings: &'s HatchSettings) -> Self {
         let side = surface.size().longer_side();
         let light = settings.light.normalize_or(Vec3::Z);
-        let (radius, reach, rays) = LAMP;
-        let lamp = ShadowLamp {
-            place: LampPlace::Afar(light),
-            radius,
-            reach_px: reach * side,
-            rays,
-            is_coarse: false,
-        };
+        let lamp = ShadowLamp::of_drawing(light, surface.size());
         Self {
             settings,
             normals: surface.smooth_normals(settings.smooth),
@@ -121,13 +113,19 @@ pub(super) fn strokes(
 ) -> Vec<Arc<Stroke>> {
     let tone = FormTone::of(surface, settings, drawing.found.tone.as_deref());
     let lines = surface.hatch_lines(settings, &drawing.found.guides);
-    let of_line = |line: &HatchLine| of_line(drawing, line, &tone);
+    let covered = BrushCoverage::of(&drawing.brush);
+    let of_line = |line: &HatchLine| of_line(drawing, line, &tone, covered);
     lines.lines.par_iter().flat_map_iter(of_line).collect()
 }
 
-fn of_line(drawing: &FormDrawing, line: &HatchLine, tone: &FormTone) -> Vec<Arc<Stroke>> {
+fn of_line(
+    drawing: &FormDrawing,
+    line: &HatchLine,
+    tone: &FormTone,
+    covered: BrushCoverage,
+) -> Vec<Arc<Stroke>> {
     if let [point] = line.points[..] {
-        return of_point(drawing, point, line.level, tone).into_iter().collect();
+        return of_point(drawing, point, line.level, tone, covered).into_iter().collect();
     }
     let width = |at: Vec2, room_px: f32| {
         let share = tone.settings.coverages(tone.dark(at)).nth(usize::from(line.level));
@@ -147,7 +145,7 @@ fn of_line(drawing: &FormDrawing, line: &HatchLine, tone: &FormTone) -> Vec<Arc<
         if is_drawn && run >= SHORTEST {
             let point = |i: usize| LinePoint {
                 at: line.points[i].at,
-                strength: pressure_of(&drawing.brush, smooth[i]),
+                strength: pressure_of(&drawing.brush, smooth[i] / covered.width),
             };
             let points: Vec<LinePoint> = (from..from + run).map(point).collect();
             strokes.push(drawing.hand.draw_part(drawing, &points, from));
@@ -163,11 +161,12 @@ fn of_point(
     point: HatchPoint,
     level: u8,
     tone: &FormTone,
+    covered: BrushCoverage,
 ) -> Option<Arc<Stroke>> {
     let area = tone.settings.stipple_area(tone.dark(point.at), usize::from(level));
     let width_px = (area * 4.0 / PI).sqrt() * point.room_px;
     (width_px >= LEAST_PX).then(|| {
-        let strength = pressure_of(&drawing.brush, width_px);
+        let strength = pressure_of(&drawing.brush, width_px / covered.area.sqrt());
         drawing.hand.draw_part(drawing, &[LinePoint { at: point.at, strength }], 0)
     })
 }

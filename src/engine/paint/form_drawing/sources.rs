@@ -1,5 +1,5 @@
 //! What drawings by the form read of other layers: strokes that hatching follows, a picture whose
-//! tone it has, ink that lines leave out. Floor 3. Not here: finding them in a document
+//! tone it has, ink and strokes that lines leave out. Floor 3. Not here: finding them in a document
 //! (`document::form_sources`).
 
 use super::inked::InkOnCanvas;
@@ -9,11 +9,13 @@ use crate::surface::hatching::GuideLines;
 use std::any::Any;
 use std::sync::{Arc, Weak};
 
-/// Layers that hatching reads, by their names; none where a name is empty.
+/// Layers that a drawing by the form reads, by their names; none where a name is empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct HatchSources {
-    /// The stroke layer whose strokes lines follow.
+pub struct DrawingSources {
+    /// The stroke layer whose strokes hatching follows.
     pub guides: String,
+    /// The stroke layer whose strokes stand in the place of form lines.
+    pub redrawn: String,
     /// The layer or group whose tone it has.
     pub tone: String,
 }
@@ -22,11 +24,11 @@ pub struct HatchSources {
 /// drawing.
 #[derive(Clone, Default)]
 pub struct FoundSources {
-    /// Strokes that lines follow.
+    /// Strokes that hatching follows.
     pub guides: GuideLines,
     /// The picture whose tone it has; `None` if it has a light of its own.
     pub tone: Option<Arc<TonePicture>>,
-    /// The ink that lines leave out.
+    /// The ink and the strokes that lines leave out.
     pub ink: InkOnCanvas,
 }
 

@@ -7,7 +7,7 @@ use crate::paint::stroke;
 use crate::raster::Plane;
 use crate::raster::TileAt;
 use crate::surface::form_lines::{LineKind, LineKinds};
-use crate::surface::hatching::HatchStyle;
+use crate::surface::hatching::{GuideLines, HatchStyle};
 use crate::surface::{Maps, Surface};
 
 /// A roof over the canvas, its ridge from side to side.
@@ -158,7 +158,35 @@ fn hatching_that_stays_does_not_move_with_the_light() {
     };
     let (a, b) = (places(&before), places(&after));
     assert!(a != b);
-    // Ends move along their lines; all else is where it was.
+    // Ends move along their lines; all else is where it was, on lines that light has no part in.
     let kept = a.intersection(&b).count();
     assert!(kept * 10 > a.len().min(b.len()) * 9, "{kept} of {} and {}", a.len(), b.len());
+    let surface = scene.surface.as_deref().unwrap();
+    let lines = surface.hatch_lines(before.hatching().unwrap(), &GuideLines::none());
+    let points = lines.lines.iter().flat_map(|line| &line.points);
+    let on_lines: std::collections::HashSet<_> =
+        points.map(|point| point.at.to_array().map(f32::to_bits)).collect();
+    assert!(a.is_subset(&on_lines) && b.is_subset(&on_lines));
+}
+
+#[test]
+fn hatching_grows_evenly_as_the_light_turns() {
+    let scene = turning();
+    let pressures = |degrees: f32| -> std::collections::HashMap<[u32; 2], f32> {
+        let mut drawing = hatching(HatchStyle::Crosshatch);
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        *drawing.light_mut() = vec3(-cos, 0.0, sin);
+        let strokes = drawing.strokes(&scene);
+        let inner = strokes.iter().flat_map(|s| &s.samples()[1..s.samples().len() - 1]);
+        inner.map(|s| (s.at.to_array().map(f32::to_bits), s.pressure)).collect()
+    };
+    let (a, b) = (pressures(40.0), pressures(41.0));
+    let both = a.iter().filter_map(|(at, before)| Some((before - b.get(at)?).abs()));
+    let (most, count) = both.fold((0.0f32, 0), |(most, n), change| (most.max(change), n + 1));
+    assert!(count > 1000 && most < 0.12, "{most} at {count}");
+    // What comes or goes is thin: a fifth of the brush at most.
+    let new = b.iter().filter(|(at, _)| !a.contains_key(*at)).map(|(_, pressure)| *pressure);
+    let mut new: Vec<f32> = new.collect();
+    new.sort_by(f32::total_cmp);
+    assert!(new.is_empty() || new[new.len() * 9 / 10] < 0.2, "{:?}", new.last());
 }

@@ -193,3 +193,52 @@ fn a_surface_twice_as_large_shows_chunks_twice_as_large() {
     }
     assert!(same * 100 > all.len() * 90, "{same} of {}", all.len());
 }
+
+/// How dark a painted ball is at a place on its square, px: marks 3 px wide and 9 px long.
+fn mark(at: Vec2) -> f32 {
+    0.5 + 0.5 * (1.05 * at.x).sin() * (0.35 * at.y + 0.8 * (0.2 * at.x).sin()).sin()
+}
+
+/// How often each slope of a picture occurs, its steps a 40th of 1.5, where `at` says its place on
+/// the ball; together 1.
+fn slopes(size: (usize, usize), at: impl Fn(usize, usize) -> Option<Vec2>) -> [f32; 40] {
+    let mut all = [0.0; 40];
+    for (x, y) in (0..size.1 - 1).flat_map(|y| (0..size.0 - 1).map(move |x| (x, y))) {
+        let (Some(here), Some(right), Some(down)) = (at(x, y), at(x + 1, y), at(x, y + 1)) else {
+            continue;
+        };
+        let slope = (mark(right) - mark(here)).hypot(mark(down) - mark(here));
+        all[((slope / 1.5 * 40.0) as usize).min(39)] += 1.0;
+    }
+    let sum: f32 = all.iter().sum();
+    all.map(|count| count / sum)
+}
+
+/// The earth mover's distance of two histograms, in steps.
+fn move_between(a: [f32; 40], b: [f32; 40]) -> f32 {
+    let mut left = 0.0;
+    let moves = a.iter().zip(b).map(|(a, b)| {
+        left += a - b;
+        f32::abs(left)
+    });
+    moves.sum()
+}
+
+#[test]
+fn marks_on_a_figure_are_as_sharp_as_on_the_ball() {
+    let (width, height) = (240, 160);
+    let surface = bumps((width as u32, height as u32), 0.0);
+    let maps = ChunkMaps::of(&surface, PLAIN);
+    let covered = |x: usize, y: usize| surface.coverage(x, y) > 0;
+    let on_ball = slopes((128, 128), |x, y| {
+        let at = vec2(x as f32 + 0.5, y as f32 + 0.5);
+        (at.distance(Vec2::splat(64.0)) < 62.0).then_some(at)
+    });
+    let looked_up = slopes((width, height), |x, y| covered(x, y).then(|| maps.look_up(x, y)));
+    let whole = slopes((width, height), |x, y| {
+        let place = maps.place_at(x, y).at.map(|v| f32::from(v) / maps.settings.steps());
+        covered(x, y).then(|| Vec2::from(place))
+    });
+    let (smeared, whole) = (move_between(looked_up, on_ball), move_between(whole, on_ball));
+    assert!(whole < 0.5 * smeared, "{whole} with whole strokes, {smeared} without");
+}

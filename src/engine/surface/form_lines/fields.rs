@@ -3,11 +3,12 @@
 //! Floor 2. Not here: what is left of them (`tidy`).
 
 use super::chains::{LineStep, join_steps, pair_crossings, sides};
-use super::smooth::{SmoothNormals, gradient_of};
+use super::smooth::{SmoothNormals, diffuse_copy, gradient_of};
 use super::tidy::RawLine;
 use super::{LineKind, LinePoint, LineSettings};
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
+use crate::surface::shadow::ShadowLamp;
 use crate::surface::unwrap::Unwrapping;
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
@@ -21,6 +22,10 @@ const RIDGE: (f32, f32) = (0.06, 0.5);
 const RIDGE_DROP: f32 = 2e-3;
 /// What makes a second derivative over σ² a strength.
 const SUGGESTIVE_SCALE: f32 = 8.0;
+/// What faces the light less, n·ℓ, has no edge of a cast shadow: it is dark by itself.
+const LEAST_LIT: f32 = 0.12;
+/// Shadows that are kept.
+const KEPT_SHADOWS: usize = 3;
 
 /// What curves are traced from.
 pub(super) struct FormCurves<'s> {
@@ -51,6 +56,9 @@ impl FormCurves<'_> {
         }
         if wants(LineKind::Light) {
             lines.extend(self.light());
+        }
+        if wants(LineKind::Shadow) {
+            lines.extend(self.shadows());
         }
         lines
     }
@@ -161,6 +169,24 @@ impl FormCurves<'_> {
         };
         let crossing = |a, b| Some((zero(lit(a), lit(b))?, 1.0));
         self.lines_of(LineKind::Light, self.surface.links_plane(), crossing)
+    }
+
+    /// Half of the lamp is seen, where the form faces it.
+    fn shadows(&self) -> Vec<RawLine> {
+        let toward = self.settings.light.normalize_or(Vec3::Z);
+        let lamp = ShadowLamp::of_drawing(toward, self.surface.size());
+        let share = self.surface.shadow(&lamp, KEPT_SHADOWS);
+        let seen = Plane::from_fn(self.surface.size(), |x, y| share.at(x, y) - 0.5);
+        let seen = diffuse_copy(&seen, self.surface, self.normals.smooth_px.max(1.0));
+        let toward = vec3(toward.x, -toward.y, toward.z);
+        let is_facing = |(x, y): (usize, usize)| {
+            self.normals.nbar(x, y).extend(self.normals.nz(x, y)).dot(toward) > LEAST_LIT
+        };
+        let crossing = |a: (usize, usize), b: (usize, usize)| {
+            let t = zero(seen.at(a.0, a.1), seen.at(b.0, b.1))?;
+            (is_facing(a) && is_facing(b)).then_some((t, 1.0))
+        };
+        self.lines_of(LineKind::Shadow, self.surface.links_plane(), crossing)
     }
 
     /// A map between pixels; of pixels that are not linked to one another, the middle's value.

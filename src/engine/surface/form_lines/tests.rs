@@ -288,3 +288,100 @@ fn a_rim_that_coarse_maps_tore_off_breaks_no_outline() {
     assert_eq!(lines.len(), 4, "{all:?}");
     assert!(lines.iter().all(|line| line.is_joined == [true; 2]), "{all:?}");
 }
+
+#[test]
+fn a_cast_shadow_has_an_edge_where_the_lamp_is_half_hidden() {
+    // A block 30 px high on a board, its right side at x = 100, in light at 45° from the left.
+    let block = |x: f32, y: f32| {
+        let is_in = (60.0..100.0).contains(&x) && (60.0..140.0).contains(&y);
+        Some(if is_in { 30.0 } else { 0.0 })
+    };
+    let kinds = LineKinds::NONE.with(LineKind::Shadow, true);
+    let light = vec3(-1.0, 0.0, 1.0);
+    let settings = LineSettings { kinds, light, ..Default::default() };
+    let lines = lines_of(&surface(Size::new(200, 200), block), &settings);
+    let along = |line: &&FormLine| line.points.iter().any(|p| (p.at.y - 100.0).abs() < 2.0);
+    let edge: Vec<f32> = lines
+        .iter()
+        .filter(along)
+        .flat_map(|line| line.points.iter().filter(|p| (p.at.y - 100.0).abs() < 20.0))
+        .map(|p| p.at.x)
+        .filter(|x| *x > 110.0)
+        .collect();
+    assert!(edge.len() > 20, "{} points, {} lines", edge.len(), lines.len());
+    assert!(edge.iter().all(|x| (x - 130.0).abs() < 2.5), "{edge:?}");
+}
+
+/// A bump that its height above a plane falls off from like a Gaussian: it is steepest at 18/√2 px.
+fn gaussian_bump(x: f32, y: f32) -> Option<f32> {
+    Some(27.0 * (-vec2(x - 80.0, y - 80.0).length_squared() / (18.0 * 18.0)).exp())
+}
+
+#[test]
+fn a_gaussian_bump_has_a_suggestive_contour_where_it_is_steepest() {
+    let bump = surface(Size::new(160, 160), gaussian_bump);
+    let kinds = LineKinds::NONE.with(LineKind::Suggestive, true);
+    let lines = lines_of(&bump, &LineSettings { kinds, detail: 1.0, ..Default::default() });
+    assert_eq!(lines.len(), 1, "{:?}", lines.iter().map(FormLine::length_px).collect::<Vec<_>>());
+    let radii = lines[0].points.iter().map(|p| p.at.distance(vec2(80.0, 80.0)));
+    let (least, most) = radii.fold((f32::MAX, 0.0f32), |(a, b), r| (a.min(r), b.max(r)));
+    // Blurring by σ = 2 px moves it out: a Gaussian of √(18² + 2 · 2²).
+    let exact = (0.5f32 * (18.0 * 18.0 + 8.0)).sqrt();
+    assert!(lines[0].is_closed && most - least < 0.2, "{least} to {most}");
+    assert!((0.5 * (least + most) - exact).abs() < 0.3, "{least} to {most}, {exact}");
+}
+
+#[test]
+fn a_cylinder_and_a_saddle_have_no_inner_lines() {
+    let cylinder = |_: f32, y: f32| {
+        let rest = 70.0 * 70.0 - (y - 100.0) * (y - 100.0);
+        (rest > 0.0).then(|| rest.sqrt())
+    };
+    let saddle = |x: f32, y: f32| {
+        let p = vec2(x - 100.0, y - 100.0);
+        (p.length() < 80.0).then(|| 0.006 * (p.x * p.x - p.y * p.y))
+    };
+    for height in [&cylinder as &(dyn Fn(f32, f32) -> Option<f32> + Sync), &saddle] {
+        let kinds = LineKinds::PEN.with(LineKind::Ridge, true);
+        let settings = LineSettings { kinds, detail: 0.8, ..Default::default() };
+        let lines = lines_of(&surface(Size::new(200, 200), height), &settings);
+        let inner: Vec<_> = lines.iter().filter(|l| l.kind != LineKind::Outline).collect();
+        let found: Vec<_> = inner.iter().map(|l| (l.kind, l.length_px())).collect();
+        assert!(found.is_empty() && !lines.is_empty(), "{found:?}");
+    }
+}
+
+#[test]
+fn maps_twice_as_large_have_the_same_lines_twice_as_large() {
+    let kinds = LineKinds::PEN.with(LineKind::Ridge, true);
+    let settings = LineSettings { kinds, detail: 0.8, ..Default::default() };
+    let once = lines_of(&surface(Size::new(256, 256), bumps), &settings);
+    let large = |x: f32, y: f32| bumps(0.5 * x, 0.5 * y).map(|height| 2.0 * height);
+    let twice = lines_of(&surface(Size::new(512, 512), large), &settings.scaled(2.0));
+    let half: Vec<FormLine> = twice
+        .iter()
+        .map(|line| {
+            let point = |p: &LinePoint| LinePoint { at: 0.5 * p.at, ..*p };
+            FormLine { points: line.points.iter().map(point).collect(), ..line.clone() }
+        })
+        .collect();
+    let of = |lines: &[FormLine]| {
+        let mut kinds: Vec<_> = lines.iter().map(|line| line.kind).collect();
+        kinds.sort();
+        kinds
+    };
+    assert_eq!(of(&once), of(&half));
+    let off = lines_difference(&half, &once).max(lines_difference(&once, &half));
+    assert!(off <= 0.2, "{off} px");
+}
+
+#[test]
+fn lines_are_the_same_with_any_number_of_threads() {
+    let kinds = LineKinds::PEN.with(LineKind::Ridge, true).with(LineKind::Light, true);
+    let settings = LineSettings { kinds, detail: 0.9, ..Default::default() };
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| lines_of(&surface(Size::new(256, 256), bumps), &settings))
+    };
+    assert_eq!(with(1), with(4));
+}

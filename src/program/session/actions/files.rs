@@ -9,7 +9,9 @@ use crate::document::view::UnwrapOptions;
 use crate::document::{Content, Document, Highlights, Layer, Progress};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
 use crate::io::export::{Output, OutputFile};
-use crate::io::{Budget, Overwrite, Terms, save};
+use crate::io::fs::Disk;
+use crate::io::replace::replace;
+use crate::io::{Budget, Overwrite, Terms, line_svg, save};
 use crate::math::{Size, Vec2, srgb::Color};
 use crate::session::actions::placing::{place, read_picture};
 use crate::session::actions::{pictures, unwrapped};
@@ -79,6 +81,8 @@ actions! {
         /// The painting, or the layer that is seen alone, as it lies in the planes of the unwrapped
         /// surface, `scale` pixels per pixel of the plane, with so many bits per channel.
         "export unwrapped" ExportUnwrapped { file: PathBuf, scale: u32, bits: u8 }
+        /// The lines of the selected layer, or of the lowest layer of form lines, as paths of an SVG.
+        "export lines" ExportLines { file: PathBuf }
         /// A picture of those planes becomes an image layer that lies on the surface.
         "import unwrapped" ImportUnwrapped { file: PathBuf }
         /// A picture that the selected layer is made of.
@@ -162,6 +166,9 @@ impl FileAction {
             FileAction::RemoveBrush { name } => brushes::remove(session, name)?,
             FileAction::Save { file } => save_in_front(session, file)?,
             FileAction::ExportAgain {} => export_again(session)?,
+            FileAction::ExportLines { file } => {
+                export_lines(session, file, unless_forced(session))?
+            }
             FileAction::Export { .. }
             | FileAction::ExportMaps { .. }
             | FileAction::ExportUnwrapped { .. } => self.export(session)?,
@@ -250,6 +257,26 @@ fn export_again(session: &mut Session) -> Result<()> {
     // It was written here before.
     let terms = Terms::export(Overwrite::Anything, session.reads());
     export_in_front(session, to, terms)
+}
+
+/// Writes the lines of the form of the document in front as an SVG; it takes no time.
+pub fn export_lines(session: &Session, file: &Path, over: Overwrite) -> Result<()> {
+    let Some(open) = session.active() else { return Ok(()) };
+    let document = open.document();
+    if document.surface.is_none() {
+        let reason = "the document has no shape whose lines there could be";
+        return Err(Error::unsupported_file(file, reason));
+    }
+    let selected = open.active_layer.and_then(|id| document.layer(id));
+    let drawing = match selected.map(|layer| &layer.content) {
+        Some(Content::FormDrawing(live)) if live.params().hatching().is_none() => {
+            live.params().clone()
+        }
+        _ => line_svg::drawing_of(document),
+    };
+    let terms = Terms::export(over, session.reads());
+    let svg = line_svg::write(document, &drawing);
+    replace(&Disk, file, svg.as_bytes(), &terms, &Progress::default()).map(drop)
 }
 
 /// Saves the document in front.

@@ -65,30 +65,35 @@ fn make_drawing(pattern: FormPattern, size: Size) -> Content {
     Content::FormDrawing(Live::new(FormDrawing::new(pattern).scaled(on_canvas(size))))
 }
 
-/// Hatching along the strokes of the stroke layer that it names, or of a new one above it, which is
-/// selected.
+/// Hatching along the strokes of the stroke layer that it names, or form lines that leave out what
+/// those draw again, or those of a new one above it, which is selected.
 pub(super) fn add_guides(document: &Document, layer: &Layer) -> Option<EditStep> {
     let Content::FormDrawing(live) = &layer.content else { return None };
     let mut drawing = live.params().clone();
-    let FormPattern::Hatching(hatch) = &mut drawing.pattern else { return None };
-    hatch.way = HatchWay::Guides;
-    let named = document.layer_named(&drawing.sources.guides);
+    let sources = &mut drawing.sources;
+    let (name, begins_as, label) = match &mut drawing.pattern {
+        FormPattern::Hatching(hatch) => {
+            hatch.way = HatchWay::Guides;
+            (&mut sources.guides, "Guide strokes", "Draw guide strokes")
+        }
+        FormPattern::Lines(_) => (&mut sources.redrawn, "Redrawn lines", "Redraw lines"),
+    };
+    let named = document.layer_named(name);
     let known = named.filter(|layer| matches!(layer.content, Content::Strokes(_)));
     let (document, id) = match known {
         Some(known) => (document.clone(), known.id),
         None => {
-            let name = document.free_layer_name("Guide strokes");
+            *name = document.free_layer_name(begins_as);
             let strokes = Content::Strokes(Live::new(StrokeList::default()));
             let new = Layer { clip_to_surface: false, ..Layer::new(name.clone(), strokes) };
             let place = document.place_of(layer.id)?;
             let (id, above) = (new.id, LayerSlot { index: place.index + 1, ..place });
-            drawing.sources.guides = name;
             (document.with_inserted(new, above)?, id)
         }
     };
     let content = Content::FormDrawing(Live::new(drawing));
     let next = document.with_layer(layer.id, |layer| layer.content = content)?;
-    Some(("Draw guide strokes", next, vec![id]))
+    Some((label, next, vec![id]))
 }
 
 /// What lengths of a canvas of 1024 px are multiplied by on another: finer ones would not be seen,

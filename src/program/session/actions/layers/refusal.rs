@@ -54,15 +54,9 @@ impl LayerAction {
                 check_shading(document, layer, is_lighting)
                     .map_err(|()| "Select a painter's light that lights what is beneath first.")
             }
-            LayerAction::MakeStrokes { layer } | LayerAction::DrawWith { layer } => {
-                check_form_drawing(document, layer)
-            }
-            LayerAction::DrawGuides { layer } => match layer.find(document).map(|l| &l.content) {
-                Some(Content::FormDrawing(live)) if live.params().hatching().is_some() => {
-                    check_form_drawing(document, layer)
-                }
-                _ => Err("Select a layer of hatching first."),
-            },
+            LayerAction::MakeStrokes { layer }
+            | LayerAction::DrawWith { layer }
+            | LayerAction::DrawGuides { layer } => check_form_drawing(document, layer),
             LayerAction::Attach { layer, part } => {
                 selected(layer).and_then(|ids| attach(document, &ids, part.as_deref()).map(drop))
             }

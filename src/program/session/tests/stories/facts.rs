@@ -106,6 +106,7 @@ impl StoryFiles {
             }
             ("export maps", _) => new(&["out-maps.png", "out-maps.exr"]),
             ("export unwrapped", _) => new(&["out-sheet.png", "out-sheet.exr"]),
+            ("export lines", _) => new(&["out-lines.svg"]),
             ("open", _) => found(&|name| {
                 [".ora", ".psd", ".json", ".png"].iter().any(|end| name.ends_with(end))
             }),

@@ -64,6 +64,7 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         Lines { .. }
         | Hatched { .. }
         | GuidedBy { .. }
+        | RedrawnOn { .. }
         | ToneOf { .. }
         | Hand { .. }
         | LineSize { .. }

@@ -63,7 +63,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
     (&["image", "gradient"], &["operator", "pieces", "filter"]),
     (&["image", "normals"], &["placement", "outside"]),
     (&["gradient"], &["stops", "ends", "ramp"]),
-    (&["lines"], &["lines"]),
+    (&["lines"], &["lines", "redrawn on"]),
     (&["hatching"], &["hatching", "guided by", "tone of"]),
     (&["lines", "hatching"], &["hand", "line size", "drawn with"]),
     (&["normals"], &["grain", "strength"]),
