@@ -74,6 +74,7 @@ pub const LOOKS: &[(&str, &str)] = &table!["looks/":
     "charcoal",
     "ink",
     "engraving",
+    "wood-print",
     "comic",
     "marker",
     "cel-rim",
