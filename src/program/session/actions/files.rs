@@ -105,6 +105,7 @@ impl FileAction {
             FileAction::Save { .. }
                 | FileAction::Export { .. }
                 | FileAction::ExportAgain {}
+                | FileAction::ExportLines { .. }
                 | FileAction::ExportMaps { .. }
                 | FileAction::ExportUnwrapped { .. }
         )
@@ -118,6 +119,7 @@ impl FileAction {
             | FileAction::ImportBrush { file }
             | FileAction::Save { file }
             | FileAction::Export { file, .. }
+            | FileAction::ExportLines { file }
             | FileAction::ExportMaps { file, .. }
             | FileAction::ExportUnwrapped { file, .. }
             | FileAction::ImportUnwrapped { file }
