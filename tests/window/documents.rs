@@ -171,7 +171,10 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     drop_files(&mut harness, &[&normals]);
     until(&mut harness, |harness| shows(harness, "Flip green"));
     // The flat border was taken for background, and that can be taken back.
-    until(&mut harness, |harness| shows(harness, "Flat border"));
+    let is_read = |harness: &super::Story| {
+        shows(harness, "Flip green") && !shows(harness, "Reading the maps…")
+    };
+    until(&mut harness, |harness| shows(harness, "Flat border") && is_read(harness));
     still(&mut harness, "Flip green");
     harness.get_all_by_label("Flip green").next().unwrap().click();
     steps(&mut harness);
@@ -181,9 +184,7 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
         let node = harness.get_all_by_label(name).next().unwrap();
         format!("{:?}", node.accesskit_node().toggled()).contains("True")
     };
-    until(&mut harness, |harness| {
-        shows(harness, "Flip green") && !shows(harness, "Reading the maps…")
-    });
+    until(&mut harness, is_read);
     let all = ["As it is", "Flip red", "Flip green", "Flip both"];
     assert_eq!(all.map(|name| chosen(&harness, name)), [false, false, true, false]);
     press(&mut harness, "Detected");

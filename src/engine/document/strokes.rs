@@ -361,7 +361,7 @@ mod tests {
                 let (id, layers) = (layer.id, vec![Arc::new(layer)]);
                 let live = Document { layers, surface: surface.clone(), ..Document::empty(SIZE) };
                 let made = live.with_made_strokes(id).unwrap();
-                assert!(made.strokes(id).len() > 2);
+                assert!(!made.strokes(id).is_empty());
                 let (live, made) = (picture(&live), picture(&made));
                 let ink: usize = live.iter().skip(3).step_by(4).filter(|a| **a > 0).count();
                 let most = live.iter().zip(&made).map(|(a, b)| a.abs_diff(*b)).max();

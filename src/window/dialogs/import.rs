@@ -163,10 +163,17 @@ impl ImportDialog {
 
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         set_width(ui, 560.0);
-        ui.heading(match self.becomes {
-            MapsBecome::Document => "New document from maps",
-            MapsBecome::ItsMaps => "Other maps for this document",
-            MapsBecome::ItsPart => "Maps as a part of the shape",
+        // What is done stands beside the title, so that no control moves when it ends.
+        ui.horizontal(|ui| {
+            ui.heading(match self.becomes {
+                MapsBecome::Document => "New document from maps",
+                MapsBecome::ItsMaps => "Other maps for this document",
+                MapsBecome::ItsPart => "Maps as a part of the shape",
+            });
+            if self.is_reading {
+                ui.spinner();
+                ui.label("Reading the maps…");
+            }
         });
         let mut ask = None;
         self.files(ui, &mut ask);
@@ -182,12 +189,6 @@ impl ImportDialog {
         if is_some && self.read.as_ref() != Some(&self.source) {
             (self.read, self.is_reading) = (Some(self.source.clone()), true);
             return DialogAnswer::Import(Box::new(self.source.clone()));
-        }
-        if self.is_reading {
-            ui.horizontal(|ui| {
-                ui.spinner();
-                ui.label("Reading the maps…");
-            });
         }
         match &self.found {
             None => {}

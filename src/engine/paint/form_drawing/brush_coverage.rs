@@ -5,7 +5,7 @@ use crate::paint::brush::{Brush, Tip};
 use crate::paint::profile::RoundProfile;
 
 /// Steps across a stroke, and of its dabs along it.
-const STEPS: (usize, usize) = (48, 8);
+const STEPS: (usize, usize) = (48, 16);
 /// The least that is reckoned with: fainter brushes are not made up for.
 const LEAST: f32 = 0.5;
 
@@ -41,7 +41,8 @@ impl BrushCoverage {
         };
         let row = |i: usize| {
             let across = (i as f32 + 0.5) / STEPS.0 as f32 * outer;
-            let phases = (0..STEPS.1).map(|j| covered(across, j as f32 / STEPS.1 as f32));
+            let phases = (0..STEPS.1).map(|j| (j as f32 + 0.5) / STEPS.1 as f32);
+            let phases = phases.map(|phase| covered(across, phase));
             phases.sum::<f32>() / STEPS.1 as f32
         };
         let width = (0..STEPS.0).map(row).sum::<f32>() * outer / STEPS.0 as f32;
