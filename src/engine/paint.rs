@@ -60,8 +60,8 @@ pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;
 pub use filter::{LiveFilter, PictureFilter};
 pub use form_drawing::{
-    DrawingHand, DrawingSources, FormDrawing, FormPattern, FoundSources, InkOnCanvas, TonePicture,
-    ToneSource,
+    ColorPicture, DrawingHand, DrawingSources, FormDrawing, FormPattern, FoundSources, InkOnCanvas,
+    ReadLayers, TonePicture, ToneSource,
 };
 pub use gradient::{Gradient, GradientStop};
 pub use image::{PictureOrigin, PictureSource, PlacedImage, Placement};

@@ -1,15 +1,16 @@
 //! Drawings by the form follow the layers that they read: strokes that hatching follows, the picture
-//! whose tone it has, and ink and strokes that lines leave out. Floor 4. Not here: what they make of them
+//! whose tone it has or whose edges are lines, and ink and strokes that lines leave out. Floor 4. Not here: what they make of them
 //! (`paint::form_drawing`).
 
 use super::flatten::{flatten, flatten_layer};
 use super::{Content, Document, Group, Layer, LayerId, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{
-    DrawingSources, FormDrawing, FormPattern, FoundSources, InkOnCanvas, Stroke, TonePicture,
-    ToneSource,
+    ColorPicture, DrawingSources, FormDrawing, FormPattern, FoundSources, InkOnCanvas, ReadLayers,
+    Stroke, TonePicture, ToneSource,
 };
 use crate::raster::TileGrid;
+use crate::surface::form_lines::LineKind;
 use crate::surface::hatching::{GuideLines, HatchTone, HatchWay};
 use std::sync::Arc;
 
@@ -22,13 +23,18 @@ impl Document {
         let ink = self.ink_on_canvas();
         self.reading_drawings().iter().all(|(layer, drawing)| {
             let found = &drawing.found;
-            let is_toned = match (self.tone_sources(layer, drawing), &found.tone) {
-                (Some(sources), Some(tone)) => tone.is_of(self.size, &sources),
+            let is_toned = match (self.tone_layers(layer, drawing), &found.tone) {
+                (Some(read), Some(tone)) => tone.is_of(&read),
+                (None, None) => true,
+                _ => false,
+            };
+            let is_colored = match (self.color_layers(layer, drawing), &found.colors) {
+                (Some(read), Some(colors)) => colors.is_of(&read),
                 (None, None) => true,
                 _ => false,
             };
             let is_inked = found.ink.is_same(&self.ink_of(drawing, &ink));
-            is_toned && is_inked && self.guide_lines(drawing) == found.guides
+            is_toned && is_colored && is_inked && self.guide_lines(drawing) == found.guides
         })
     }
 
@@ -42,13 +48,13 @@ impl Document {
         // Directions first: a picture whose tone is read may show hatching along strokes.
         let guided = self.with_found(|document, _, drawing| FoundSources {
             guides: document.guide_lines(drawing),
-            tone: drawing.found.tone.clone(),
             ink: document.ink_of(drawing, &ink),
+            ..drawing.found.clone()
         });
-        guided.with_found(|document, layer, drawing| {
-            let measure = |sources| document.measure_tone(layer, drawing, sources);
-            let tone = document.tone_picture(layer, drawing, measure);
-            FoundSources { tone, ..drawing.found.clone() }
+        guided.with_found(|document, layer, drawing| FoundSources {
+            tone: document.tone_picture(layer, drawing),
+            colors: document.color_picture(layer, drawing),
+            ..drawing.found.clone()
         })
     }
 
@@ -80,7 +86,9 @@ impl Document {
                 let drawing = live.params();
                 let is_reading = match &drawing.pattern {
                     FormPattern::Lines(lines) => {
-                        lines.skip_ink || !drawing.sources.redrawn.is_empty()
+                        lines.skip_ink
+                            || lines.kinds.has_kind(LineKind::Color)
+                            || !drawing.sources.redrawn.is_empty()
                     }
                     FormPattern::Hatching(hatch) => {
                         hatch.way == HatchWay::Guides || hatch.tone != HatchTone::Light
@@ -142,49 +150,58 @@ impl Document {
         self.layer_named(&drawing.sources.tone).filter(|layer| !has_read_tone(layer))
     }
 
-    /// What the tone of a hatching follows from: layers, bottom first, and the surface; `None` if it
-    /// has a light of its own.
-    fn tone_sources(&self, layer: &Layer, drawing: &FormDrawing) -> Option<Vec<ToneSource>> {
-        let read = match drawing.hatching()?.tone {
-            HatchTone::Light => return None,
-            HatchTone::Beneath => all_beneath(&self.layers, layer.id)?,
-            HatchTone::Layer => vec![self.tone_layer(drawing)?.clone()],
-        };
-        let surface = self.surface.iter().map(ToneSource::of);
-        Some(read.iter().map(ToneSource::of).chain(surface).collect())
-    }
-
-    /// The picture whose tone a hatching has: the known one while it follows from the same, else
-    /// what `measure` finds.
-    fn tone_picture(
-        &self,
-        layer: &Layer,
-        drawing: &FormDrawing,
-        measure: impl FnOnce(Vec<ToneSource>) -> Option<Arc<TonePicture>>,
-    ) -> Option<Arc<TonePicture>> {
-        let sources = self.tone_sources(layer, drawing)?;
-        match &drawing.found.tone {
-            Some(known) if known.is_of(self.size, &sources) => Some(known.clone()),
-            _ => measure(sources),
+    /// What the tone of a hatching follows from; `None` if it has a light of its own.
+    fn tone_layers(&self, layer: &Layer, drawing: &FormDrawing) -> Option<ReadLayers> {
+        match drawing.hatching()?.tone {
+            HatchTone::Light => None,
+            HatchTone::Beneath => Some(self.read_layers(&all_beneath(&self.layers, layer.id)?)),
+            HatchTone::Layer => Some(self.read_layers(&[self.tone_layer(drawing)?.clone()])),
         }
     }
 
-    fn measure_tone(
-        &self,
-        layer: &Layer,
-        drawing: &FormDrawing,
-        sources: Vec<ToneSource>,
-    ) -> Option<Arc<TonePicture>> {
-        let progress = Progress::default();
-        let picture: TileGrid = match drawing.hatching()?.tone {
+    /// What edges of color follow from; `None` if they are not wanted.
+    fn color_layers(&self, layer: &Layer, drawing: &FormDrawing) -> Option<ReadLayers> {
+        let is_wanted = matches!(&drawing.pattern, FormPattern::Lines(lines) if lines.kinds.has_kind(LineKind::Color));
+        let beneath = all_beneath(&self.layers, layer.id).filter(|_| is_wanted)?;
+        Some(self.read_layers(&beneath))
+    }
+
+    /// Layers that are read, bottom first, and the surface that they lie on.
+    fn read_layers(&self, read: &[Arc<Layer>]) -> ReadLayers {
+        let surface = self.surface.iter().map(ToneSource::of);
+        ReadLayers::new(self.size, read.iter().map(ToneSource::of).chain(surface).collect())
+    }
+
+    /// The picture whose tone a hatching has: the known one while it follows from the same, else
+    /// what is found.
+    fn tone_picture(&self, layer: &Layer, drawing: &FormDrawing) -> Option<Arc<TonePicture>> {
+        let read = self.tone_layers(layer, drawing)?;
+        if let Some(known) = drawing.found.tone.as_ref().filter(|known| known.is_of(&read)) {
+            return Some(known.clone());
+        }
+        let picture = match drawing.hatching()?.tone {
             HatchTone::Light => return None,
-            HatchTone::Beneath => {
-                let layers = layers_beneath(&self.layers, layer.id)?;
-                flatten(&Document { layers, ..self.clone() }, &progress)?
+            HatchTone::Beneath => self.picture_beneath(layer)?,
+            HatchTone::Layer => {
+                flatten_layer(self, self.tone_layer(drawing)?.id, &Progress::default())?
             }
-            HatchTone::Layer => flatten_layer(self, self.tone_layer(drawing)?.id, &progress)?,
         };
-        Some(Arc::new(TonePicture::of(&picture, self.size, sources)))
+        Some(Arc::new(TonePicture::of(&picture, read)))
+    }
+
+    /// The same for the picture whose edges of color are lines.
+    fn color_picture(&self, layer: &Layer, drawing: &FormDrawing) -> Option<Arc<ColorPicture>> {
+        let read = self.color_layers(layer, drawing)?;
+        if let Some(known) = drawing.found.colors.as_ref().filter(|known| known.is_of(&read)) {
+            return Some(known.clone());
+        }
+        Some(Arc::new(ColorPicture::of(&self.picture_beneath(layer)?, read)))
+    }
+
+    /// What the layers beneath one show together.
+    fn picture_beneath(&self, layer: &Layer) -> Option<TileGrid> {
+        let layers = layers_beneath(&self.layers, layer.id)?;
+        flatten(&Document { layers, ..self.clone() }, &Progress::default())
     }
 
     /// With drawings by the form naming the layers that they read by their present names;

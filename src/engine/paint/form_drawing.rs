@@ -15,7 +15,9 @@ mod tests;
 
 pub use hand::DrawingHand;
 pub use inked::InkOnCanvas;
-pub use sources::{DrawingSources, FoundSources, TonePicture, ToneSource};
+pub use sources::{
+    ColorPicture, DrawingSources, FoundSources, ReadLayers, TonePicture, ToneSource,
+};
 
 use super::brush::Brush;
 use super::dynamics::{Curve, Dynamics, Input, Property};
@@ -142,7 +144,8 @@ impl FormDrawing {
 
     /// Its lines on a surface, without those that ink or a hand draws already.
     pub fn lines(&self, surface: &Surface, settings: &LineSettings) -> Arc<FormLines> {
-        let all = surface.form_lines(settings);
+        let colors = self.found.colors.as_ref().map(|picture| &picture.colors);
+        let all = surface.form_lines_on(settings, colors);
         if self.found.ink.is_empty() {
             all
         } else {

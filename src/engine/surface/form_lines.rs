@@ -1,9 +1,10 @@
 //! Form lines: where an illustrator puts a line on a surface, as polylines with places between
 //! pixels. Floor 2. Here: which lines there are, what is asked of them, and the cache. `outlines`
-//! traces broken links, `fields` the curves of smooth forms, `chains` joins the steps of both, and
+//! traces broken links, `fields` the curves of smooth forms, `colors` edges of a picture, `chains` joins the steps of both, and
 //! `tidy` leaves those that a hand would draw. Not here: strokes along them (`paint::form_strokes`).
 
 mod chains;
+mod colors;
 mod fields;
 mod outlines;
 mod smooth;
@@ -12,6 +13,7 @@ mod tidy;
 #[cfg(test)]
 mod tests;
 
+pub use colors::PaperColors;
 pub use smooth::SmoothNormals;
 pub(in crate::surface) use smooth::{diffuse_copy, gradient_of};
 
@@ -20,6 +22,7 @@ use super::cache::HeapSize;
 use super::operator::UnwrapSettings;
 use crate::math::number_settings::number_settings;
 use crate::math::{Vec2, Vec3};
+use colors::ColorsKey;
 use fields::FormCurves;
 use std::sync::Arc;
 
@@ -45,6 +48,8 @@ crate::named! {
         Shadow = "shadows" => ("Edges of shadow", "Where shadows that the form casts end"),
         /// Wires around the form: lines of the plane that it unwraps to.
         Wire = "wires" => ("Wires", "Lines around the form, equally far apart on it"),
+        /// Where the colors of the picture beneath change (Di Zenzo 1986; Canny 1986).
+        Color = "colors" => ("Edges of color", "Where the colors of what lies beneath change"),
     }
 }
 
@@ -108,7 +113,7 @@ impl LineSettings {
         next
     }
 
-    fn key(&self) -> LineKey {
+    fn key(&self, colors: Option<&Arc<PaperColors>>) -> LineKey {
         let is_lit =
             [LineKind::Light, LineKind::Shadow].into_iter().any(|kind| self.kinds.has_kind(kind));
         let light = if is_lit { self.light.normalize_or(Vec3::Z).to_array() } else { [0.0; 3] };
@@ -116,15 +121,17 @@ impl LineSettings {
         let own = [self.smooth, self.detail, self.shortest, self.gap, self.wires];
         let [a, b, c, d, e] = own.map(f32::to_bits);
         let lit = if is_lit { self.lit.to_bits() } else { 0 };
-        LineKey { kinds: self.kinds, bits: [a, b, c, d, e, lit, x, y, z] }
+        let bits = [a, b, c, d, e, lit, x, y, z];
+        LineKey { kinds: self.kinds, bits, colors: colors.map(ColorsKey::of) }
     }
 }
 
 /// What tells lines from others of the same surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(in crate::surface) struct LineKey {
     kinds: LineKinds,
     bits: [u32; 9],
+    colors: Option<ColorsKey>,
 }
 
 /// A point of a line.
@@ -175,7 +182,7 @@ impl HeapSize for FormLines {
 }
 
 impl FormLines {
-    fn of(surface: &Surface, settings: &LineSettings) -> Self {
+    fn of(surface: &Surface, settings: &LineSettings, colors: Option<&Arc<PaperColors>>) -> Self {
         let mut lines = outlines::trace(surface, settings);
         let is_smooth = |kind| settings.kinds.has_kind(kind);
         let needs_normals = [LineKind::Valley, LineKind::Suggestive, LineKind::Ridge]
@@ -190,6 +197,9 @@ impl FormLines {
             let unwrapped = surface.unwrapping(UnwrapSettings::OF_WIRES);
             lines.extend(fields::wires(surface, &unwrapped, settings));
         }
+        if let Some(colors) = colors {
+            lines.extend(colors.trace(surface.size(), settings));
+        }
         Self { lines: tidy::tidy_lines(lines, settings) }
     }
 }
@@ -197,9 +207,19 @@ impl FormLines {
 impl Surface {
     /// The lines of the surface, cached. Nothing is differenced across a broken link.
     pub fn form_lines(&self, settings: &LineSettings) -> Arc<FormLines> {
+        self.form_lines_on(settings, None)
+    }
+
+    /// The same, with edges of the colors of a picture that lies on it if those are wanted.
+    pub fn form_lines_on(
+        &self,
+        settings: &LineSettings,
+        colors: Option<&Arc<PaperColors>>,
+    ) -> Arc<FormLines> {
         const KEPT: usize = 4;
-        let compute = |_| FormLines::of(self, settings);
-        self.derived.form_lines.get_or_compute(settings.key(), KEPT, compute)
+        let colors = colors.filter(|_| settings.kinds.has_kind(LineKind::Color));
+        let compute = |_| FormLines::of(self, settings, colors);
+        self.derived.form_lines.get_or_compute(settings.key(colors), KEPT, compute)
     }
 
     /// Its normals, blurred within each piece. Cached.

@@ -1,8 +1,8 @@
 //! Hatching: lines that follow the form, equally far apart on the surface, in nested levels, so that
 //! tone decides only which are drawn and how wide. Floor 2. Here: what is asked of them, their
 //! levels, and the cache. `directions` holds the field that they follow, `guided` spreads drawn
-//! strokes over it, `streamlines` places them, `placed` finds those nearby, `stipples` places points in their stead, `room` measures
-//! how densely they lie. Not here: tone, and strokes along them
+//! strokes over it, `streamlines` places them, `placed` finds those nearby, `stipples` places points
+//! in their stead, `room` measures how densely they lie. Not here: tone, and strokes along them
 //! (`paint::form_drawing`).
 
 mod directions;

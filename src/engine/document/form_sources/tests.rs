@@ -3,9 +3,9 @@
 use super::*;
 use crate::document::{History, StrokeList};
 use crate::math::{Size, Vec3, srgb::Color, vec2};
-use crate::paint::{Brush, FormPattern, Sample};
+use crate::paint::{Brush, FormPattern, Sample, Scene};
 use crate::raster::Plane;
-use crate::surface::form_lines::LineSettings;
+use crate::surface::form_lines::{LineKinds, LineSettings};
 use crate::surface::hatching::HatchSettings;
 use crate::surface::{Maps, Operator, Surface};
 
@@ -172,4 +172,33 @@ fn lines_that_are_drawn_again_give_way_and_the_rest_stays_live() {
     assert!(ink(&renamed.reshaped())[0] < 5);
     let none = renamed.without_strokes(id, &[0]).unwrap().reshaped();
     assert!(ink(&none)[0] > 100);
+}
+
+#[test]
+fn edges_of_color_are_those_of_the_picture_beneath() {
+    let kinds = LineKinds::NONE.with(LineKind::Color, true);
+    let lines = LineSettings { kinds, ..LineSettings::DEFAULT };
+    let drawing = FormDrawing::new(FormPattern::Lines(lines));
+    let lines = Layer::new("Hatching", Content::FormDrawing(Live::new(drawing)));
+    let wide = Brush { size: 40.0, hardness: 1.0, ..Brush::default() };
+    let samples = [10.0, 110.0].map(|x| Sample::at(vec2(x, 48.0)));
+    let stroke = Stroke::new(wide, Operator::None, Color::BLACK, samples.to_vec());
+    let strokes = StrokeList { strokes: vec![Arc::new(stroke)] };
+    let painted = Layer::new("Paint", Content::Strokes(Live::new(strokes)));
+    let id = painted.id;
+    let before = document(vec![gray("Page", 240), painted, lines]).with_form_sources();
+    let strokes_of = |document: &Document| {
+        let layer = document.layer_named("Hatching").unwrap();
+        let Content::FormDrawing(live) = &layer.content else { panic!("lines") };
+        let scene = Scene { size: SIZE, surface: document.surface.clone() };
+        live.params().strokes(&scene).len()
+    };
+    assert!(strokes_of(&before) > 0 && before.has_form_sources());
+    let hidden = before.with_layer(id, |layer| layer.visible = false).unwrap();
+    assert!(!hidden.has_form_sources());
+    assert_eq!(strokes_of(&hidden.with_form_sources()), 0);
+    // Above the lines, paint has no part in them.
+    let mut with_above = before.clone();
+    with_above.layers.push(Arc::new(gray("Above", 0)));
+    assert!(with_above.has_form_sources());
 }

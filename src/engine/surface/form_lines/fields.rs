@@ -1,4 +1,4 @@
-//! FormCurves of smooth forms: suggestive contours, apparent ridges and valleys, the edge of light, and
+//! Curves of smooth forms: suggestive contours, apparent ridges and valleys, the edge of light, and
 //! wires. Each is where a map is zero, traced through the cells between four pixels that are linked.
 //! Floor 2. Not here: what is left of them (`tidy`).
 
@@ -34,13 +34,79 @@ pub(super) struct FormCurves<'s> {
     pub settings: &'s LineSettings,
 }
 
-/// The turn of the normals: how much they turn at most, per px, and which way.
-struct Turns {
-    most: Plane<f32>,
+/// How fast the three values of a map change, as the normals of a surface turn: how fast at most,
+/// per px, and which way.
+pub(super) struct Turns {
+    pub most: Plane<f32>,
     /// Unit; the sign is arbitrary.
-    way: [Plane<f32>; 2],
-    /// How the turn grows along that way.
-    growth: Plane<f32>,
+    pub way: [Plane<f32>; 2],
+    /// How the change grows along that way.
+    pub growth: Plane<f32>,
+}
+
+impl Turns {
+    /// q, the largest singular value of the derivative of three planes along links, its direction t,
+    /// and ∂q/∂t.
+    pub fn of(planes: [&Plane<f32>; 3], links: &Plane<u8>) -> Self {
+        let size = links.size();
+        // q, t_x, t_y.
+        let all = Plane::from_fn(size, |x, y| {
+            let linked = links.at(x, y);
+            if linked == 0 {
+                return [0.0; 3];
+            }
+            let slopes = planes.map(|plane| gradient_of(plane, linked, x, y));
+            let sum = |of: &dyn Fn(Vec2) -> f32| slopes.iter().map(|s| of(*s)).sum::<f32>();
+            let (xx, yy) = (sum(&|s| s.x * s.x), sum(&|s| s.y * s.y));
+            let xy = sum(&|s| s.x * s.y);
+            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+            let larger = mean + half.hypot(xy);
+            let way = if xx > yy { vec2(larger - yy, xy) } else { vec2(xy, larger - xx) };
+            let way = way.normalize_or_zero();
+            [larger.max(0.0).sqrt(), way.x, way.y]
+        });
+        let [most, x, y] = [0, 1, 2].map(|i| all.map(move |v| v[i]));
+        let growth = Plane::from_fn(size, |px, py| {
+            gradient_of(&most, links.at(px, py), px, py).dot(vec2(x.at(px, py), y.at(px, py)))
+        });
+        Self { most, way: [x, y], growth }
+    }
+
+    /// The direction at a pixel.
+    pub fn way_at(&self, (x, y): (usize, usize)) -> Vec2 {
+        vec2(self.way[0].at(x, y), self.way[1].at(x, y))
+    }
+
+    /// Where between two pixels the change is at its most along its way.
+    pub fn crest(
+        &self,
+        a: (usize, usize),
+        b: (usize, usize),
+        links: &Plane<u8>,
+        px: f32,
+    ) -> Option<Crest> {
+        let cos = self.way_at(a).dot(self.way_at(b));
+        if cos.abs() < 0.5 {
+            return None;
+        }
+        let agreed = cos.signum() * self.growth.at(b.0, b.1);
+        let t = zero(self.growth.at(a.0, a.1), agreed)?;
+        let (from, to) = (self.most.at(a.0, a.1), self.most.at(b.0, b.1));
+        let middle = place(a).lerp(place(b), t);
+        let step = (self.way_at(a) + cos.signum() * self.way_at(b)).normalize_or_zero() * px;
+        let beside = [middle + step, middle - step].map(|at| bilinear(&self.most, links, at, a));
+        Some(Crest { t, most: from + t * (to - from), beside: beside[0].max(beside[1]) })
+    }
+}
+
+/// The most of a change between two pixels.
+pub(super) struct Crest {
+    /// Where, `[0, 1]`.
+    pub t: f32,
+    /// How fast it is there, per px.
+    pub most: f32,
+    /// And beside it, on the side where it is faster.
+    pub beside: f32,
 }
 
 impl FormCurves<'_> {
@@ -89,41 +155,32 @@ impl FormCurves<'_> {
             let strength = from + t * (to - from);
             (from > 0.0 && to > 0.0 && strength > 0.0).then_some((t, strength.min(1.0)))
         };
-        self.lines_of(LineKind::Suggestive, self.surface.links_plane(), crossing)
+        trace_lines(LineKind::Suggestive, self.surface.links_plane(), crossing)
     }
 
     /// q is the largest singular value of ∂n̄/∂q and t its direction: ∂q/∂t is zero, and q a maximum
     /// (Judd et al. 2007). tᵀ J_xy t is negative in a hollow.
     fn ridges(&self) -> Vec<RawLine> {
-        let turns = self.turns();
+        let [nx, ny, nz] = &self.normals.planes;
+        let links = self.surface.links_plane();
+        let turns = Turns::of([nx, ny, nz], links);
         let sigma = self.normals.smooth_px.max(1.0);
-        let way = |(x, y): (usize, usize)| vec2(turns.way[0].at(x, y), turns.way[1].at(x, y));
         let found = |wants_hollow: bool| {
             let turns = &turns;
             move |a: (usize, usize), b: (usize, usize)| {
-                let cos = way(a).dot(way(b));
-                if cos.abs() < 0.5 {
+                let crest = turns.crest(a, b, links, 0.5 * sigma)?;
+                let q = crest.most * sigma;
+                if q <= RIDGE.0 || self.is_hollow(a, turns.way_at(a)) != wants_hollow {
                     return None;
                 }
-                let agreed = cos.signum() * turns.growth.at(b.0, b.1);
-                let t = zero(turns.growth.at(a.0, a.1), agreed)?;
-                let (q_a, q_b) = (turns.most.at(a.0, a.1), turns.most.at(b.0, b.1));
-                let q = (q_a + t * (q_b - q_a)) * sigma;
-                if q <= RIDGE.0 || self.is_hollow(a, way(a)) != wants_hollow {
-                    return None;
-                }
-                let middle = place(a).lerp(place(b), t);
-                let step = (way(a) + cos.signum() * way(b)).normalize_or_zero() * (0.5 * sigma);
-                let beside = [middle + step, middle - step];
-                let most = beside.map(|at| self.bilinear(&turns.most, at, a)).map(|v| v * sigma);
-                let drop = q - most[0].max(most[1]);
-                (drop > RIDGE_DROP).then_some((t, ((q - RIDGE.0) / RIDGE.1).min(1.0)))
+                let drop = q - crest.beside * sigma;
+                (drop > RIDGE_DROP).then_some((crest.t, ((q - RIDGE.0) / RIDGE.1).min(1.0)))
             }
         };
         let mut lines = Vec::new();
         for (kind, hollow) in [(LineKind::Valley, true), (LineKind::Ridge, false)] {
             if self.settings.kinds.has_kind(kind) {
-                lines.extend(self.lines_of(kind, self.surface.links_plane(), found(hollow)));
+                lines.extend(trace_lines(kind, links, found(hollow)));
             }
         }
         lines
@@ -135,31 +192,6 @@ impl FormCurves<'_> {
         way.x * dx.dot(way) + way.y * dy.dot(way) < 0.0
     }
 
-    fn turns(&self) -> Turns {
-        let size = self.surface.size();
-        // q, t_x, t_y.
-        let all = Plane::from_fn(size, |x, y| {
-            let linked = self.links_at(x, y);
-            if linked == 0 {
-                return [0.0; 3];
-            }
-            let slopes = [0, 1, 2].map(|i| gradient_of(&self.normals.planes[i], linked, x, y));
-            let sum = |of: &dyn Fn(Vec2) -> f32| slopes.iter().map(|s| of(*s)).sum::<f32>();
-            let (xx, yy) = (sum(&|s| s.x * s.x), sum(&|s| s.y * s.y));
-            let xy = sum(&|s| s.x * s.y);
-            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-            let larger = mean + half.hypot(xy);
-            let way = if xx > yy { vec2(larger - yy, xy) } else { vec2(xy, larger - xx) };
-            let way = way.normalize_or_zero();
-            [larger.max(0.0).sqrt(), way.x, way.y]
-        });
-        let [most, x, y] = [0, 1, 2].map(|i| all.map(move |v| v[i]));
-        let growth = Plane::from_fn(size, |px, py| {
-            gradient_of(&most, self.links_at(px, py), px, py).dot(vec2(x.at(px, py), y.at(px, py)))
-        });
-        Turns { most, way: [x, y], growth }
-    }
-
     /// n̄·ℓ is what light the edge has.
     fn light(&self) -> Vec<RawLine> {
         let toward = self.settings.light.normalize_or(Vec3::Z);
@@ -168,7 +200,7 @@ impl FormCurves<'_> {
             self.normals.nbar(x, y).extend(self.normals.nz(x, y)).dot(toward) - self.settings.lit
         };
         let crossing = |a, b| Some((zero(lit(a), lit(b))?, 1.0));
-        self.lines_of(LineKind::Light, self.surface.links_plane(), crossing)
+        trace_lines(LineKind::Light, self.surface.links_plane(), crossing)
     }
 
     /// Half of the lamp is seen, where the form faces it.
@@ -186,60 +218,61 @@ impl FormCurves<'_> {
             let t = zero(seen.at(a.0, a.1), seen.at(b.0, b.1))?;
             (is_facing(a) && is_facing(b)).then_some((t, 1.0))
         };
-        self.lines_of(LineKind::Shadow, self.surface.links_plane(), crossing)
+        trace_lines(LineKind::Shadow, self.surface.links_plane(), crossing)
     }
+}
 
-    /// A map between pixels; of pixels that are not linked to one another, the middle's value.
-    fn bilinear(&self, plane: &Plane<f32>, at: Vec2, middle: (usize, usize)) -> f32 {
-        let at = at - 0.5;
-        let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
-        let (fx, fy) = (at.x - x as f32, at.y - y as f32);
-        let objects = self.surface.links_plane();
-        let own = plane.at(middle.0, middle.1);
-        let value = |dx: i32, dy: i32| {
-            let linked = objects.get(x + dx, y + dy).unwrap_or(0);
-            if linked == 0 { own } else { plane.at_clamped(x + dx, y + dy) }
-        };
-        let row = |dy: i32| value(0, dy) + fx * (value(1, dy) - value(0, dy));
-        row(0) + fy * (row(1) - row(0))
-    }
+/// A map between pixels; of pixels that are not linked to any, the middle's value.
+fn bilinear(plane: &Plane<f32>, links: &Plane<u8>, at: Vec2, middle: (usize, usize)) -> f32 {
+    let at = at - 0.5;
+    let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
+    let (fx, fy) = (at.x - x as f32, at.y - y as f32);
+    let own = plane.at(middle.0, middle.1);
+    let value = |dx: i32, dy: i32| {
+        let linked = links.get(x + dx, y + dy).unwrap_or(0);
+        if linked == 0 { own } else { plane.at_clamped(x + dx, y + dy) }
+    };
+    let row = |dy: i32| value(0, dy) + fx * (value(1, dy) - value(0, dy));
+    row(0) + fy * (row(1) - row(0))
+}
 
-    fn lines_of(
-        &self,
-        kind: LineKind,
-        links: &Plane<u8>,
-        crossing: impl Fn((usize, usize), (usize, usize)) -> Option<(f32, f32)> + Sync,
-    ) -> Vec<RawLine> {
-        let rows: Vec<Vec<LineStep>> = (0..links.height().saturating_sub(1))
-            .into_par_iter()
-            .map(|y| {
-                let mut steps = Vec::new();
-                for x in (0..links.width() - 1).filter(|&x| is_whole(links, x, y)) {
-                    let mut found: Vec<(u64, LinePoint)> = Vec::with_capacity(4);
-                    for (a, b, key) in sides(x, y, links.width()) {
-                        if let Some((t, strength)) = crossing(a, b) {
-                            let at = place(a).lerp(place(b), t);
-                            found.push((key, LinePoint { at, strength }));
-                        }
+/// Lines through the cells of linked pixels.
+///
+/// * `crossing`: where between two pixels a line of this kind is, and how clear it is.
+pub(super) fn trace_lines(
+    kind: LineKind,
+    links: &Plane<u8>,
+    crossing: impl Fn((usize, usize), (usize, usize)) -> Option<(f32, f32)> + Sync,
+) -> Vec<RawLine> {
+    let rows: Vec<Vec<LineStep>> = (0..links.height().saturating_sub(1))
+        .into_par_iter()
+        .map(|y| {
+            let mut steps = Vec::new();
+            for x in (0..links.width() - 1).filter(|&x| is_whole(links, x, y)) {
+                let mut found: Vec<(u64, LinePoint)> = Vec::with_capacity(4);
+                for (a, b, key) in sides(x, y, links.width()) {
+                    if let Some((t, strength)) = crossing(a, b) {
+                        let at = place(a).lerp(place(b), t);
+                        found.push((key, LinePoint { at, strength }));
                     }
-                    let apart = |a: (u64, LinePoint), b: (u64, LinePoint)| a.1.at.distance(b.1.at);
-                    steps.extend(
-                        pair_crossings(&found, apart)
-                            .into_iter()
-                            .map(|[a, b]| LineStep { keys: [a.0, b.0], points: [a.1, b.1] }),
-                    );
                 }
-                steps
-            })
-            .collect();
-        let steps: Vec<LineStep> = rows.into_iter().flatten().collect();
-        let raw = |chain: super::chains::Chain| RawLine {
-            kind,
-            points: chain.points,
-            is_closed: chain.is_closed,
-        };
-        join_steps(&steps).into_iter().map(raw).collect()
-    }
+                let apart = |a: (u64, LinePoint), b: (u64, LinePoint)| a.1.at.distance(b.1.at);
+                steps.extend(
+                    pair_crossings(&found, apart)
+                        .into_iter()
+                        .map(|[a, b]| LineStep { keys: [a.0, b.0], points: [a.1, b.1] }),
+                );
+            }
+            steps
+        })
+        .collect();
+    let steps: Vec<LineStep> = rows.into_iter().flatten().collect();
+    let raw = |chain: super::chains::Chain| RawLine {
+        kind,
+        points: chain.points,
+        is_closed: chain.is_closed,
+    };
+    join_steps(&steps).into_iter().map(raw).collect()
 }
 
 /// Whether the four pixels of a cell are one piece.

@@ -385,3 +385,38 @@ fn lines_are_the_same_with_any_number_of_threads() {
     };
     assert_eq!(with(1), with(4));
 }
+
+#[test]
+fn colors_have_an_edge_where_they_meet_and_none_where_they_fade() {
+    let size = Size::new(120, 80);
+    let flat = surface(size, |_, _| Some(0.0));
+    let settings =
+        LineSettings { kinds: LineKinds::NONE.with(LineKind::Color, true), ..Default::default() };
+    let edges = |color: &(dyn Fn(usize, usize) -> [u8; 3] + Sync), size: Size| {
+        let colors = Arc::new(PaperColors::new(Plane::from_fn(size, color)));
+        let lines = flat.form_lines_on(&settings, Some(&colors));
+        assert!(Arc::ptr_eq(&lines, &flat.form_lines_on(&settings, Some(&colors))));
+        lines.lines.clone()
+    };
+    // As light as each other.
+    let halves = |x: usize, _: usize| if x < 50 { [200, 80, 80] } else { [42, 134, 42] };
+    let found = edges(&halves, size);
+    assert!(found.len() == 1 && found[0].length_px() > 76.0, "{found:?}");
+    let off = found[0].points.iter().map(|point| (point.at.x - 50.0).abs());
+    assert!(off.fold(0.0, f32::max) < 0.1);
+    // A picture of half the size has them at the same places.
+    let half = edges(&|x, y| halves(2 * x, 2 * y), Size::new(60, 40));
+    let off = half[0].points.iter().map(|point| (point.at.x - 50.0).abs());
+    assert!(half.len() == 1 && off.fold(0.0, f32::max) < 0.3, "{half:?}");
+    // A ramp, and one color.
+    assert!(edges(&|x, _| [2 * x as u8; 3], size).is_empty());
+    assert!(edges(&|_, _| [90; 3], size).is_empty());
+    // A disc has one closed line around it.
+    let disc = |x: usize, y: usize| {
+        let away = vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(60.0, 40.0));
+        [if away < 25.0 { 30 } else { 220 }; 3]
+    };
+    let ring = edges(&disc, size);
+    let off = ring[0].points.iter().map(|p| (p.at.distance(vec2(60.0, 40.0)) - 25.0).abs());
+    assert!(ring.len() == 1 && ring[0].is_closed && off.fold(0.0, f32::max) < 0.7, "{ring:?}");
+}

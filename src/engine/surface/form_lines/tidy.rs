@@ -79,7 +79,7 @@ fn to_line(raw: RawLine) -> FormLine {
 
 /// The kinds that fade out.
 fn is_fading(kind: LineKind) -> bool {
-    matches!(kind, LineKind::Valley | LineKind::Suggestive | LineKind::Ridge)
+    matches!(kind, LineKind::Valley | LineKind::Suggestive | LineKind::Ridge | LineKind::Color)
 }
 
 /// The runs of a line that are clear enough.

@@ -2,6 +2,7 @@
 //! (`streamlines`).
 
 use crate::math::{Mat2, Vec2, vec2};
+use std::ops::ControlFlow;
 
 /// The side of a cell, px.
 const CELL_PX: usize = 4;
@@ -95,7 +96,7 @@ impl PointBlock {
 impl PointBlock {
     /// Whether one of its points counts for another.
     #[inline(always)]
-    fn counts(&self, i: usize, point: &PlacedPoint, near: &Nearness) -> bool {
+    fn is_counted(&self, i: usize, point: &PlacedPoint, near: &Nearness) -> bool {
         (self.line[i] != point.line || (self.along[i] - point.along).abs() > near.own_px)
             && self.way[i].dot(point.way).abs() > near.same_family
             && self.object[i] == point.object
@@ -161,12 +162,12 @@ impl PlacedPoints {
     /// * `across`: to that side, unit, in the tangent plane.
     pub fn gap_beside(&self, point: &PlacedPoint, across: Vec2, near: &Nearness) -> Option<f32> {
         let mut least = near.px;
-        self.visit_around(point.at, near.px, |block| {
+        let _ = self.visit_around(point.at, near.px, |block| {
             let mut left = block.find_near(point.at, near.root, least);
             while left != 0 {
                 let i = left.trailing_zeros() as usize;
                 left &= left - 1;
-                if block.counts(i, point, near) {
+                if block.is_counted(i, point, near) {
                     let off = near.root * (vec2(block.x[i], block.y[i]) - point.at);
                     let (aside, along) = (off.dot(across), off.dot(across.perp()).abs());
                     if aside > 0.0 && along < (AHEAD * aside).max(1.0) {
@@ -174,14 +175,18 @@ impl PlacedPoints {
                     }
                 }
             }
-            false
+            ControlFlow::Continue(())
         });
         (least < near.px).then_some(least)
     }
 
-    /// Calls `visit` with the blocks around a place, up to one for which it says that is enough;
-    /// whether there was one.
-    fn visit_around(&self, at: Vec2, px: f32, mut visit: impl FnMut(&PointBlock) -> bool) -> bool {
+    /// Calls `visit` with the blocks around a place until it breaks.
+    fn visit_around(
+        &self,
+        at: Vec2,
+        px: f32,
+        mut visit: impl FnMut(&PointBlock) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let columns = Self::cell(at.x - px, self.columns)..=Self::cell(at.x + px, self.columns);
         for row in Self::cell(at.y - px, self.rows)..=Self::cell(at.y + px, self.rows) {
             let row = row * self.columns;
@@ -189,28 +194,27 @@ impl PlacedPoints {
                 let mut next = *first;
                 while next != NONE {
                     let block = &self.blocks[next as usize];
-                    if visit(block) {
-                        return true;
-                    }
+                    visit(block)?;
                     next = block.before;
                 }
             }
         }
-        false
+        ControlFlow::Continue(())
     }
 
     /// Whether a point that counts is near to another.
     pub fn has_near(&self, point: &PlacedPoint, near: &Nearness) -> bool {
-        self.visit_around(point.at, near.px, |block| {
+        let visited = self.visit_around(point.at, near.px, |block| {
             let mut left = block.find_near(point.at, near.root, near.px);
             while left != 0 {
-                if block.counts(left.trailing_zeros() as usize, point, near) {
-                    return true;
+                if block.is_counted(left.trailing_zeros() as usize, point, near) {
+                    return ControlFlow::Break(());
                 }
                 left &= left - 1;
             }
-            false
-        })
+            ControlFlow::Continue(())
+        });
+        visited.is_break()
     }
 }
 

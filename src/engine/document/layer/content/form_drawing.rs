@@ -101,6 +101,11 @@ impl LayerKind for Live<FormDrawing> {
         {
             count.add_painted(tone.bytes());
         }
+        if let Some(colors) = &self.params().found.colors
+            && count.is_new(colors)
+        {
+            count.add_painted(colors.bytes());
+        }
         made.last().iter().flat_map(|made| made.iter()).for_each(|s| count.add_stroke(s));
     }
 }
