@@ -1,6 +1,6 @@
 //! Drawings by the form follow the layers that they read: strokes that hatching follows, the picture
-//! whose tone it has or whose edges are lines, and ink and strokes that lines leave out. Floor 4. Not here: what they make of them
-//! (`paint::form_drawing`).
+//! whose tone it has or whose edges are lines, and ink and strokes that lines leave out. Floor 4. Not
+//! here: what they make of them (`paint::form_drawing`).
 
 use super::flatten::{flatten, flatten_layer};
 use super::{Content, Document, Group, Layer, LayerId, Live, Progress};
@@ -161,9 +161,12 @@ impl Document {
 
     /// What edges of color follow from; `None` if they are not wanted.
     fn color_layers(&self, layer: &Layer, drawing: &FormDrawing) -> Option<ReadLayers> {
-        let is_wanted = matches!(&drawing.pattern, FormPattern::Lines(lines) if lines.kinds.has_kind(LineKind::Color));
-        let beneath = all_beneath(&self.layers, layer.id).filter(|_| is_wanted)?;
-        Some(self.read_layers(&beneath))
+        match &drawing.pattern {
+            FormPattern::Lines(lines) if lines.kinds.has_kind(LineKind::Color) => {
+                Some(self.read_layers(&all_beneath(&self.layers, layer.id)?))
+            }
+            _ => None,
+        }
     }
 
     /// Layers that are read, bottom first, and the surface that they lie on.
