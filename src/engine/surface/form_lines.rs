@@ -1,7 +1,8 @@
 //! Form lines: where an illustrator puts a line on a surface, as polylines with places between
 //! pixels. Floor 2. Here: which lines there are, what is asked of them, and the cache. `outlines`
-//! traces broken links, `fields` the curves of smooth forms, `colors` edges of a picture, `chains` joins the steps of both, and
-//! `tidy` leaves those that a hand would draw. Not here: strokes along them (`paint::form_strokes`).
+//! traces broken links, `fields` the curves of smooth forms, `colors` edges of a picture, `chains`
+//! joins the steps of all, and `tidy` leaves those that a hand would draw. Not here: strokes along
+//! them (`paint::form_drawing`).
 
 mod chains;
 mod colors;

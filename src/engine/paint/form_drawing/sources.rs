@@ -1,6 +1,6 @@
 //! What drawings by the form read of other layers: strokes that hatching follows, a picture whose
-//! tone it has or whose edges are lines, ink and strokes that lines leave out. Floor 3. Not here: finding them in a document
-//! (`document::form_sources`).
+//! tone it has or whose edges are lines, ink and strokes that lines leave out. Floor 3. Not here:
+//! finding them in a document (`document::form_sources`).
 
 use super::inked::InkOnCanvas;
 use crate::math::{Size, Vec2, srgb};
