@@ -1,7 +1,7 @@
 //! The blocks of additional information behind a layer's record: what each says of the layer.
 //! Floor 5.
 
-use super::colors::Colors;
+use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::descriptor;
 use super::line::ShapeLine;
@@ -92,7 +92,10 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colors
         // The newer numbers may have come before the old ones.
         b"brit" if record.adjustment.is_some() => {}
         key if adjustments::KEYS.contains(key) => {
-            record.adjustment_of_black = adjustments::read_black(*key, data);
+            // Only inks have a fourth: what follows three colors is no part of the layer.
+            if colors.mode == Mode::Cmyk {
+                record.adjustment_of_black = adjustments::read_black(*key, data);
+            }
             record.adjustment = adjustments::read(*key, &mut data, colors);
             if record.adjustment.is_none() {
                 record.leave_out("its adjustment is left out");

@@ -12,7 +12,7 @@ use crate::document::{
     flatten,
 };
 use crate::math::{Rect, Size};
-use crate::paint::Selection;
+use crate::paint::{ColorAdjustment, Selection};
 use crate::project::ProjectContents;
 use crate::project::sample::{
     assert_same, everything, files, png, read as read_recipe, smoothly_painted, tiles16,
@@ -91,6 +91,17 @@ fn our_own_file_comes_back_live_in_every_parameter_and_pixel() {
     assert_same(&document, &back.document);
     // Masks, which such a file keeps beside the pixels, are in the pixels of a project.
     assert!(looks(&back.document) == looks(&everything(64)));
+}
+
+#[test]
+fn a_document_with_any_adjustment_is_written_and_comes_back() {
+    for adjustment in ColorAdjustment::all() {
+        let layer = Layer::new(adjustment.name(), adjustment.clone().into());
+        let layers = vec![Arc::new(layer)];
+        let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
+        let back = read_back(&write_bytes(&document)).document;
+        assert_eq!(document.difference(&back), None, "{adjustment:?}");
+    }
 }
 
 #[test]

@@ -69,6 +69,7 @@ pub const PROPERTIES: &[&str] = &[
     r#"{"do":"hatching","hatching":{"shadow":#,"hollows":#}}"#,
     r#"{"do":"hatching","hatching":{"way":"guides","tone":"beneath","spacing":#}}"#,
     r#"{"do":"guided by","name":"strokes"}"#,
+    r#"{"do":"redrawn on","name":"strokes"}"#,
     r#"{"do":"tone of","name":"pixels"}"#,
     r#"{"do":"hand","hand":{"taper":#,"overshoot":#,"wobble":#,"by_strength":#,"by_light":#,"by_distance":#}}"#,
     r#"{"do":"line size","to":#}"#,
