@@ -143,15 +143,18 @@ impl HatchSettings {
     }
 
     /// What the lines of each level cover where the tone is so dark, `[0, 1]`: together they cover
-    /// `dark`. Lines of a family lie beside each other, so that what they cover adds up; of what
-    /// the other family covers, they cover their share once more.
+    /// `dark`. Lines of a family lie beside each other, so that what they cover adds up, but for
+    /// their soft edges, which overlap the more the closer they lie; of what the other family
+    /// covers, they cover their share once more.
     pub fn coverages(&self, dark: f32) -> impl Iterator<Item = f32> {
         let mut covered = [0.0f32; 2];
+        let overlap = (OVERLAP_PX / self.spacing.max(1.0)).min(1.0);
         self.levels().iter().map(move |level| {
             let (own, other) = (usize::from(level.family), usize::from(1 - level.family));
             let free = (1.0 - dark).max(0.0) / (1.0 - covered[other]).max(1e-6);
-            let share = (1.0 - free - covered[own]).max(0.0).min(level.share);
-            covered[own] += share;
+            let gain = 1.0 - overlap * covered[own];
+            let share = ((1.0 - free - covered[own]).max(0.0) / gain).min(level.share);
+            covered[own] += share * gain;
             share
         })
     }
@@ -177,6 +180,10 @@ impl HatchSettings {
         HatchKey { style: self.style, way: self.way, bits: own, guides }
     }
 }
+
+/// Of what lines of a family cover that lies beside lines of an earlier level, this is covered
+/// already: so many px of their spacing, as measured.
+const OVERLAP_PX: f32 = 4.5;
 
 /// How dark stippling is when all of its points are drawn, just before they meet.
 const STIPPLED_UP_TO: f32 = 0.45;

@@ -35,8 +35,9 @@ const SAMPLE_EVERY: usize = 3;
 const WAVES: [(f32, f32); 2] = [(14.0, 36.0), (5.0, 13.0)];
 /// The share of a line that its tapers take at most, each.
 const MOST_TAPER: f32 = 0.45;
-/// The lightest pressure.
+/// The lightest pressure, and that of lines whose width is a tone.
 const LEAST: f32 = 0.04;
+const LEAST_OF_TONE: f32 = 0.01;
 /// How fast a hand is, px a second.
 const SPEED: f32 = 500.0;
 /// How far beside a line the light on it is read, px.
@@ -90,7 +91,7 @@ impl DrawingHand {
                 if line.is_closed || is_joined { 0.0 } else { self.taper }
             },
         );
-        self.draw(drawing, &points, taper, |point, left| {
+        self.draw(drawing, &points, taper, LEAST, |point, left| {
             let (lit, away) = light.at(point.at + BESIDE_PX * left);
             let thin = |share: f32, by: f32| 1.0 - share * by.clamp(0.0, 1.0);
             thin(self.by_strength, 1.0 - point.strength)
@@ -115,18 +116,21 @@ impl DrawingHand {
         };
         let every: Vec<LinePoint> =
             points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
-        self.draw(drawing, &self.extend_ends(every), [self.taper; 2], |point, _| point.strength)
+        let (points, taper) = (self.extend_ends(every), [self.taper; 2]);
+        self.draw(drawing, &points, taper, LEAST_OF_TONE, |point, _| point.strength)
     }
 
     /// A stroke through points.
     ///
     /// * `taper`: the length over which each end grows thin, px.
+    /// * `least`: the lightest pressure.
     /// * `pressure`: of a point, and the direction to its left.
     fn draw(
         &self,
         drawing: &FormDrawing,
         points: &[LinePoint],
         taper: [f32; 2],
+        least: f32,
         pressure: impl Fn(&LinePoint, Vec2) -> f32,
     ) -> Arc<Stroke> {
         let along = lengths(points);
@@ -140,7 +144,7 @@ impl DrawingHand {
             let left = vec2(after.at.y - before.at.y, before.at.x - after.at.x);
             let ends = taper_share(along[i], taper[0]) * taper_share(whole - along[i], taper[1]);
             let pressure = pressure(&points[i], left.normalize_or_zero()) * ends;
-            let (pressure, time_secs) = (pressure.max(LEAST), along[i] / SPEED);
+            let (pressure, time_secs) = (pressure.max(least), along[i] / SPEED);
             Sample { pressure, time_secs, ..Sample::at(at + self.stray(at)) }.normalized()
         };
         let samples: Vec<Sample> = (0..points.len()).map(sample).collect();

@@ -17,11 +17,13 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 /// Thinner lines are not drawn, px.
-const LEAST_PX: f32 = 0.3;
+const LEAST_PX: f32 = 0.15;
 /// The shortest stroke, points.
 const SHORTEST: usize = 5;
 /// Widths are the mean over so many points on both sides.
 const MEAN: usize = 3;
+/// Steps of darkness whose coverage is known; between them it goes straight.
+const DARK_STEPS: usize = 512;
 /// How far light reaches around a form, of n·ℓ.
 const WRAP: f32 = 0.1;
 /// The share of light that comes from everywhere.
@@ -35,10 +37,13 @@ const HOLLOW: f32 = 0.04;
 pub(super) struct FormTone<'s> {
     settings: &'s HatchSettings,
     of: ToneOf<'s>,
+    /// What lines of each level cover, by how dark it is: [`HatchSettings::coverages`] in steps.
+    shares: Vec<Vec<f32>>,
 }
 
 enum ToneOf<'s> {
-    Light(LitForm<'s>),
+    /// How light each pixel is, `[0, 1]`: lines read it in no order, so that it is made first.
+    Light(Plane<f32>),
     Picture(&'s TonePicture, Size),
 }
 
@@ -60,15 +65,35 @@ impl<'s> FormTone<'s> {
     ) -> Self {
         let of = match picture.filter(|_| settings.tone != HatchTone::Light) {
             Some(picture) => ToneOf::Picture(picture, surface.size()),
-            None => ToneOf::Light(LitForm::of(surface, settings)),
+            None => {
+                let form = LitForm::of(surface, settings);
+                ToneOf::Light(Plane::from_fn(surface.size(), |x, y| form.tone(x, y)))
+            }
         };
-        Self { settings, of }
+        let levels = settings.levels().len();
+        let mut shares = vec![Vec::with_capacity(DARK_STEPS + 2); levels];
+        for step in 0..DARK_STEPS + 2 {
+            let all = settings.coverages(step as f32 / DARK_STEPS as f32);
+            shares.iter_mut().zip(all).for_each(|(level, share)| level.push(share));
+        }
+        Self { settings, of, shares }
+    }
+
+    /// What lines of a level cover where the tone is so dark, `[0, 1]`.
+    fn share(&self, dark: f32, level: u8) -> f32 {
+        let Some(shares) = self.shares.get(usize::from(level)) else { return 0.0 };
+        let along = dark.max(0.0).min(1.0) * DARK_STEPS as f32;
+        let step = along as usize;
+        shares[step] + (along - step as f32) * (shares[step + 1] - shares[step])
     }
 
     /// How dark the drawing is to be at a place, `[0, 1]`.
     pub fn dark(&self, at: Vec2) -> f32 {
         let tone = match &self.of {
-            ToneOf::Light(form) => form.tone(at),
+            ToneOf::Light(light) => {
+                let pixel = |v: f32, n: usize| (v.max(0.0) as usize).min(n.saturating_sub(1));
+                light.at(pixel(at.x, light.width()), pixel(at.y, light.height()))
+            }
             ToneOf::Picture(picture, canvas) => picture.at(at, *canvas),
         };
         let paper = self.settings.paper.max(1e-3);
@@ -90,11 +115,9 @@ impl<'s> LitForm<'s> {
         }
     }
 
-    /// How light it is at a place, `[0, 1]`.
-    fn tone(&self, at: Vec2) -> f32 {
-        let size = self.normals.planes[0].size();
-        let pixel = |v: f32, n: u32| (v.max(0.0) as usize).min(n.saturating_sub(1) as usize);
-        let (x, y) = (pixel(at.x, size.width), pixel(at.y, size.height));
+    /// How light a pixel is, `[0, 1]`.
+    #[inline(always)]
+    fn tone(&self, x: usize, y: usize) -> f32 {
         let n = self.normals.nbar(x, y).extend(self.normals.nz(x, y));
         let lit = ((n.dot(self.toward) + WRAP) / (1.0 + WRAP)).clamp(0.0, 1.0);
         let seen = self.shadow.as_ref().map_or(1.0, |shadow| shadow.at(x, y));
@@ -127,11 +150,8 @@ fn of_line(
     if let [point] = line.points[..] {
         return of_point(drawing, point, line.level, tone, covered).into_iter().collect();
     }
-    let width = |at: Vec2, room_px: f32| {
-        let share = tone.settings.coverages(tone.dark(at)).nth(usize::from(line.level));
-        share.unwrap_or(0.0) * room_px
-    };
-    let widths: Vec<f32> = line.points.iter().map(|p| width(p.at, p.room_px)).collect();
+    let width = |point: &HatchPoint| tone.share(tone.dark(point.at), line.level) * point.room_px;
+    let widths: Vec<f32> = line.points.iter().map(width).collect();
     let mean = |i: usize| {
         let near = &widths[i.saturating_sub(MEAN)..(i + MEAN + 1).min(widths.len())];
         near.iter().sum::<f32>() / near.len() as f32

@@ -10,6 +10,8 @@ const CELL_PX: usize = 4;
 const LANES: usize = 8;
 /// What lies more than this ahead of a point, of how far aside it is, is not beside it.
 const AHEAD: f32 = 0.3;
+/// The radius of the circle around the middle of that wedge, of its length: √(0.5² + 0.3²).
+const WEDGE: f32 = 0.584;
 /// No block.
 const NONE: u32 = u32::MAX;
 
@@ -160,9 +162,17 @@ impl PlacedPoints {
     /// nearer than `near.px`.
     ///
     /// * `across`: to that side, unit, in the tangent plane.
-    pub fn gap_beside(&self, point: &PlacedPoint, across: Vec2, near: &Nearness) -> Option<f32> {
+    /// * `px_across`: a pixel of the surface to that side, in the picture: no longer than one there.
+    pub fn gap_beside(
+        &self,
+        point: &PlacedPoint,
+        [across, px_across]: [Vec2; 2],
+        near: &Nearness,
+    ) -> Option<f32> {
         let mut least = near.px;
-        let _ = self.visit_around(point.at, near.px, |block| {
+        // What counts lies in a wedge, and that in a circle around its middle.
+        let (middle, around) = (point.at + 0.5 * near.px * px_across, WEDGE * near.px + 1.0);
+        let _ = self.visit_around(middle, around, |block| {
             let mut left = block.find_near(point.at, near.root, least);
             while left != 0 {
                 let i = left.trailing_zeros() as usize;

@@ -18,6 +18,9 @@ const STOP: f32 = 0.75;
 const PLACED_AT: f32 = 0.94;
 /// Between a line and one that is nearer, a new one lies in the middle, of the distance.
 const MIDDLE: f32 = 2.5;
+/// A side is taken if a line is this near to where a new one would lie, of the distance: it is then
+/// no farther than `2 START` away.
+const TAKEN: f32 = 2.0 * START - 1.0;
 /// Lines of one family are those whose directions differ by less than 37°.
 const SAME_FAMILY: f32 = 0.8;
 /// The length of the shortest line, in distances, and px.
@@ -117,12 +120,18 @@ impl<'f> Streamlines<'f> {
         let object = self.objects.labels().at(x, y);
         let along = along as i32 - self.firsts[line as usize] as i32;
         let point = PlacedPoint { at, way, line, along, object };
-        let far = match self.placed.gap_beside(&point, across, &near) {
+        let px_across = self.field.inverse_root(x, y) * across;
+        // Most sides have their line: it is about as far away as was asked.
+        let beside = PlacedPoint { at: at + apart * px_across, ..point };
+        if self.placed.has_near(&beside, &Nearness { px: TAKEN * apart, ..near }) {
+            return None;
+        }
+        let far = match self.placed.gap_beside(&point, [across, px_across], &near) {
             Some(gap) if gap < 2.0 * START * apart => return None,
             Some(gap) => 0.5 * gap,
             None => apart,
         };
-        Some(at + far * (self.field.inverse_root(x, y) * across))
+        Some(at + far * px_across)
     }
 
     /// The pixel of the surface at a place.

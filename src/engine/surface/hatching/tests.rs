@@ -222,13 +222,18 @@ fn stipples_grow_level_by_level_and_cover_the_tone() {
 #[test]
 fn levels_together_cover_what_tone_asks() {
     for style in [HatchStyle::Crosshatch, HatchStyle::Hatch, HatchStyle::Engraving] {
-        let settings = HatchSettings { style, ..HatchSettings::DEFAULT };
+        // So far apart that soft edges do not overlap.
+        let settings = HatchSettings { style, spacing: 1e9, ..HatchSettings::DEFAULT };
+        let close = HatchSettings { spacing: 9.0, ..settings };
         for dark in [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0] {
             let mut covered = [0.0; 2];
             let levels = settings.levels().iter().zip(settings.coverages(dark));
             levels.for_each(|(level, share)| covered[usize::from(level.family)] += share);
             let free = (1.0 - covered[0]) * (1.0 - covered[1]);
             assert!((1.0 - free - dark).abs() < 1e-5, "{style:?} {dark}: {}", 1.0 - free);
+            // Where they do, lines are wider, within their room.
+            let mut wider = settings.coverages(dark).zip(close.coverages(dark));
+            assert!(wider.all(|(far, near)| near + 1e-6 >= far && near <= 1.0));
         }
     }
 }
