@@ -96,7 +96,7 @@ fn our_own_file_comes_back_live_in_every_parameter_and_pixel() {
 #[test]
 fn a_document_with_any_adjustment_is_written_and_comes_back() {
     for adjustment in ColorAdjustment::all() {
-        let layer = Layer::new(adjustment.name(), adjustment.clone().into());
+        let layer = Layer::new(adjustment.name(), adjustment.clone());
         let layers = vec![Arc::new(layer)];
         let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
         let back = read_back(&write_bytes(&document)).document;

@@ -339,7 +339,7 @@ fn a_cylinder_and_a_saddle_have_no_inner_lines() {
     };
     let saddle = |x: f32, y: f32| {
         let p = vec2(x - 100.0, y - 100.0);
-        (p.length() < 80.0).then(|| 0.006 * (p.x * p.x - p.y * p.y))
+        (p.length() < 80.0).then_some(0.006 * (p.x * p.x - p.y * p.y))
     };
     for height in [&cylinder as &(dyn Fn(f32, f32) -> Option<f32> + Sync), &saddle] {
         let kinds = LineKinds::PEN.with(LineKind::Ridge, true);
