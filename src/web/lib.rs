@@ -1,7 +1,7 @@
 //! The program in the page of a browser. Floor 8.
 //!
 //! The page's own thread holds the canvas and hears the user; it may never wait. So the whole window
-//! runs in a worker: it gets the events as calls of [`Program`], paints by WebGL into the canvas it was
+//! runs in a worker: it gets the events as calls of `Program`, paints by WebGL into the canvas it was
 //! handed, and tells the page in messages what to do. Other workers are the threads
 //! (`io::platform`). The scripts beside it are in `dist/web`.
 

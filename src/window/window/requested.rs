@@ -75,11 +75,7 @@ impl MainWindow {
             WindowRequest::LooksDialog => {
                 self.dialogs.push(Dialog::Looks(Box::new(looks::LooksDialog::new(ctx))))
             }
-            WindowRequest::MaterialsDialog => {
-                let part = self.session.active().and_then(|open| open.part.clone());
-                let dialog = materials::MaterialsDialog::new(ctx, &self.session, part);
-                self.dialogs.push(Dialog::Materials(Box::new(dialog)))
-            }
+            WindowRequest::MaterialsDialog => self.ask_for_material(ctx),
             WindowRequest::Paste(to) => self.paste(to),
             WindowRequest::Palette => {
                 self.dialogs.push(Dialog::Palette(palette::CommandPalette::default()))
@@ -135,5 +131,12 @@ impl MainWindow {
                 ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!is_full));
             }
         }
+    }
+
+    /// Shows the materials for the part that is selected.
+    fn ask_for_material(&mut self, ctx: &egui::Context) {
+        let part = self.session.active().and_then(|open| open.part.clone());
+        let dialog = materials::MaterialsDialog::new(ctx, &self.session, part);
+        self.dialogs.push(Dialog::Materials(Box::new(dialog)));
     }
 }
