@@ -11,6 +11,9 @@
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `adjustments` | what adjustment layers do |
 //! | `gray`, `inks` | adjustments of gray values and inks with a profile, as tables of sRGB |
+//! | `ink_layers` | layers of inks with the colors that they have on each other |
+//! | `knockout` | layers that hide what is beneath them in their group |
+//! | `layer_base`, `nesting` | what layers are clipped to, and layers that become groups |
 //! | `effects` | shadows, glows and other effects of layers |
 //! | `ramp` | how colors mix between those of a gradient |
 //! | `fill`, `fill_block`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
@@ -19,6 +22,7 @@
 //! | `marks` | guides, and the colors of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
+//! | `restore` | the document that our own files hold |
 //! | `compare` | whether that looks like the file's own picture, and what is done if it does not |
 //! | `export` | a document into records |
 //! | `isolation` | whether a group can be composed by itself |
@@ -42,17 +46,22 @@ mod fill_block;
 mod filled;
 mod gray;
 mod header;
+mod ink_layers;
 mod inks;
 mod isolation;
+mod knockout;
+mod layer_base;
 mod layers;
 mod line;
 mod marks;
 mod masks;
 mod merged;
+mod nesting;
 mod outline;
 mod parse;
 pub(super) mod pattern;
 mod ramp;
+mod restore;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -112,6 +121,8 @@ pub struct LayerRecord {
     pub section: RecordSection,
     /// Its mask that is a picture.
     pub mask: Option<RecordMask>,
+    /// What its effects follow, if that is more than its pixels cover.
+    pub effect_shape: Option<RecordMask>,
     /// Its masks that are paths.
     pub outline: Option<VectorPaths>,
     /// What it is filled with.
@@ -128,12 +139,22 @@ pub struct LayerRecord {
     pub effects: Option<RecordEffects>,
     /// Its mask hides its effects, too.
     pub masks_effects: bool,
+    /// It hides what is beneath it in its group.
+    pub knocks_out: bool,
+    /// Layers clipped to it lie on what is beneath it, too.
+    pub clips_apart: bool,
+    /// Its effects and what is clipped to it ignore its own transparency.
+    pub ignores_alpha: bool,
+    /// The effects within it are part of what its fill opacity and its blend mode are of.
+    pub fills_with_effects: bool,
     /// It is a shape, whose pixels show its vector mask.
     pub is_shape: bool,
     /// A line is drawn around its shape.
     pub stroked: bool,
     /// That line, if it is understood.
     pub line: Option<ShapeLine>,
+    /// The line lies on what is clipped to the shape, and on effects within it.
+    pub line_is_over: bool,
     /// It is filled with what is not understood.
     pub has_unknown_fill: bool,
     /// Its shape is not filled.
@@ -142,6 +163,9 @@ pub struct LayerRecord {
     pub rgba: Vec<u8>,
     /// What it was rounded from, if the file has more than 8 bits a channel; else empty.
     pub rgba16: Vec<[u16; 4]>,
+    /// The values of the file's colors, of inks the light that they let through, if that is asked
+    /// for; else empty.
+    pub inks: Vec<[u16; 4]>,
     /// What is left out of it, and so may be missing in the picture.
     pub lost: Vec<&'static str>,
     /// What it was turned into without changing its look.
@@ -189,6 +213,7 @@ impl Default for LayerRecord {
             label: LayerLabel::None,
             section: RecordSection::Layer,
             mask: None,
+            effect_shape: None,
             outline: None,
             fill: None,
             adjustment: None,
@@ -197,13 +222,19 @@ impl Default for LayerRecord {
             reference: None,
             effects: None,
             masks_effects: false,
+            knocks_out: false,
+            clips_apart: false,
+            ignores_alpha: false,
+            fills_with_effects: false,
             is_shape: false,
             stroked: false,
             line: None,
+            line_is_over: false,
             has_unknown_fill: false,
             unfilled: false,
             rgba: Vec::new(),
             rgba16: Vec::new(),
+            inks: Vec::new(),
             lost: Vec::new(),
             converted: Vec::new(),
         }

@@ -53,7 +53,10 @@ pub fn read(key: [u8; 4], data: &mut ByteCursor, colors: &Colors) -> Option<Colo
         b"mixr" => ColorAdjustment::ChannelMixer(channel_mixer(data)?),
         b"clrL" => ColorAdjustment::ColorLookup(color_lookup(data)?),
         b"nvrt" => ColorAdjustment::Invert(Invert),
-        b"post" => ColorAdjustment::Posterize(Posterize { levels: f32::from(data.u16()?) }),
+        b"post" => ColorAdjustment::Posterize(Posterize {
+            levels: f32::from(data.u16()?),
+            ..Posterize::default()
+        }),
         b"thrs" => ColorAdjustment::Threshold(Threshold { level: f32::from(data.u16()?) }),
         b"selc" => ColorAdjustment::SelectiveColor(selective_color(data)?),
         b"grdm" => ColorAdjustment::GradientMap(gradient_map(data, colors)?),
@@ -288,10 +291,14 @@ fn channel_mixer(data: &mut ByteCursor) -> Option<ChannelMixer> {
     Some(own)
 }
 
-/// A table whose `.cube` file is within; profiles are not applied.
+/// A table whose `.cube` file is within, or none yet, which changes nothing; profiles are not
+/// applied.
 fn color_lookup(data: &mut ByteCursor) -> Option<ColorLookup> {
     data.u16().filter(|version| *version == 1)?;
     let said = descriptor::read(data)?;
+    if ["LUT3DFileData", "profile", "lookupType"].iter().all(|name| !said.has_value(name)) {
+        return Some(ColorLookup { table: None });
+    }
     let is_cube = said.word("LUTFormat").is_none_or(|word| word == b"LUTFormatCUBE");
     let table = said.bytes("LUT3DFileData").filter(|_| is_cube)?;
     let name = said.text("LUT3DFileName").unwrap_or("table.cube");

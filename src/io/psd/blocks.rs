@@ -141,24 +141,18 @@ fn read_stroke(record: &mut LayerRecord, data: &mut ByteCursor, colors: &Colors)
 /// Ways to blend that this program has not.
 fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
     match &key {
-        b"knko" if data.u8().is_some_and(|v| v != 0) => {
-            record.leave_out("its knockout is left out")
-        }
+        b"knko" => match data.u8() {
+            Some(1) => record.knocks_out = true,
+            None | Some(0) => {}
+            Some(_) => record.leave_out("its knockout is left out: it goes through all layers"),
+        },
         b"lmgm" | b"vmgm" if data.u8() == Some(1) => record.masks_effects = true,
-        b"clbl" if data.u8() == Some(0) => {
-            record.leave_out(
-                "in other programs the layers clipped to it are blended with what is beneath it",
-            );
-        }
+        b"clbl" => record.clips_apart = data.u8() == Some(0),
+        b"infx" => record.fills_with_effects = data.u8() == Some(1),
         b"brst" if !data.rest().is_empty() => {
             record.leave_out("the channels that it leaves alone are painted too")
         }
-        b"tsly" if data.u8() == Some(0) => {
-            record.leave_out(
-                "in other programs its effects and the layers clipped to it ignore its \
-                 transparency",
-            );
-        }
+        b"tsly" => record.ignores_alpha = data.u8() == Some(0),
         _ => {}
     }
 }

@@ -49,6 +49,8 @@ pub struct Colors<'a> {
     pub channels: usize,
     /// 32 bits a channel hold light, which no profile changes.
     pub is_light: bool,
+    /// Its a and b of Lab have 16 bits, which run to 256.
+    pub is_deep_lab: bool,
     /// All reds, all greens, all blues.
     pub table: &'a [u8],
     /// The color of the table that means transparent.
@@ -103,7 +105,15 @@ impl Colors<'_> {
     /// Of a mode, without profile or table.
     pub fn of_mode(mode: Mode) -> Self {
         let channels = usize::from(mode.channels());
-        Self { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
+        Self {
+            mode,
+            channels,
+            is_light: false,
+            is_deep_lab: false,
+            table: &[],
+            nothing: None,
+            icc: None,
+        }
     }
 
     /// As [`to_srgb`](Self::to_srgb), of RGB and gray, in 16 bits.
@@ -178,7 +188,9 @@ impl Colors<'_> {
                     .for_each(|(_, p)| p[3] = 0);
                 rgba
             }
-            Mode::Lab => pixels(&|i| lab_to_srgb([value(0, i), value(1, i), value(2, i)])),
+            Mode::Lab => {
+                pixels(&|i| lab_to_srgb([value(0, i), value(1, i), value(2, i)], self.is_deep_lab))
+            }
             Mode::Cmyk | Mode::Multichannel => {
                 // Stored as light: 255 is no ink.
                 let ink = |i: usize| {
@@ -232,9 +244,17 @@ fn ideal_press([c, m, y, k]: [u8; 4]) -> [u8; 3] {
 }
 
 /// CIE Lab of D50 in bytes, a and b about 128, as sRGB bytes.
-fn lab_to_srgb([l, a, b]: [u8; 3]) -> [u8; 3] {
-    let lab = [f32::from(l) * 100.0 / 255.0, f32::from(a) - 128.0, f32::from(b) - 128.0];
-    cielab::to_linear(lab).map(|v| srgb::quantize(srgb::encode(v.max(0.0))))
+fn lab_to_srgb(lab: [u8; 3], is_deep: bool) -> [u8; 3] {
+    let linear = lab_to_linear(lab.map(|v| f32::from(v) / 255.0), is_deep);
+    linear.map(|v| srgb::quantize(srgb::encode(v.max(0.0))))
+}
+
+/// The light of sRGB of CIE Lab whose values are parts of 1.
+///
+/// * `is_deep`: a and b run to 256 less 128, as 16 bits hold them, and not to 255.
+pub fn lab_to_linear([l, a, b]: [f32; 3], is_deep: bool) -> [f32; 3] {
+    let most = if is_deep { 256.0 } else { 255.0 };
+    cielab::to_linear([l * 100.0, a * most - 128.0, b * most - 128.0])
 }
 
 /// A profile of four inks, made ready.
@@ -339,7 +359,15 @@ mod tests {
     use super::*;
 
     fn colors(mode: Mode, channels: usize) -> Colors<'static> {
-        Colors { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
+        Colors {
+            mode,
+            channels,
+            is_light: false,
+            is_deep_lab: false,
+            table: &[],
+            nothing: None,
+            icc: None,
+        }
     }
 
     fn one(colors: &Colors, values: [u8; 4]) -> [u8; 4] {
@@ -375,5 +403,9 @@ mod tests {
         // L 53.24, a 80.09, b 67.2 under D65 is pure red; under D50 54.29, 80.8, 69.9.
         let red = one(&colors(Mode::Lab, 3), [138, 209, 198, 0]);
         assert!(red[0] > 250 && red[1] < 12 && red[2] < 12, "{red:?}");
+        // The same of 16 bits, in bytes: 208.8 and 197.9 of 256.
+        let deep = Colors { is_deep_lab: true, ..colors(Mode::Lab, 3) };
+        let [r, g, b, _] = one(&deep, [138, 208, 197, 0]);
+        assert!(r > 250 && g < 12 && b < 12, "{:?}", [r, g, b]);
     }
 }

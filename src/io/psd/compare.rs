@@ -10,6 +10,7 @@
 //!   same, with a note;
 //! * unlike: the file's picture is shown, and the layers are hidden beneath it, in a group.
 
+use super::ink_layers::ADJUSTED;
 use super::merged::Merged;
 use super::{blocks, filled};
 use crate::document::{Content, Document, Group, Layer, Progress, flatten};
@@ -130,6 +131,24 @@ pub fn check_against_merged(
     with_picture(Document { layers: vec![Arc::new(layers)], ..document }, &merged, true)
 }
 
+/// Whether the layers do not look like the file's own picture, which would be shown.
+pub fn is_shown_otherwise(
+    document: &Document,
+    merged: &Merged,
+    is_less: bool,
+    notes: &[String],
+) -> bool {
+    if !merged.is_real || is_blank(&merged.pixels.rgba) {
+        return false;
+    }
+    let shown = flatten(document, &Progress::default());
+    let difference = shown.map(|shown| measure_difference(document.size, &shown, merged));
+    difference.is_some_and(|difference| {
+        let is_fitted = !is_less && name_fitted_part(document, difference, notes).is_some();
+        !difference.is_alike() && !is_fitted
+    })
+}
+
 /// What is known to be drawn a little differently here, where pictures are near enough for that.
 fn name_fitted_part(
     document: &Document,
@@ -137,7 +156,8 @@ fn name_fitted_part(
     notes: &[String],
 ) -> Option<&'static str> {
     let has_text = || notes.iter().any(|note| note.ends_with(blocks::TEXT_NOTE));
-    if difference.is_near() && has_fitted(document) {
+    let has_adjusted = || notes.iter().any(|note| note.ends_with(ADJUSTED));
+    if difference.is_near() && (has_fitted(document) || has_adjusted()) {
         Some("its adjustments and effects")
     } else if difference.is_near_for_text() && has_text() {
         Some("the edges of its text")

@@ -55,6 +55,11 @@ impl DescriptorObject {
         self.0.iter().find(|(known, _)| known == name.as_bytes()).map(|(_, value)| value)
     }
 
+    /// It is there.
+    pub fn has_value(&self, name: &str) -> bool {
+        self.get(name).is_some()
+    }
+
     /// Finite.
     pub fn number(&self, name: &str) -> Option<f32> {
         self.get(name)?.number()

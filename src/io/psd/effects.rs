@@ -13,6 +13,7 @@ use super::colors::Colors;
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use super::fill::{self, share};
+use super::nesting::is_of_fill;
 use super::ramp;
 use crate::math::{Vec2, vec2};
 use crate::paint::adjustment::ToneCurve;
@@ -44,6 +45,16 @@ pub struct RecordEffects {
 }
 
 impl RecordEffects {
+    /// Whether any is shown on what the layer is filled with.
+    pub fn has_within(&self) -> bool {
+        self.list.iter().any(|effect| effect.on && is_of_fill(effect))
+    }
+
+    /// Whether any of them is switched on.
+    pub fn is_shown(&self) -> bool {
+        self.list.iter().any(|effect| effect.on)
+    }
+
     /// Patterns that go with their layer begin at a point of the canvas.
     pub fn begin_patterns_at(&mut self, (x, y): (f64, f64)) {
         for (number, _) in &self.patterns {

@@ -2,7 +2,7 @@
 //! say them. Floor 5. Not here: the blocks of fills (`fill_block`), the pictures of patterns
 //! (`pattern`).
 
-use super::colors::{Colors, Mode};
+use super::colors::{Colors, Mode, lab_to_linear};
 use super::descriptor::DescriptorObject;
 use crate::math::srgb::{self, Color};
 use crate::math::{Rect, Size, Vec2, hsv, vec2};
@@ -102,6 +102,11 @@ pub fn own_values(said: &DescriptorObject, mode: Mode) -> Option<[f32; 4]> {
 
 /// The encoded sRGB of a file's values.
 pub fn show_values(values: &[[f32; 4]], colors: &Colors) -> Vec<[f32; 3]> {
+    if colors.mode == Mode::Lab {
+        let encode = |v: f32| srgb::encode(v.max(0.0).min(1.0));
+        let color = |&[l, a, b, _]: &[f32; 4]| lab_to_linear([l, a, b], false).map(encode);
+        return values.iter().map(color).collect();
+    }
     let plane = |c: usize| Some(values.iter().map(|value| srgb::quantize(value[c])).collect());
     let planes = [plane(0), plane(1), plane(2), plane(3)];
     let rgba = colors.to_srgb(Size::new(values.len() as u32, 1), &planes, None);
@@ -113,7 +118,7 @@ pub fn show_values(values: &[[f32; 4]], colors: &Colors) -> Vec<[f32; 3]> {
 fn in_mode(mode: Mode, values: [u8; 4], colors: &Colors) -> Color {
     let channels = usize::from(mode.channels());
     let icc = colors.icc.filter(|_| colors.mode == mode);
-    let own = Colors { mode, channels, icc, ..*colors };
+    let own = Colors { mode, channels, icc, is_deep_lab: false, ..*colors };
     let planes = values.map(|v| Some(vec![v]));
     let rgba = own.to_srgb(Size::new(1, 1), &planes, None);
     Color { r: rgba[0], g: rgba[1], b: rgba[2], a: 255 }
@@ -136,7 +141,8 @@ pub fn xyz_color([x, y, z]: [f32; 3], colors: &Colors) -> Color {
 
 /// A ramp and how it lies, as fills and effects say it; `None` of noise.
 pub fn gradient(said: &DescriptorObject, colors: &Colors) -> Option<GradientFill> {
-    let way = match said.word("Type")? {
+    // The ramp of a glow runs outward, and says no type.
+    let way = match said.word("Type").unwrap_or_default() {
         b"Rdl " => RampStyle::Radial,
         b"Angl" => RampStyle::Angle,
         b"Rflc" => RampStyle::Reflected,

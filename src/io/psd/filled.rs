@@ -70,7 +70,7 @@ fn draw_fill(
 }
 
 /// The line around a shape, as a fill with a mask.
-fn line_layer(
+pub fn line_layer(
     record: &mut LayerRecord,
     line: ShapeLine,
     size: Size,

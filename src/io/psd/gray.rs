@@ -68,7 +68,7 @@ impl GrayTones {
     }
 
     /// The sRGB tone of a gray value.
-    fn tone(&self, gray: f32) -> f32 {
+    pub fn tone(&self, gray: f32) -> f32 {
         let place = gray.max(0.0).min(1.0) * (VALUES - 1) as f32;
         let at = (place as usize).min(VALUES - 2);
         let (low, high) = (self.srgb[at], self.srgb[at + 1]);

@@ -5,6 +5,7 @@ use super::blocks::{self, block};
 use super::channel;
 use super::colors::{ColorValue, Colors, StraightPixels};
 use super::cursor::ByteCursor;
+use super::effects::RecordEffects;
 use super::fill::LayerFill;
 use super::header::PsdHeader;
 use super::masks::{MaskData, Softness};
@@ -37,6 +38,8 @@ pub struct RecordReader<'a> {
     /// What 16 bits take in addition to bytes.
     bytes16: u64,
     drawn_px: u64,
+    /// Records keep the values of their colors.
+    pub keeps_inks: bool,
     /// What could not be read.
     pub damage: Vec<String>,
 }
@@ -56,6 +59,7 @@ impl<'a> RecordReader<'a> {
             used_px: 0,
             bytes16: 0,
             drawn_px: 0,
+            keeps_inks: false,
             damage: Vec::new(),
         }
     }
@@ -77,6 +81,12 @@ impl<'a> RecordReader<'a> {
                 break;
             };
             pending.push(record);
+        }
+        for i in 0..pending.len() {
+            let has_clipped = pending.get(i + 1).is_some_and(|next| next.record.clipped);
+            let record = &mut pending[i].record;
+            let has_within = record.effects.as_ref().is_some_and(RecordEffects::has_within);
+            record.line_is_over = record.stroked && !record.clipped && (has_clipped || has_within);
         }
         let is_16_bit = self.header.is_16_bit;
         let filled = |pending| match is_16_bit {
@@ -144,6 +154,7 @@ impl<'a> RecordReader<'a> {
             self.budget.room(self.file, "reading its layers", self.held_bytes())?;
         }
         let mut planes: [Option<Vec<T>>; 4] = [None, None, None, None];
+        let mut own_values: [Option<Vec<u16>>; 4] = [None, None, None, None];
         let mut alpha = None;
         let mut drawn = [None, None];
         let mut is_damaged = false;
@@ -166,6 +177,13 @@ impl<'a> RecordReader<'a> {
             if size.area() == 0 || !(is_color || id == -1) {
                 continue;
             }
+            if self.keeps_inks && is_color {
+                // As they are stored, and beside each other.
+                self.spend(size.area() as u64)?;
+                let shape = self.header.shape(size, is_color);
+                let mut again = data;
+                own_values[id as usize] = channel::decode::<u16>(&mut again, shape);
+            }
             let plane = channel::decode(&mut data, self.header.shape(size, is_color));
             is_damaged |= plane.is_none();
             *(if is_color { &mut planes[id as usize] } else { &mut alpha }) = plane;
@@ -176,6 +194,12 @@ impl<'a> RecordReader<'a> {
         let StraightPixels { rgba, rgba16 } =
             T::pixels(*self.colors, size, &planes, alpha.as_deref());
         (record.rgba, record.rgba16) = (rgba, rgba16);
+        if !own_values.iter().all(Option::is_none) {
+            let value = |c: usize, i: usize| own_values[c].as_ref().and_then(|plane| plane.get(i));
+            // A channel that is missing shows black.
+            let pixel = |i: usize| [0, 1, 2, 3].map(|c| value(c, i).copied().unwrap_or(0));
+            record.inks = (0..size.area()).map(pixel).collect();
+        }
         self.read_mask(&mut record, masks, drawn)?;
         self.spend_for_canvas(&record)?;
         Ok(record)
@@ -213,6 +237,10 @@ impl<'a> RecordReader<'a> {
             }
             (None, None) => None,
         };
+        if is_shape {
+            self.draw_effect_shape(record)?;
+            self.draw_line_over(record)?;
+        }
         let is_needed = !is_shape && (is_drawn_anew || !has_both && !is_drawn);
         let Some(outline) = record.outline.take().filter(|_| is_needed) else { return Ok(()) };
         if outline.disabled {
@@ -233,6 +261,45 @@ impl<'a> RecordReader<'a> {
             Some(mask) => mask.times(size, &drawn),
             None => drawn,
         });
+        Ok(())
+    }
+
+    /// What the effects of a shape follow if a gradient leaves it translucent: all of the shape.
+    fn draw_effect_shape(&mut self, record: &mut LayerRecord) -> Result<()> {
+        let is_translucent = match &record.fill {
+            Some(LayerFill::Gradient(fill)) => fill.stops.iter().any(|stop| stop.color.a < 255),
+            _ => false,
+        };
+        let has_effects = record.effects.as_ref().is_some_and(RecordEffects::is_shown);
+        let outline = record.outline.as_ref().filter(|outline| !outline.disabled);
+        let is_followed = is_translucent && has_effects && !record.stroked;
+        let Some(outline) = outline.filter(|_| is_followed) else { return Ok(()) };
+        let size = self.header.size;
+        let drawn_px = self.drawn_px + size.area() as u64 * outline.shapes() as u64;
+        if drawn_px > DRAWN_PX {
+            return Ok(());
+        }
+        self.drawn_px = drawn_px;
+        let covered = outline.coverage(size);
+        self.spend(size.area() as u64 / 4)?;
+        record.effect_shape = Some(RecordMask::of_canvas(size, covered));
+        Ok(())
+    }
+
+    /// The line of a shape whose pixels are in the file, if something lies between both.
+    fn draw_line_over(&mut self, record: &mut LayerRecord) -> Result<()> {
+        let line = record.line.take().filter(|_| record.line_is_over && record.fill_opacity == 255);
+        let outline = record.outline.as_ref().filter(|outline| !outline.disabled);
+        let (Some(mut line), Some(outline)) = (line, outline) else { return Ok(()) };
+        let size = self.header.size;
+        let drawn_px = self.drawn_px + size.area() as u64 * (outline.shapes() as u64 + 1);
+        if drawn_px > DRAWN_PX {
+            return Ok(());
+        }
+        self.drawn_px = drawn_px;
+        self.spend(size.area() as u64 / 2)?;
+        let filled = outline.coverage(size);
+        record.line = line.try_draw(outline, size, &filled).then_some(line);
         Ok(())
     }
 
@@ -267,6 +334,9 @@ impl<'a> RecordReader<'a> {
             && matches!(record.fill, Some(LayerFill::Gradient(_) | LayerFill::Pattern(_)))
         {
             self.spend(area)?;
+        }
+        if record.knocks_out || record.clips_apart {
+            self.spend(area / 2)?;
         }
         if record.ground.is_some() || (record.fill.is_some() && !record.rgba.is_empty()) {
             self.spend(area / 4)?;

@@ -2,7 +2,7 @@
 //! `layers` reads the records, `tree` builds the document.
 
 use super::blocks::block;
-use super::colors::Colors;
+use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::gray::GrayTones;
 use super::header::{PsdHeader, header, resource};
@@ -36,6 +36,8 @@ pub struct ParsedPsd<'a> {
     pub gray: Option<GrayTones>,
     /// Its inks, if they have a profile and there is something to adjust.
     pub inks: Option<InkTones>,
+    /// The profile of its colors.
+    pub icc: Option<&'a [u8]>,
     /// The light of effects that have none of their own.
     pub effect_light: EffectLight,
     /// And how many were left out.
@@ -48,6 +50,16 @@ pub struct ParsedPsd<'a> {
 
 /// Reads a file. Damaged layers are reported and left out; fails only if nothing can be recovered.
 pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<ParsedPsd<'a>> {
+    parse_as(file, bytes, budget, false)
+}
+
+/// As [`parse`]. `keeps_inks`: the records of a file of inks, Lab or gray keep its values.
+pub fn parse_as<'a>(
+    file: &Path,
+    bytes: &'a [u8],
+    budget: &Budget,
+    keeps_inks: bool,
+) -> Result<ParsedPsd<'a>> {
     let cut = || Error::decode(file, "the file is cut short");
     let mut rest = ByteCursor::new(bytes);
     let header = header(file, &mut rest, budget)?;
@@ -57,6 +69,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         mode: header.mode,
         channels: header.colors(),
         is_light: header.bits == 32,
+        is_deep_lab: header.mode == Mode::Lab && header.bits == 16,
         table: table.rest(),
         nothing: resource(resources, TRANSPARENT_NUMBER)
             .and_then(|data| u8::try_from(ByteCursor::new(data).u16()?).ok()),
@@ -65,6 +78,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let length = rest.length(header.large).ok_or_else(cut)?;
     let section = ByteCursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
     let mut reader = RecordReader::new(file, budget, &header, &colors);
+    reader.keeps_inks = keeps_inks && matches!(header.mode, Mode::Cmyk | Mode::Lab | Mode::Gray);
     let info = layer_info(section, header.large);
     let records = info.map_or_else(|| Ok(Vec::new()), |info| reader.records(info))?;
     let patterns = pattern::read(global_blocks(section, header.large), &mut reader)?;
@@ -113,6 +127,7 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         has_profile: colors.has_profile(),
         gray: GrayTones::of(&colors, header.bits),
         inks,
+        icc: colors.icc,
         effect_light,
         guides,
         damage,

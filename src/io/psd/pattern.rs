@@ -108,6 +108,7 @@ fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
         mode,
         channels: usize::from(mode.channels()),
         is_light: false,
+        is_deep_lab: false,
         table: &table,
         nothing: None,
         icc: None,

@@ -11,8 +11,9 @@ use super::fill::{self, GradientFill, Mark, share};
 use crate::math::{oklab, srgb};
 use crate::paint::GradientStop;
 
-/// Stops from one mark to the next.
+/// Stops from one mark to the next; of inks and Lab, which sRGB cuts off.
 const BETWEEN: usize = 8;
+const BETWEEN_OWN: usize = 64;
 /// Marks of one ramp that are mixed smoothly; no real ramp has more.
 const MOST_MARKS: usize = 100;
 /// The whole length of a ramp, and all of its smoothness.
@@ -117,28 +118,30 @@ pub fn stops(
     let entered =
         inks.iter().map(|mark| Mark { value: mixing.enter(mark.value), ..*mark }).collect();
     let leave = |values: Vec<[f32; 3]>| values.into_iter().map(|v| mixing.leave(v)).collect();
-    dense_stops(entered, opacities, smoothness, leave)
+    dense_stops(entered, opacities, smoothness, BETWEEN, leave)
 }
 
 /// Stops close to each other, of values that are mixed; all of them in order.
 ///
+/// * `between`: stops from one mark to the next.
 /// * `leave`: the colors of values.
 fn dense_stops<const N: usize>(
     inks: Vec<Mark<[f32; N]>>,
     opacities: Vec<Mark<[f32; 1]>>,
     smoothness: f32,
+    between: usize,
     leave: impl FnOnce(Vec<[f32; N]>) -> Vec<[f32; 3]>,
 ) -> Option<Vec<GradientStop>> {
     let mut places: Vec<f32> = inks.iter().map(|mark| mark.t).collect();
     places.extend(opacities.iter().map(|mark| mark.t));
     places.sort_by(f32::total_cmp);
-    let between = |pair: &[f32]| {
+    let places_of = |pair: &[f32]| {
         let (from, to) = (pair[0], pair[1]);
-        let count = if from == to { 1 } else { BETWEEN };
-        (0..count).map(move |i| from + (to - from) * i as f32 / BETWEEN as f32)
+        let count = if from == to { 1 } else { between };
+        (0..count).map(move |i| from + (to - from) * i as f32 / between as f32)
     };
     let mut all: Vec<f32> =
-        places.windows(2).flat_map(between).chain(places.last().copied()).collect();
+        places.windows(2).flat_map(places_of).chain(places.last().copied()).collect();
     all.dedup();
     let share = (smoothness / WHOLE).max(0.0).min(1.0);
     let mark = |t: f32, value: [f32; 1]| Mark { t, middle: 0.5, value };
@@ -170,7 +173,8 @@ fn own_stops(
     }
     inks.sort_by(|a, b| a.t.total_cmp(&b.t));
     opacities.sort_by(|a, b| a.t.total_cmp(&b.t));
-    dense_stops(inks, opacities, smoothness, |values| fill::show_values(&values, colors))
+    let show = |values: Vec<[f32; 4]>| fill::show_values(&values, colors);
+    dense_stops(inks, opacities, smoothness, BETWEEN_OWN, show)
 }
 
 /// From which side a place is seen.
@@ -219,7 +223,8 @@ fn value_at<const N: usize>(
     Some(std::array::from_fn(|c| {
         let (a, b) = (from.value[c], to.value[c]);
         let straight = a + (b - a) * s;
-        let curve = catmull_rom([before[c], a, b, behind[c]], s);
+        // It stays between the values of its ends.
+        let curve = catmull_rom([before[c], a, b, behind[c]], s).max(a.min(b)).min(a.max(b));
         straight + (curve - straight) * smooth
     }))
 }
@@ -268,6 +273,20 @@ mod tests {
         assert_eq!(middle(RampMixing::Linear), [188, 188, 0]);
         let [r, g, b] = middle(RampMixing::Perceptual);
         assert!(r > 190 && g > 150 && b < 60, "{:?}", [r, g, b]);
+    }
+
+    /// A quarter of a ramp of three inks in a file of Photoshop: 129.0, 10.1 and 128.1 of 255.
+    #[test]
+    fn a_curve_stays_between_the_values_of_its_ends() {
+        let mark = |t, value| Mark { t, middle: 0.5, value };
+        let marks = [
+            mark(0.0, [0.0, 15.84, 246.56]),
+            mark(0.5, [255.0, 10.1, 13.49]),
+            mark(1.0, [230.9, 255.0, 44.4]),
+        ];
+        let found = value_at(&marks, 0.25, RampSide::Behind, 1.0).unwrap();
+        let far = found.iter().zip([129.0, 10.1, 128.1]).map(|(v, w)| (v - w).abs());
+        assert!(far.fold(0.0, f32::max) < 0.1, "{found:?}");
     }
 
     #[test]

@@ -1,4 +1,5 @@
 mod adjusted;
+mod blending;
 mod foreign;
 mod lines;
 mod made;

@@ -3,25 +3,25 @@
 
 use super::blocks::ArtboardBackground;
 use super::colors::{Mode, StraightPixels};
-use super::compare::check_against_merged;
+use super::compare::{check_against_merged, is_shown_otherwise};
 use super::effects::RecordEffects;
 use super::gray::GrayTones;
+use super::ink_layers::{self, InkView, fitting_bytes};
 use super::inks::InkTones;
-use super::parse::{ParsedPsd, parse};
+use super::layer_base::{CLIPPED_TOGETHER, IGNORES_ALPHA, LayerBase};
+use super::nesting::{with_effects_of_shape, with_effects_within, with_line_over};
+use super::parse::{ParsedPsd, parse, parse_as};
 use super::pattern::PatternResource;
-use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks, signature};
+use super::restore::restore;
+use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, knockout, marks};
 use crate::Budget;
-use crate::document::{Content, Document, Group, Guides, Layer, LayerLock};
+use crate::document::{Content, Document, Group, Guides, Layer, LayerLock, LayerMask};
 use crate::math::Size;
 use crate::paint::effect::EffectPattern;
 use crate::paint::{ColorAdjustment, LayerEffect};
-use crate::pixels;
-use crate::project::archive::Archive;
-use crate::project::manifest::Manifest;
-use crate::project::packer::ZipPacker;
-use crate::project::{self, ProjectContents};
+use crate::project::ProjectContents;
 use crate::raster::BlendMode;
-use crate::{Error, Remedy, Result};
+use crate::{Remedy, Result};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -51,11 +51,22 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         }
     }
     notes.extend(color_notes(&parsed));
-    let (document, is_less) = build_document(&mut parsed, budget, &mut notes);
+    let mut own_notes = notes.clone();
+    let (mut document, mut is_less) = build_document(&mut parsed, budget, &mut own_notes);
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
         budget.room(file, "comparing its layers with its own picture", compared)?;
     }
+    let has_own_values =
+        matches!(parsed.header.mode, Mode::Cmyk | Mode::Lab) || parsed.gray.is_some();
+    let merged = parsed.merged.as_ref().filter(|_| has_own_values);
+    if merged.is_some_and(|merged| is_shown_otherwise(&document, merged, is_less, &own_notes))
+        && let Some(fitted) = fit_inks(file, bytes, budget, &mut notes)
+    {
+        (document, is_less) = fitted;
+        own_notes = notes;
+    }
+    let mut notes = own_notes;
     let document = check_against_merged(
         document,
         parsed.merged.take(),
@@ -63,6 +74,24 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         &mut notes,
     );
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty(), picture: None })
+}
+
+/// The document of a file whose layers look as the values of its colors do on each other, and whether
+/// something was left out; `None` where that is not known, or too large.
+fn fit_inks(
+    file: &Path,
+    bytes: &[u8],
+    budget: &Budget,
+    notes: &mut Vec<String>,
+) -> Option<(Document, bool)> {
+    let mut parsed = parse_as(file, bytes, budget, true).ok()?;
+    let (size, is_deep) = (parsed.header.size, parsed.header.bits > 8);
+    let held = parsed.held_bytes.saturating_add(fitting_bytes(&parsed.records, size));
+    budget.room(file, "blending its inks", held).ok()?;
+    let (mode, gray) = (parsed.header.mode, parsed.gray.as_ref());
+    let view = InkView::of(mode, parsed.icc, gray, is_deep)?;
+    ink_layers::try_fit(&mut parsed.records, size, &view, is_deep)
+        .then(|| build_document(&mut parsed, budget, notes))
 }
 
 /// The document that a file's records say, and whether something was left out.
@@ -89,7 +118,8 @@ pub(super) fn build_document(
         gray: parsed.gray.as_ref(),
         inks: parsed.inks.as_ref(),
         tables: 0,
-        open: vec![Vec::new()],
+        is_deep: parsed.header.is_16_bit,
+        open: vec![OpenList::default()],
         is_less: false,
         notes: std::mem::take(notes),
     };
@@ -161,49 +191,16 @@ fn use_merged(parsed: &mut ParsedPsd) {
     });
 }
 
-/// The document that our own resource holds, the layers' pixels taken from the file; `None` where
-/// the layers are others.
-pub fn restore(
-    file: &Path,
-    ours: &[u8],
-    records: &[LayerRecord],
-    budget: &Budget,
-) -> Result<Option<ProjectContents>> {
-    let archive = Archive::open(file, ours, budget)?;
-    let damaged = |e: zip::result::ZipError| {
-        Error::decode(file, format!("our part of the file is damaged ({e})"))
-    };
-    let text = archive.bytes(project::MANIFEST, budget.json_bytes)?;
-    let manifest = serde_json::from_slice(&text).ok().as_ref().and_then(Manifest::read);
-    let manifest =
-        manifest.ok_or_else(|| Error::decode(file, "our part of the file is damaged"))?;
-    if manifest.stack != signature(records) {
-        return Ok(None);
-    }
-    let mut packer = ZipPacker::default();
-    for name in archive.names() {
-        packer.store(name, &archive.bytes(name, budget.file_bytes)?).map_err(damaged)?;
-    }
-    for shown in &manifest.pictures {
-        let number = shown.name.strip_prefix("data/").and_then(|name| name.strip_suffix(".png"));
-        let record = number.and_then(|n| n.parse::<usize>().ok()).and_then(|n| records.get(n));
-        let Some(record) = record else { continue };
-        packer.store(&shown.name, png(file, record)?.bytes()).map_err(damaged)?;
-    }
-    project::read(file, &packer.finish().map_err(damaged)?, budget).map(Some)
-}
-
-/// A record's pixels as a project would store them.
-fn png(file: &Path, record: &LayerRecord) -> Result<crate::raster::Asset> {
-    if record.rect.is_empty() {
-        return pixels::encode_texels(file, &[[0; 4]], Size::new(1, 1));
-    }
-    let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
-    pixels::encode_texels(file, record.rgba.as_chunks().0, size)
-}
-
 /// Adjustments of one file that become tables, a quarter of a megabyte each.
 const MOST_TABLES: usize = 200;
+
+/// The layers of an open group so far, bottom first.
+#[derive(Default)]
+struct OpenList {
+    layers: Vec<Arc<Layer>>,
+    /// What the next ones may be clipped to.
+    base: LayerBase,
+}
 
 /// Layers gathered bottom first, each open group a list of its own.
 struct TreeBuilder<'a> {
@@ -219,7 +216,9 @@ struct TreeBuilder<'a> {
     inks: Option<&'a InkTones>,
     /// Adjustments that became tables.
     tables: usize,
-    open: Vec<Vec<Arc<Layer>>>,
+    /// It has more than bytes.
+    is_deep: bool,
+    open: Vec<OpenList>,
     /// Something was left out.
     is_less: bool,
     notes: Vec<String>,
@@ -227,12 +226,19 @@ struct TreeBuilder<'a> {
 
 impl TreeBuilder<'_> {
     fn add(&mut self, mut record: LayerRecord) {
+        let knockout = self.knockout(&mut record);
+        let mut base = LayerBase {
+            clips_apart: record.clips_apart,
+            shape: self.clip_shape(&record),
+            ignores_alpha: record.ignores_alpha.then(|| record.name.clone()),
+            ..LayerBase::default()
+        };
         let layer = match record.section {
-            RecordSection::End => return self.open.push(Vec::new()),
+            RecordSection::End => return self.open.push(OpenList::default()),
             RecordSection::Group => {
                 // Without a beginning, a group holds nothing.
                 let mut layers = if self.open.len() > 1 {
-                    self.open.pop().unwrap_or_default()
+                    self.open.pop().unwrap_or_default().layers
                 } else {
                     Vec::new()
                 };
@@ -241,7 +247,7 @@ impl TreeBuilder<'_> {
                         "“{}” is nested too deep: its layers are in the group around it",
                         record.name
                     ));
-                    return self.open.last_mut().map_or((), |list| list.extend(layers));
+                    return self.open.last_mut().map_or((), |list| list.layers.extend(layers));
                 }
                 if let Some(ground) = record.ground {
                     self.lay_ground(&mut record, ground, &mut layers);
@@ -254,20 +260,83 @@ impl TreeBuilder<'_> {
             RecordSection::Layer => {
                 // A line and what it is around are a group.
                 record.line = record.line.take().filter(|_| self.open.len() <= self.deepest);
+                let line = self.line_over(&mut record);
+                base.has_line_over = line.is_some();
                 let content = match record.adjustment.take() {
                     Some(adjustment) => self.adjust(&mut record, adjustment),
                     None => filled::content(&mut record, self.size, self.patterns),
                 };
-                self.layer(record, content)
+                let layer = self.layer(record, content);
+                match line {
+                    Some(line) => with_line_over(layer, line),
+                    None => layer,
+                }
             }
         };
-        if let Some(list) = self.open.last_mut() {
-            list.push(Arc::new(layer));
+        let deepest = self.deepest.saturating_sub(self.open.len());
+        let Some(list) = self.open.last_mut() else { return };
+        if let Some(mask) = knockout {
+            knockout::hide_beneath(&mut list.layers, mask, &layer.name);
         }
+        if layer.clip_below && list.base.has_line_over {
+            return list.base.clip_beneath_line(&mut list.layers, layer);
+        }
+        if !layer.clip_below {
+            list.base = LayerBase { index: list.layers.len(), ..base };
+        } else if layer.visible {
+            if let Some(name) = list.base.ignores_alpha.take() {
+                self.notes.push(format!("“{name}”: {IGNORES_ALPHA}"));
+                self.is_less = true;
+            }
+            if list.base.can_clip_apart() && deepest > 0 {
+                return list.base.clip_apart(&mut list.layers, layer);
+            }
+            if std::mem::take(&mut list.base.clips_apart) {
+                self.notes.push(format!("“{}”: {CLIPPED_TOGETHER}", layer.name));
+                self.is_less = true;
+            }
+        }
+        list.layers.push(Arc::new(layer));
+    }
+
+    /// The line of a shape whose pixels are in the file, if something lies between both.
+    fn line_over(&self, record: &mut LayerRecord) -> Option<Layer> {
+        let is_shown = record.line_is_over && !record.rgba.is_empty() && !record.clips_apart;
+        let mut line = record.line.take_if(|line| is_shown && line.coverage.is_some())?;
+        if let Some(mask) = record.mask.as_ref().filter(|mask| !mask.disabled) {
+            line.coverage = line.coverage.map(|coverage| coverage.times(self.size, mask));
+        }
+        Some(filled::line_layer(record, line, self.size, self.patterns))
+    }
+
+    /// What layers that are clipped apart from a layer are clipped to.
+    fn clip_shape(&self, record: &LayerRecord) -> Option<LayerMask> {
+        let shape = knockout::shape(record, self.size).filter(|_| record.clips_apart)?;
+        let values = shape.values.iter().map(|v| 255 - v).collect();
+        let shape = RecordMask { outside: 0, values, ..shape };
+        Some(LayerMask { disabled: false, ..shape.to_layer_mask(self.size) })
+    }
+
+    /// The mask of what a layer knocks out.
+    fn knockout(&self, record: &mut LayerRecord) -> Option<LayerMask> {
+        let has_beneath = self.open.last().is_some_and(|list| !list.layers.is_empty());
+        if !record.knocks_out || !record.visible || !has_beneath {
+            return None;
+        }
+        let depth = self.open.last().map_or(0, |list| knockout::depth(&list.layers));
+        let has_room = self.open.len() + depth <= self.deepest;
+        let shape = knockout::shape(record, self.size).filter(|_| has_room && !record.clipped);
+        if shape.is_none() {
+            record.leave_out("its knockout is left out");
+        }
+        shape.map(|shape| shape.to_layer_mask(self.size))
     }
 
     /// An adjustment of the values that the file has.
-    fn adjust(&mut self, record: &mut LayerRecord, adjustment: ColorAdjustment) -> Content {
+    fn adjust(&mut self, record: &mut LayerRecord, mut adjustment: ColorAdjustment) -> Content {
+        if let ColorAdjustment::Posterize(own) = &mut adjustment {
+            own.of_16_bits = self.is_deep;
+        }
         let of_black = record.adjustment_of_black.take();
         let has_room = self.tables < MOST_TABLES;
         let (lookup, note) = if let Some(gray) = self.gray {
@@ -319,7 +388,9 @@ impl TreeBuilder<'_> {
 
     /// Whether what is clipped next lies on a group that passes through.
     fn is_clipped_to_passing(&self) -> bool {
-        let below = self.open.last().and_then(|list| list.iter().rev().find(|l| !l.clip_below));
+        let list = self.open.last().filter(|list| list.base.apart.is_none());
+        let layers = list.map(|list| &list.layers);
+        let below = layers.and_then(|layers| layers.iter().rev().find(|l| !l.clip_below));
         below.and_then(|base| base.content.group()).is_some_and(|group| group.pass_through)
     }
 
@@ -347,6 +418,9 @@ impl TreeBuilder<'_> {
         let found = record.effects.take().map(|effects| self.with_patterns(effects));
         let (effects, lost) = found.unwrap_or_default();
         lost.into_iter().for_each(|what| record.leave_out(what));
+        if record.ignores_alpha && effects.iter().any(|effect| effect.on) {
+            record.leave_out(IGNORES_ALPHA);
+        }
         let [mut opacity, mut fill_opacity] =
             [record.opacity, record.fill_opacity].map(|v| f32::from(v) / 255.0);
         // Adjustments have no fill of their own.
@@ -357,7 +431,7 @@ impl TreeBuilder<'_> {
         for what in record.lost.iter().chain(&record.converted) {
             self.notes.push(format!("“{}”: {what}", record.name));
         }
-        Layer {
+        let layer = Layer {
             visible: record.visible,
             opacity,
             blend_linear: self.is_light,
@@ -374,7 +448,16 @@ impl TreeBuilder<'_> {
             mask: record.mask.as_ref().map(|mask| mask.to_layer_mask(self.size)),
             clip_to_surface: false,
             ..Layer::new(record.name, content)
+        };
+        let has_room = self.open.len() <= self.deepest;
+        if let Some(shape) = record.effect_shape.filter(|_| has_room) {
+            let shape = match record.mask.filter(|mask| !mask.disabled) {
+                Some(mask) => mask.times(self.size, &shape),
+                None => shape,
+            };
+            return with_effects_of_shape(layer, shape.to_layer_mask(self.size));
         }
+        if record.fills_with_effects && has_room { with_effects_within(layer) } else { layer }
     }
 
     /// Effects with the pictures of their patterns, and what is left out of them.
@@ -400,11 +483,11 @@ impl TreeBuilder<'_> {
     /// Groups that were never closed end with the file.
     fn finish(mut self) -> (Vec<Arc<Layer>>, bool, Vec<String>) {
         while self.open.len() > 1 {
-            let layers = self.open.pop().unwrap_or_default();
+            let layers = self.open.pop().unwrap_or_default().layers;
             if let Some(list) = self.open.last_mut() {
-                list.extend(layers);
+                list.layers.extend(layers);
             }
         }
-        (self.open.pop().unwrap_or_default(), self.is_less, self.notes)
+        (self.open.pop().unwrap_or_default().layers, self.is_less, self.notes)
     }
 }

@@ -3,7 +3,7 @@
 
 use super::merged::remove_white;
 use super::parse::{ParsedPsd, parse};
-use super::tree::restore;
+use super::restore::restore;
 use super::{LayerRecord, RecordSection};
 use crate::Budget;
 use crate::document::{Document, Guides, NamedSelection};

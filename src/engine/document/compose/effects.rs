@@ -76,13 +76,14 @@ impl Composer<'_> {
     }
 
     /// Blends what a layer shows, made opaque, with the opacity of its fill. In some modes that
-    /// thins the color before it is blended.
+    /// thins the color before it is blended with what is there, and covers by it where nothing is.
     fn fill(&self, onto: &mut PlanarTile, mix: Mix, own: &mut PlanarTile, opacity: f32) {
         let opaque = opacity.max(0.0).min(1.0);
         let Some(neutral) = mix.mode.neutral_fill().filter(|_| opaque < 1.0) else {
             let coverage = TileCoverage::uniform(opaque);
             return self.blend(onto, mix, TilePaint::Planar(own), &coverage);
         };
+        let whole = own.clone();
         for row in own.rows_mut() {
             for channel in &mut row.rgb {
                 for (v, a) in channel.iter_mut().zip(row.a) {
@@ -90,7 +91,11 @@ impl Composer<'_> {
                 }
             }
         }
-        self.blend(onto, mix, TilePaint::Planar(own), &TileCoverage::FULL);
+        let clipped = Mix { atop: true, ..mix };
+        self.blend(onto, clipped, TilePaint::Planar(own), &TileCoverage::FULL);
+        if !mix.atop {
+            lay_where_nothing_is(onto, &whole, opaque);
+        }
     }
 
     /// Paints one effect of a layer on a tile.
@@ -195,5 +200,18 @@ impl Composer<'_> {
         let coverage = mask::coverage_around_canvas(node, at);
         pixels.blend(Mix::default(), TilePaint::of(&tile), &coverage);
         CoverTile::of(&pixels)
+    }
+}
+
+/// Adds a share of a picture as far as what is there leaves room for it.
+fn lay_where_nothing_is(onto: &mut PlanarTile, picture: &PlanarTile, share: f32) {
+    for (row, picture) in onto.rows_mut().iter_mut().zip(picture.rows()) {
+        for x in 0..TILE {
+            let room = share * (1.0 - row.a[x]);
+            for (v, own) in row.rgb.iter_mut().zip(&picture.rgb) {
+                v[x] += room * own[x];
+            }
+            row.a[x] += room * picture.a[x];
+        }
     }
 }

@@ -164,3 +164,22 @@ fn effects_keep_their_look_on_a_larger_canvas() {
     assert_eq!(render(&large).pixel(160, 200), [64, 64, 64, 255]);
     assert_eq!(render(&large).pixel(160, 246), [128, 128, 128, 255]);
 }
+
+/// One pixel of three layers, as Photoshop shows it.
+#[test]
+fn a_thinned_fill_covers_by_its_opacity_where_nothing_is() {
+    let fill = |rgb: [u8; 3], blend, opacity, fill_opacity| Layer {
+        blend,
+        opacity,
+        fill_opacity,
+        ..Layer::new("fill", Color { r: rgb[0], g: rgb[1], b: rgb[2], a: 255 })
+    };
+    let document = Document::empty(SIZE)
+        .with_top(fill([0, 0, 255], BlendMode::Normal, 0.6, 1.0))
+        .with_top(fill([0, 255, 0], BlendMode::LinearLight, 0.4, 1.0))
+        .with_top(fill([255, 0, 0], BlendMode::LinearLight, 1.0, 0.2));
+    let [r, g, b, a] = pixel(&document, 5, 5);
+    // Straight 63, 78, 66.
+    let near = |v: u8, to: f32| (f32::from(v) - to * 206.0 / 255.0).abs() < 1.5;
+    assert!(near(r, 63.0) && near(g, 78.0) && near(b, 66.0) && a == 206, "{:?}", [r, g, b, a]);
+}

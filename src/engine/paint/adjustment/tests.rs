@@ -171,7 +171,7 @@ fn levels_stretch_between_black_and_white() {
 
 #[test]
 fn posterized_bytes_on_a_step_are_not_rounded_below_it() {
-    let posterize = Posterize { levels: 4.0 };
+    let posterize = Posterize { levels: 4.0, ..Posterize::default() };
     for (byte, step) in
         [(0, 0.0), (63, 0.0), (64, 1.0), (127, 1.0), (128, 2.0), (192, 3.0), (255, 3.0)]
     {
@@ -181,11 +181,26 @@ fn posterized_bytes_on_a_step_are_not_rounded_below_it() {
 
 #[test]
 fn values_between_bytes_are_posterized_in_equal_parts() {
-    let halves = Posterize { levels: 2.0 };
+    let halves = Posterize { levels: 2.0, ..Posterize::default() };
     assert_eq!([32_767.0, 32_768.0].map(|v| halves.tone(v / 65535.0)), [0.0, 1.0]);
     // A third is a byte, which stays below, and not a value a little above it.
-    let thirds = Posterize { levels: 3.0 };
+    let thirds = Posterize { levels: 3.0, ..Posterize::default() };
     assert_eq!([21_845.0, 21_846.0].map(|v| thirds.tone(v / 65535.0)), [0.0, 0.5]);
+    let fine = Posterize { of_16_bits: true, ..thirds };
+    assert_eq!([21_844.0, 21_845.0].map(|v| fine.tone(v / 65535.0)), [0.0, 0.5]);
+}
+
+/// Tones of a picture that Photoshop made, brightness −23 and contrast −26.
+#[test]
+fn old_contrast_below_zero_draws_tones_together_before_they_are_shifted() {
+    let own = BrightnessContrast { brightness: -23.0, contrast: -26.0, legacy: true };
+    let tone = own.tone();
+    for (before, after) in
+        [(3.0, 12.0), (43.0, 42.0), (103.0, 86.0), (143.0, 116.0), (225.0, 177.0)]
+    {
+        let found = 255.0 * tone(before / 255.0);
+        assert!((found - after).abs() < 0.8, "{before}: {found} instead of {after}");
+    }
 }
 
 #[test]

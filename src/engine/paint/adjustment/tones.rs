@@ -175,12 +175,15 @@ fn inverse(spline: &ToneSpline, y: f32) -> f32 {
     0.5 * (low + high)
 }
 
-/// Brightness shifts; contrast stretches around mid gray, at 100 without limit.
+/// Brightness shifts, then contrast stretches around 127 of 255, at 100 without limit; below 0 it
+/// draws tones together before they are shifted.
 fn legacy(brightness: f32, contrast: f32, x: f32) -> f32 {
-    let shifted = x + brightness / 255.0;
-    let c = contrast / 100.0;
-    let slope = if c > 0.0 { 1.0 / (1.0 - c).max(1e-3) } else { 1.0 + c };
-    127.0 / 255.0 + (shifted - 127.0 / 255.0) * slope
+    const MIDDLE: f32 = 127.0 / 255.0;
+    let (shift, c) = (brightness / 255.0, contrast / 100.0);
+    if c > 0.0 {
+        return MIDDLE + (x + shift - MIDDLE) / (1.0 - c).max(1e-3);
+    }
+    MIDDLE + (x - MIDDLE) * (1.0 + c) + shift
 }
 
 impl Parameters for BrightnessContrast {
@@ -255,11 +258,13 @@ impl Parameters for Invert {
 pub struct Posterize {
     /// Tones, `[2, 255]`.
     pub levels: f32,
+    /// Its steps are those of pictures of 16 bits, whatever the pixels hold.
+    pub of_16_bits: bool,
 }
 
 impl Default for Posterize {
     fn default() -> Self {
-        Self { levels: 4.0 }
+        Self { levels: 4.0, of_16_bits: false }
     }
 }
 
@@ -267,7 +272,7 @@ impl Posterize {
     /// ⌊n x 255/256⌋ / (n − 1) of what a byte can hold, as Photoshop does; of 16 bits ⌊n x⌋ / (n − 1).
     pub fn tone(&self, x: f32) -> f32 {
         let value = (x * 65535.0).round();
-        if value % 257.0 != 0.0 {
+        if self.of_16_bits || value % 257.0 != 0.0 {
             return self.tone_of_16_bits(x);
         }
         self.step(f64::from(value) / 65535.0 * (255.0 / 256.0))
@@ -290,5 +295,7 @@ impl Parameters for Posterize {
     fn visit(&mut self, v: &mut dyn ParameterVisitor) {
         let name = parameter_name("levels", "Levels", "How many tones each channel has");
         v.number(NumberParameter::whole(name, 2.0, 255.0, 4.0), &mut self.levels);
+        let hint = "Steps as in pictures of 16 bits";
+        v.flag(parameter_name("of_16_bits", "16-bit steps", hint), false, &mut self.of_16_bits);
     }
 }

@@ -47,13 +47,14 @@ impl EffectPattern {
         Color { r, g, b, a }.premultiplied()
     }
 
-    /// The premultiplied color at a point of the canvas.
+    /// The premultiplied color at a point of the canvas. Enlarged, its first pixel has its color
+    /// where it begins, as measured in Photoshop's pictures, and the next one `scale` px further.
     fn color_at(&self, at: Vec2, scale: f32) -> [f32; 4] {
-        let p = at / scale.max(1e-3);
+        let scale = scale.max(1e-3);
         if scale == 1.0 {
-            return self.pixel(p.x.floor() as i64, p.y.floor() as i64);
+            return self.pixel(at.x.floor() as i64, at.y.floor() as i64);
         }
-        let p = p - 0.5;
+        let p = if scale > 1.0 { (at - 0.5) / scale } else { at / scale - 0.5 };
         let (corner, share) = (p.floor(), p - p.floor());
         let (x, y) = (corner.x as i64, corner.y as i64);
         let mix =

@@ -123,6 +123,21 @@ fn a_picture_is_repeated() {
     assert!(EffectPattern::new("none", Size::new(2, 2), vec![0; 4]).is_none());
 }
 
+/// As in a picture of Photoshop, of a line each four pixels at 200 %.
+#[test]
+fn an_enlarged_picture_begins_with_the_color_of_its_first_pixel() {
+    let rgba = [[0, 0, 0, 255], [255; 4], [255; 4], [255; 4]].concat();
+    let pattern = EffectPattern::new("lines", Size::new(4, 1), rgba).unwrap();
+    let mut overlay = LayerEffect::new(EffectKind::PatternOverlay);
+    overlay.pattern = Some(Arc::new(pattern));
+    overlay.settings.scale = 2.0;
+    let at = TileAt { col: 0, row: 0 };
+    let paint = overlay.paint(at, at.rect(), &EffectTile::Even(1.0)).unwrap();
+    let EffectPaint::Tile(tile) = paint else { panic!() };
+    let tones = [0, 1, 2, 5, 7, 8, 9].map(|x| tile.rows()[3].pixel(x)[0]);
+    assert_eq!(tones, [0.0, 0.5, 1.0, 1.0, 0.5, 0.0, 0.5]);
+}
+
 #[test]
 fn a_larger_effect_has_larger_lengths_and_what_its_kind_does_not_use_as_it_begins() {
     for (kind, name) in EffectKind::ALL {

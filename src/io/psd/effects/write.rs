@@ -24,6 +24,7 @@ pub fn as_read(effects: &[LayerEffect]) -> Option<RecordEffects> {
         mode: Mode::Rgb,
         channels: 3,
         is_light: false,
+        is_deep_lab: false,
         table: &[],
         nothing: None,
         icc: None,

@@ -151,11 +151,11 @@ fn nothing_looks_otherwise_without_a_note() {
 fn knockout_blend_if_and_channels_that_are_left_alone_are_told() {
     let mut layer = colored_layer("top", 4, 4, [100; 3]);
     layer.ranges = [[0, 0, 255, 255], [0, 0, 200, 255]].concat();
-    layer.blocks = vec![(b"knko", vec![1, 0, 0, 0]), (b"brst", vec![0; 4]), (b"clbl", vec![0; 4])];
+    layer.blocks = vec![(b"knko", vec![2, 0, 0, 0]), (b"brst", vec![0; 4])];
     let mut made = plain(4, 4, [100; 3]);
     made.layers = Some(vec![layer]);
     let notes = open(&made).notes.join("\n");
-    for part in ["“blend if”", "knockout", "channels that it leaves alone", "clipped to it"] {
+    for part in ["“blend if”", "knockout", "channels that it leaves alone"] {
         assert!(notes.contains(part), "{part}: {notes}");
     }
     let mut made = plain(4, 4, [100; 3]);
