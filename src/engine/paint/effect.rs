@@ -20,7 +20,7 @@ pub use settings::{
 
 use crate::math::range::clamp_to_range;
 use crate::math::srgb::Color;
-use crate::math::{NumberSetting, Range};
+use crate::math::{NumberSetting, Range, Rect};
 use crate::paint::adjustment::ToneCurve;
 use crate::paint::{Gradient, GradientStop};
 use crate::raster::BlendMode;
@@ -58,6 +58,8 @@ crate::named! {
 pub enum EffectPlace {
     /// Before the layer, on what lies beneath.
     Beneath,
+    /// On what is beneath the layer, in place of the layer and of effects beneath it.
+    Line,
     /// Within what the layer covers.
     Within,
     /// After the layer, also around it.
@@ -171,16 +173,42 @@ impl LayerEffect {
         use EffectKind::*;
         match self.kind {
             DropShadow | OuterGlow => EffectPlace::Beneath,
-            Stroke => match self.settings.position {
-                StrokePosition::Inside => EffectPlace::Within,
-                StrokePosition::Outside | StrokePosition::Center => EffectPlace::Over,
-            },
+            Stroke => EffectPlace::Line,
             Bevel => match self.settings.bevel {
                 BevelStyle::Inner => EffectPlace::Within,
                 _ => EffectPlace::Over,
             },
             _ => EffectPlace::Within,
         }
+    }
+
+    /// What is composed of it: of a line on the edge the half within and that around the layer.
+    pub fn parts(&self) -> Vec<Self> {
+        let s = self.settings;
+        if self.kind != EffectKind::Stroke || s.position != StrokePosition::Center {
+            return vec![self.clone()];
+        }
+        let half = |position| {
+            let settings = EffectSettings { size: s.size / 2.0, position, ..s };
+            Self { settings, ..self.clone() }
+        };
+        [StrokePosition::Outside, StrokePosition::Inside].map(half).to_vec()
+    }
+
+    /// Whether another line is the half within the layer of what this is the half around it.
+    pub fn is_other_half(&self, other: &Self) -> bool {
+        let within = EffectSettings { position: StrokePosition::Inside, ..self.settings };
+        self.settings.position == StrokePosition::Outside
+            && *other == Self { settings: within, ..self.clone() }
+    }
+
+    /// What a ramp lies on, of what the layer covers: that of a line reaches to its outer rim.
+    pub fn ramp_rect(&self, covered: Rect) -> Rect {
+        let is_around = self.kind == EffectKind::Stroke
+            && self.fill() == EffectFill::Gradient
+            && self.settings.position == StrokePosition::Outside;
+        let by = if is_around && self.is_aligned() { self.settings.size.ceil() } else { 0.0 };
+        covered.grown(by as i32)
     }
 
     /// How it is filled.

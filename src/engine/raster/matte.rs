@@ -1,11 +1,7 @@
 //! Coverage of a window of the canvas, blurred and dilated: what layer effects are made from. Floor
 //! 1. Not here: which effect uses what (`paint::effect`).
 
-use super::{Plane, distance};
-use crate::math::{Rect, Size};
-
-/// The farthest that distances are measured.
-const LONGEST_PX: f32 = distance::FARTHEST as f32 - 2.0;
+use crate::math::Rect;
 
 /// Coverage of a rectangle of the canvas, `[0, 1]`, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,75 +84,85 @@ impl Matte {
         Self { rect: self.rect, values: transpose(&across, h) }
     }
 
-    /// What lies within a distance of what is covered, with a round rim: max over q of
-    /// clamp(by + a(q) − |p − q|), a partly covered pixel reaching as much less far.
+    /// What lies within a distance of what is covered: max over q of clamp(by + a(q) − |p − q|), a
+    /// partly covered pixel reaching as much less far.
+    ///
+    /// Lengths are those of ways in the eight [`STEPS`] and those opposite, as in Photoshop's
+    /// pictures: up to 2.7 % longer than straight ones.
     pub fn dilated(self, by_px: f32) -> Self {
-        if by_px > LONGEST_PX {
-            return self.dilated(by_px / 2.0).dilated(by_px / 2.0);
-        }
         self.reaching(by_px, |reach, _| reach.min(1.0))
     }
 
     /// 1 on what is covered, falling straight to 0 over a distance: the same reach as a share of
     /// the distance.
-    ///
-    /// * `over_px`: at most 198.
     pub fn fading(self, over_px: f32) -> Self {
         self.reaching(over_px, |reach, over| (reach / over).min(1.0))
     }
 
     /// What `value` makes of how far beyond each pixel what is covered reaches, and of how far it
     /// reaches at all.
-    fn reaching(self, by_px: f32, value: impl Fn(f32, f32) -> f32) -> Self {
-        let by = by_px.min(LONGEST_PX);
+    fn reaching(mut self, by: f32, value: impl Fn(f32, f32) -> f32) -> Self {
         if by.is_nan() || by <= 0.0 {
             return self;
         }
-        let limit = by.ceil() as u16 + 2;
-        let to = |least: f32| {
-            let marked = self.values.iter().map(|v| u8::from(*v >= least)).collect();
-            let size = Size::new(self.rect.width() as u32, self.rect.height() as u32);
-            Plane::from_values(size, marked)
-                .map(|marked| distance::squared_distances(&marked, limit))
-        };
-        let (Some(whole), Some(any)) = (to(1.0), to(f32::MIN_POSITIVE)) else { return self };
-        let ring = ring_offsets(i32::from(limit));
-        let root = |plane: &Plane<u16>, i: usize| f32::from(plane.values()[i]).sqrt();
-        let values = (0..self.values.len()).map(|i| {
-            let least = value(by + 1.0 - root(&whole, i), by);
-            if least >= 1.0 {
-                return 1.0;
+        let width = self.rect.width();
+        let reach = spread_along_ways(&self.values, width);
+        let reach = reach.chunks_exact(width + 2 * AROUND).skip(AROUND);
+        let rows = self.values.chunks_exact_mut(width.max(1));
+        for (row, reach) in rows.zip(reach) {
+            for (v, reach) in row.iter_mut().zip(reach.iter().skip(AROUND)) {
+                *v = value((by + *reach as f32 / UNIT as f32).max(0.0), by);
             }
-            let nearest = root(&any, i);
-            if nearest >= by + 1.0 { 0.0 } else { value(self.reach_at(i, by, nearest, &ring), by) }
-        });
-        let values = values.collect();
-        Self { rect: self.rect, values }
-    }
-
-    /// How far what is covered reaches beyond one pixel, whose nearest covered pixel is known.
-    fn reach_at(&self, i: usize, by: f32, nearest: f32, ring: &[(i32, i32, f32)]) -> f32 {
-        let (x, y) = (i % self.rect.width(), i / self.rect.width());
-        let (x, y) = (self.rect.x0 + x as i32, self.rect.y0 + y as i32);
-        let first = ring.partition_point(|(.., d)| *d < nearest - 1e-3);
-        // A pixel farther than this by one covers no more, even if it is whole.
-        let near = ring[first..].iter().take_while(|(.., d)| *d <= (nearest + 1.0).min(by + 1.0));
-        let reach = near.map(|(dx, dy, d)| match self.at(x + dx, y + dy) {
-            covered if covered > 0.0 => by + covered - d,
-            _ => 0.0,
-        });
-        reach.fold(0.0, f32::max)
+        }
+        self
     }
 }
 
-/// Places around a pixel with their distances, the nearest first.
-fn ring_offsets(reach: i32) -> Vec<(i32, i32, f32)> {
-    let mut all: Vec<(i32, i32, f32)> = (-reach..=reach)
-        .flat_map(|y| (-reach..=reach).map(move |x| (x, y, ((x * x + y * y) as f32).sqrt())))
-        .filter(|(.., d)| *d <= reach as f32)
-        .collect();
-    all.sort_by(|a, b| a.2.total_cmp(&b.2).then((a.1, a.0).cmp(&(b.1, b.0))));
-    all
+/// A pixel in whole parts, which add up to the same length in any order.
+const UNIT: i32 = 1 << 16;
+/// Less than any way through a window leaves.
+const UNREACHED: i32 = i32::MIN / 2;
+/// How far a step goes along an axis at most.
+const AROUND: usize = 2;
+/// Steps to pixels that come before in reading order, `(x, y, length)`: straight, diagonal, and a
+/// knight's move.
+const STEPS: [(isize, isize, i32); 8] = [
+    (-1, 0, UNIT),
+    (0, -1, UNIT),
+    (-1, -1, 92_682),
+    (1, -1, 92_682),
+    (-2, -1, 146_543),
+    (2, -1, 146_543),
+    (-1, -2, 146_543),
+    (1, -2, 146_543),
+];
+
+/// What the best way from a covered pixel leaves of its coverage, in units: coverage less length.
+/// With a border of [`AROUND`] pixels.
+fn spread_along_ways(values: &[f32], width: usize) -> Vec<i32> {
+    let stride = width + 2 * AROUND;
+    let height = values.len() / width.max(1);
+    let mut left = vec![UNREACHED; stride * (height + 2 * AROUND)];
+    let rows = left.chunks_exact_mut(stride).skip(AROUND);
+    for (row, values) in rows.zip(values.chunks_exact(width.max(1))) {
+        for (v, covered) in row[AROUND..].iter_mut().zip(values).filter(|(_, c)| **c > 0.0) {
+            *v = (covered * UNIT as f32 + 0.5) as i32;
+        }
+    }
+    let back = |(x, y, length): (isize, isize, i32)| ((-y * stride as isize - x) as usize, length);
+    let steps = STEPS.map(back);
+    // Once from each end: any way can be gone with all steps that lead on first.
+    for _ in 0..2 {
+        for y in AROUND..AROUND + height {
+            let first = y * stride + AROUND;
+            for at in first..first + width {
+                let best = steps.iter().map(|(back, length)| left[at - back] - length);
+                left[at] = best.fold(left[at], i32::max);
+            }
+        }
+        left.reverse();
+    }
+    left
 }
 
 /// The mean over `width` px around each value of rows, twice.
@@ -228,10 +234,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_dilated_is_round_and_a_faint_pixel_reaches_less_far() {
+    fn what_is_dilated_is_nearly_round_and_a_faint_pixel_reaches_less_far() {
         let dilated = dot(9).dilated(4.0);
         assert_eq!([dilated.at(4, 0), dilated.at(5, 0), dilated.at(6, 0)], [1.0, 0.0, 0.0]);
-        assert!((dilated.at(3, 3) - (5.0 - 18f32.sqrt())).abs() < 1e-6, "{}", dilated.at(3, 3));
+        assert!((dilated.at(3, 3) - (5.0 - 18f32.sqrt())).abs() < 1e-4, "{}", dilated.at(3, 3));
+        // A knight's move and two straight steps, where the way as the crow flies is 4.12.
+        let way = 5f32.sqrt() + 2.0;
+        assert!((dilated.at(4, 1) - (5.0 - way)).abs() < 1e-4, "{}", dilated.at(4, 1));
+        assert_eq!(dilated.at(-1, 4), dilated.at(4, 1));
         let faint = dot(9).map(|v| v * 0.25).dilated(4.0);
         assert_eq!([faint.at(3, 0), faint.at(4, 0), faint.at(5, 0)], [1.0, 0.25, 0.0]);
     }

@@ -104,6 +104,64 @@ fn a_line_is_around_the_layer_on_transparency_too() {
     assert_eq!(pixel(&document, 57, 75), [128, 128, 128, 255]);
 }
 
+/// As in pictures of Photoshop.
+#[test]
+fn a_line_lies_on_what_is_beneath_the_layer_and_hides_that_and_its_shadow() {
+    let line = |position| {
+        of(EffectKind::Stroke, |s| {
+            (s.size, s.color, s.opacity, s.position) = (4.0, Color::WHITE, 0.5, position);
+        })
+    };
+    let near = |found: [u8; 4], to: [u8; 3]| {
+        let far = found.iter().zip(to).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(far <= Some(1), "{found:?} {to:?}");
+    };
+    let around = with(vec![line(StrokePosition::Outside), shadow()], |_| {});
+    near(pixel(&around, 80, 92), [191; 3]);
+    near(pixel(&around, 80, 98), [64; 3]);
+    let within = with(vec![line(StrokePosition::Inside)], |_| {});
+    near(pixel(&within, 62, 75), [191; 3]);
+    near(pixel(&within, 66, 75), [200, 40, 40]);
+    let both = with(vec![line(StrokePosition::Center)], |_| {});
+    for (x, shown) in [(57, [128; 3]), (58, [191; 3]), (61, [191; 3]), (62, [200, 40, 40])] {
+        near(pixel(&both, x, 75), shown);
+    }
+}
+
+/// As in a picture of Photoshop: 249 and 15 % of 251 are more than white.
+#[test]
+fn the_opacity_of_an_effect_thins_what_it_adds_or_burns() {
+    let overlay = |blend, opacity, v: u8| {
+        of(EffectKind::ColorOverlay, |s| {
+            (s.blend, s.opacity, s.color) = (blend, opacity, Color { r: v, g: v, b: v, a: 255 });
+        })
+    };
+    let shown = |effect: LayerEffect| pixel(&with(vec![effect], |_| {}), 80, 75);
+    assert_eq!(shown(overlay(BlendMode::LinearDodge, 0.3, 200)), [255, 100, 100, 255]);
+    assert_eq!(shown(overlay(BlendMode::LinearBurn, 0.7, 15)), [32, 0, 0, 255]);
+    let mut alone = with(vec![], |layer| layer.effects = Arc::default());
+    alone.layers.remove(0);
+    let glow = of(EffectKind::OuterGlow, |s| {
+        (s.blend, s.opacity, s.size, s.range) = (BlendMode::LinearDodge, 0.5, 0.0, 0.5);
+    });
+    alone = alone.with_layer(alone.layers[0].id, |l| l.effects = Arc::new(vec![glow])).unwrap();
+    assert_eq!(pixel(&alone, 80, 75), [200, 40, 40, 255]);
+}
+
+#[test]
+fn a_line_lies_beneath_what_the_layer_covers_in_part() {
+    let rgba = [200, 40, 40, 102].repeat(40 * 30);
+    let faint = TileGrid::from_straight_rgba(&rgba, 40, 30, 60, 60);
+    let line = of(EffectKind::Stroke, |s| (s.size, s.color) = (2.0, Color::WHITE));
+    let document = with(vec![line], |layer| layer.content = faint.into());
+    for x in [60, 75] {
+        // Two fifths of the layer and three of the line.
+        let found = pixel(&document, x, 75);
+        let far = found.iter().zip([233u8, 169, 169, 255]).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(far <= Some(1), "{found:?}");
+    }
+}
+
 #[test]
 fn an_upper_line_replaces_a_lower_one_and_is_blended_with_the_ground() {
     let line = |size: f32, blend, color| {

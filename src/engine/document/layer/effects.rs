@@ -137,7 +137,7 @@ impl Layer {
         let shown = || self.effects.iter().rev().filter(|effect| effect.on);
         let of_kind = |(kind, _): &(EffectKind, &str)| {
             let kind = *kind;
-            shown().filter(move |effect| effect.kind == kind).cloned()
+            shown().filter(move |effect| effect.kind == kind).flat_map(LayerEffect::parts)
         };
         EffectKind::ALL.iter().flat_map(of_kind).collect()
     }

@@ -9,6 +9,9 @@ use crate::paint::ramp::Ramp;
 use crate::raster::tile::transparent_f32;
 use crate::raster::{PlanarTile, TILE, TileAt, TilePaint};
 
+/// As far as a coordinate may be from a whole one by rounding.
+const ROUNDING: f32 = 1e-3;
+
 /// A picture that an effect repeats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectPattern {
@@ -79,6 +82,32 @@ impl RampStyle {
         (middle, vec2(cos, -sin) * reach * scale)
     }
 
+    /// Where such a ramp begins and ends as Photoshop lays it: on whole pixels, of a scaled straight
+    /// ramp half of it from a whole middle. There a pixel has the color of its corner, here that of
+    /// its center, so that both lie half a pixel further.
+    pub fn ends(self, rect: Rect, degrees: f32, scale: f32, offset: Vec2) -> (Vec2, Vec2) {
+        let (middle, half) = Self::line(rect, degrees, scale, offset);
+        let from = if self == RampStyle::Linear { middle - half } else { middle };
+        let exact = (from, middle + half);
+        // What is whole but for rounding stays.
+        let whole = |p: Vec2| (p + Vec2::splat(ROUNDING)).floor();
+        let (from, to) = match self {
+            RampStyle::Linear if scale != 1.0 => {
+                let half = (half + half.signum() * ROUNDING).trunc();
+                (whole(middle) - half, whole(middle) + half)
+            }
+            _ => (whole(exact.0), whole(exact.1)),
+        };
+        let (from, to) = if from == to { exact } else { (from, to) };
+        (from + Vec2::splat(0.5), to + Vec2::splat(0.5))
+    }
+
+    /// The middle of a ramp with these ends, and from there to its end.
+    pub fn middle_and_half(self, (from, to): (Vec2, Vec2)) -> (Vec2, Vec2) {
+        let middle = if self == RampStyle::Linear { (from + to) / 2.0 } else { from };
+        (middle, to - middle)
+    }
+
     /// Position of a point on the ramp; `line`: the middle, and from there to the end.
     pub fn place(self, (middle, half): (Vec2, Vec2), at: Vec2) -> f32 {
         let reach = half.length().max(1e-6);
@@ -125,7 +154,8 @@ impl LayerEffect {
                 if matches!(self.kind, EffectKind::OuterGlow | EffectKind::InnerGlow) {
                     return Some(paint_tile(at, |i, _| ramp.at(1.0 - amounts.at(i))));
                 }
-                let line = RampStyle::line(filled, s.angle, s.scale, vec2(s.offset_x, s.offset_y));
+                let offset = vec2(s.offset_x, s.offset_y);
+                let line = s.ramp.middle_and_half(s.ramp.ends(filled, s.angle, s.scale, offset));
                 let way = |t: f32| if s.reverse { 1.0 - t } else { t };
                 Some(paint_tile(at, |_, p| ramp.at(way(s.ramp.place(line, p).max(0.0).min(1.0)))))
             }

@@ -146,7 +146,8 @@ impl LayerEffect {
 
     /// What is covered, solid for a share of the size and blurred for the rest.
     fn soften(&self, matte: Matte) -> Matte {
-        let solid = self.settings.size * self.settings.spread;
+        // Whole pixels, as in Photoshop's pictures: 64 % of 65 px are 42.
+        let solid = (self.settings.size * self.settings.spread).round();
         matte.dilated(solid).blurred(self.settings.size - solid)
     }
 
@@ -160,10 +161,11 @@ impl LayerEffect {
         let own = self.light(light);
         let (sin, cos) = own.angle.to_radians().sin_cos();
         let away = vec2(-cos, sin);
-        let first = away * self.settings.distance;
+        // To whole pixels, as in Photoshop's pictures.
+        let first = (away * self.settings.distance).round();
         // Where the surface is deepest, a shadow falls farthest.
         let depth_px = surface.map_or(0.0, Surface::depth_range_px);
-        let last = away * self.shadow_distance(light, depth_px);
+        let last = first + away * (self.shadow_distance(light, depth_px) - self.settings.distance);
         let moved = |by: Vec2| rect.moved(-by.x.round() as i32, -by.y.round() as i32);
         let window = moved(first).union(moved(last)).grown(self.settings.size.ceil() as i32 + 2);
         let (matte, tone) = (cover(window), self.tone_curve());
@@ -219,27 +221,14 @@ impl LayerEffect {
     fn line(&self, rect: Rect, cover: &dyn Fn(Rect) -> Matte) -> Amounts {
         let s = &self.settings;
         let matte = cover(rect.grown(s.size.ceil() as i32 + 2));
-        if even(&matte).is_some_and(|v| v == 0.0 || v == 1.0) {
-            return Amounts::Even(0.0);
+        // Both are shown as far as the layer lets them: that outside lies beneath it, that within
+        // on it.
+        let is_within = s.position == StrokePosition::Inside;
+        if let Some(even) = even(&matte).filter(|v| *v == 0.0 || *v == 1.0) {
+            return Amounts::Even(if is_within { 0.0 } else { even });
         }
-        let (out, inward) = match s.position {
-            StrokePosition::Outside => (s.size, 0.0),
-            StrokePosition::Inside => (0.0, s.size),
-            StrokePosition::Center => (s.size / 2.0, s.size / 2.0),
-        };
-        let outer = matte.clone().dilated(out);
-        let inner = matte.clone().complement().dilated(inward);
-        match s.position {
-            // Within the layer it is shown as far as the layer is.
-            StrokePosition::Inside => Amounts::of(rect, |x, y| inner.at(x, y)),
-            StrokePosition::Outside => {
-                Amounts::of(rect, |x, y| (outer.at(x, y) - matte.at(x, y)).max(0.0))
-            }
-            StrokePosition::Center => Amounts::of(rect, |x, y| {
-                let covered = matte.at(x, y);
-                (outer.at(x, y) - covered).max(0.0) + covered * inner.at(x, y)
-            }),
-        }
+        let line = if is_within { matte.complement() } else { matte }.dilated(s.size);
+        Amounts::of(rect, |x, y| line.at(x, y))
     }
 
     /// Light and shade of the blurred coverage as a height: how much more or less light than a flat
@@ -252,7 +241,8 @@ impl LayerEffect {
             return Amounts::Even(0.0);
         }
         let half = matches!(s.bevel, BevelStyle::Emboss | BevelStyle::Pillow);
-        let size = if half { s.size / 2.0 } else { s.size }.max(1.0);
+        // Half of 41 px is 21, as in a picture of Photoshop.
+        let size = if half { (s.size / 2.0).ceil() } else { s.size }.max(1.0);
         let height = match s.technique {
             BevelTechnique::Smooth => matte.clone().blurred(size),
             BevelTechnique::Chisel => chisel(&matte, size, s.bevel),

@@ -65,12 +65,43 @@ fn a_shadow_falls_away_from_its_light() {
 #[test]
 fn a_line_is_as_wide_as_its_size() {
     let line = |position| of(EffectKind::Stroke, |s| (s.size, s.position) = (4.0, position));
-    let outside = line(StrokePosition::Outside);
     let row = |effect: &LayerEffect| [36, 37, 38, 39, 40, 41].map(|x| amount(effect, x, 32));
-    assert_eq!(row(&outside), [0.0, 1.0, 1.0, 1.0, 1.0, 0.0]);
-    assert_eq!(row(&line(StrokePosition::Center)), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+    // Beneath what the layer covers too, and from there outward.
+    assert_eq!(row(&line(StrokePosition::Outside)), [1.0, 1.0, 1.0, 1.0, 1.0, 0.0]);
     let inside = line(StrokePosition::Inside);
     assert_eq!([amount(&inside, 33, 32), amount(&inside, 32, 32)], [1.0, 0.0]);
+    let halves = line(StrokePosition::Center).parts();
+    assert!(halves.len() == 2 && halves[0].is_other_half(&halves[1]));
+    assert_eq!(row(&halves[0]), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+    assert_eq!([34, 35].map(|x| amount(&halves[1], x, 32)), [0.0, 1.0]);
+}
+
+#[test]
+fn the_ramp_of_a_line_reaches_to_its_outer_rim() {
+    let line = |position, fill| {
+        of(EffectKind::Stroke, |s| (s.size, s.position, s.fill) = (4.0, position, fill))
+    };
+    let covered = Rect::new(10, 10, 20, 30);
+    let outside = line(StrokePosition::Outside, EffectFill::Gradient);
+    assert_eq!(outside.ramp_rect(covered), Rect::new(6, 6, 24, 34));
+    for other in [
+        line(StrokePosition::Inside, EffectFill::Gradient),
+        line(StrokePosition::Outside, EffectFill::Pattern),
+        LayerEffect::new(EffectKind::GradientOverlay),
+    ] {
+        assert_eq!(other.ramp_rect(covered), covered);
+    }
+}
+
+/// As in a picture of Photoshop: half of five pixels are three that are solid.
+#[test]
+fn whole_pixels_of_a_shadow_are_solid() {
+    let shadow = of(EffectKind::DropShadow, |s| {
+        (s.distance, s.size, s.spread) = (0.0, 5.0, 0.5);
+    });
+    let found = [37, 38, 39, 40, 41, 42].map(|x| amount(&shadow, x, 32));
+    let far = found.iter().zip([1.0, 0.9375, 0.6875, 0.3125, 0.0625, 0.0]);
+    assert!(far.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) < 1e-3, "{found:?}");
 }
 
 #[test]
