@@ -12,6 +12,7 @@
 //! | `adjustments` | what adjustment layers do |
 //! | `gray`, `inks` | adjustments of gray values and inks with a profile, as tables of sRGB |
 //! | `ink_layers` | layers of inks with the colors that they have on each other |
+//! | `profiled` | layers of RGB that keep the values of the file's profile, beneath a table |
 //! | `knockout` | layers that hide what is beneath them in their group |
 //! | `layer_base`, `nesting` | what layers are clipped to, and layers that become groups |
 //! | `effects` | shadows, glows and other effects of layers |
@@ -60,6 +61,7 @@ mod nesting;
 mod outline;
 mod parse;
 pub(super) mod pattern;
+mod profiled;
 mod ramp;
 mod restore;
 #[cfg(test)]

@@ -346,6 +346,11 @@ fn line(
         Some(b"CtrF") => StrokePosition::Center,
         _ => StrokePosition::Outside,
     };
+    let is_translucent = s.opacity < 1.0 || s.blend != BlendMode::Normal;
+    let lies_on_layer = said.is_set("overprint") && s.position != StrokePosition::Outside;
+    if effect.on && is_translucent && lies_on_layer {
+        lose(found, "a line that lies on its layer hides it here");
+    }
     match said.word("PntT") {
         Some(b"GrFl") => {
             s.fill = EffectFill::Gradient;

@@ -43,8 +43,6 @@ pub struct PatternFill {
 /// Stops from one that the file names to the next: colors and opacities have middles of their own,
 /// where ramps bend.
 const BETWEEN: usize = 8;
-/// As far as a coordinate may be from a whole one by rounding.
-const ROUNDING: f32 = 1e-3;
 /// No real gradient has more stops.
 const MOST_STOPS: usize = 1000;
 
@@ -176,12 +174,23 @@ pub fn in_direction(
     stops
 }
 
-/// A value at a place of a ramp, and where the middle between it and the next lies.
+/// A value at a place of a ramp, and where the middle between the one before and it lies.
 #[derive(Clone, Copy)]
 pub struct Mark<T> {
     pub t: f32,
     pub middle: f32,
     pub value: T,
+}
+
+impl<T> Mark<T> {
+    /// How much of its value there is at a share of the way from the mark before: half at the middle.
+    pub fn bend(&self, s: f32) -> f32 {
+        if s < self.middle {
+            0.5 * s / self.middle
+        } else {
+            0.5 + 0.5 * (s - self.middle) / (1.0 - self.middle)
+        }
+    }
 }
 
 /// The ramp's colors and opacities as stops of colors with alpha; `None` of noise.
@@ -249,12 +258,7 @@ fn at<const N: usize>(marks: &[Mark<[f32; N]>], t: f32) -> Option<[f32; N]> {
     let (Some(from), Some(to)) = (next.checked_sub(1).map(|i| marks[i]), marks.get(next)) else {
         return if next == 0 { marks.first() } else { marks.last() }.map(|mark| mark.value);
     };
-    let s = (t - from.t) / (to.t - from.t);
-    let s = if s < from.middle {
-        0.5 * s / from.middle
-    } else {
-        0.5 + 0.5 * (s - from.middle) / (1.0 - from.middle)
-    };
+    let s = to.bend((t - from.t) / (to.t - from.t));
     Some(std::array::from_fn(|i| from.value[i] + (to.value[i] - from.value[i]) * s))
 }
 
@@ -267,30 +271,13 @@ impl GradientFill {
         Gradient { style: self.way, stops, filter: ImageFilter::Bilinear, ..line }
     }
 
-    /// Where it begins and ends. Photoshop lays both on whole pixels, and gives a pixel the color of
-    /// its corner; here that is the color of its center.
     fn ends(&self, rect: Rect) -> (Vec2, Vec2) {
-        let (middle, half) = RampStyle::line(rect, self.degrees, self.scale, self.offset);
-        let from = if self.way == RampStyle::Linear { middle - half } else { middle };
-        let exact = (from, middle + half);
-        // What is whole but for rounding stays.
-        let whole = |p: Vec2| (p + Vec2::splat(ROUNDING)).floor();
-        let (from, to) = match self.way {
-            RampStyle::Linear if self.scale != 1.0 => {
-                let half = (half + half.signum() * ROUNDING).trunc();
-                (whole(middle) - half, whole(middle) + half)
-            }
-            _ => (whole(exact.0), whole(exact.1)),
-        };
-        let (from, to) = if from == to { exact } else { (from, to) };
-        (from + Vec2::splat(0.5), to + Vec2::splat(0.5))
+        self.way.ends(rect, self.degrees, self.scale, self.offset)
     }
 
     /// The color of a pixel.
     pub fn color_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
-        let (from, to) = self.ends(rect);
-        let middle = if self.way == RampStyle::Linear { (from + to) / 2.0 } else { from };
-        let line = (middle, to - middle);
+        let line = self.way.middle_and_half(self.ends(rect));
         let [r, g, b, a] = self.at(self.way.place(line, vec2(x as f32 + 0.5, y as f32 + 0.5)));
         Some(Color { r, g, b, a })
     }

@@ -1,6 +1,8 @@
 //! What layers are clipped to, where Photoshop composes both otherwise than this program. Floor 5.
 
-use crate::document::{Content, Group, Layer, LayerMask};
+use super::RecordMask;
+use crate::document::{Content, Document, Group, Layer, LayerMask, Progress, flatten};
+use crate::math::Size;
 use std::sync::Arc;
 
 /// What is noted of a layer whose transparency others ignore.
@@ -10,6 +12,10 @@ pub const IGNORES_ALPHA: &str =
 /// What is noted of a layer that is clipped to another one's own pixels.
 pub const CLIPPED_TOGETHER: &str =
     "in other programs it is blended with what is beneath the layer that it is clipped to";
+
+/// What is noted of a layer that is clipped to a group that passes through.
+pub const CLIPPED_TO_PASSING: &str =
+    "in other programs it is blended with all that its group lets through, too";
 
 /// A layer that others may be clipped to.
 #[derive(Default)]
@@ -36,6 +42,48 @@ impl LayerBase {
         inner.insert(inner.len().saturating_sub(1), Arc::new(layer));
         let group = Content::Group(Group { layers: inner, pass_through: false });
         *base = Arc::new(Layer { content: group, ..Layer::clone(base) });
+    }
+
+    /// Whether it is a group that passes through.
+    pub fn is_passing(&self, layers: &[Arc<Layer>]) -> bool {
+        let group = layers.get(self.index).and_then(|layer| layer.content.group());
+        group.is_some_and(|group| group.pass_through)
+    }
+
+    /// Whether something in it changes what is beneath: what is clipped to it limits that to what its
+    /// layers cover.
+    pub fn has_adjustments(&self, layers: &[Arc<Layer>]) -> bool {
+        let adjusts =
+            |layer: &Layer| layer.visible && matches!(layer.content, Content::Adjustment(_));
+        layers.get(self.index).is_some_and(|base| {
+            let mut all = vec![base];
+            while let Some(layer) = all.pop() {
+                if adjusts(layer) {
+                    return true;
+                }
+                all.extend(layer.content.group().into_iter().flat_map(|group| &group.layers));
+            }
+            false
+        })
+    }
+
+    /// What is clipped to a group that passes through lies on all that the group lets through, where
+    /// its layers cover that wholly. Where they cover it in part, nothing here is the same.
+    pub fn clip_to_passing(&mut self, layers: &[Arc<Layer>], size: Size) {
+        let Some(group) = layers.get(self.index) else { return };
+        let alone = Document { layers: vec![group.clone()], ..Document::empty(size) };
+        let adjusts =
+            |layer: &Layer| layer.visible && matches!(layer.content, Content::Adjustment(_));
+        if alone.walk().iter().any(|(_, layer)| adjusts(layer)) {
+            return;
+        }
+        let Some(shown) = flatten(&alone, &Progress::default()) else { return };
+        let alphas = shown.to_straight_rgba(size.rect()).into_iter().skip(3).step_by(4);
+        let alphas: Vec<u8> = alphas.collect();
+        if alphas.iter().all(|alpha| [0, 255].contains(alpha)) {
+            let shape = RecordMask::of_canvas(size, alphas).to_layer_mask(size);
+            (self.shape, self.clips_apart) = (Some(shape), true);
+        }
     }
 
     /// Whether what is clipped to it lies on what is beneath it, and its shape is known.
@@ -68,4 +116,13 @@ impl LayerBase {
             }));
         }
     }
+}
+
+/// Whether a layer has neither pixels nor effects.
+pub fn is_empty(layer: &Layer) -> bool {
+    let has_pixels = match &layer.content {
+        Content::Pixels(pixels) => pixels.tiles.iter().next().is_some(),
+        _ => true,
+    };
+    !has_pixels && layer.effects.is_empty()
 }

@@ -53,12 +53,13 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     parse_as(file, bytes, budget, false)
 }
 
-/// As [`parse`]. `keeps_inks`: the records of a file of inks, Lab or gray keep its values.
+/// As [`parse`]. `keeps_values`: the records keep the values of a file of inks, Lab or gray, and those
+/// of RGB with a profile.
 pub fn parse_as<'a>(
     file: &Path,
     bytes: &'a [u8],
     budget: &Budget,
-    keeps_inks: bool,
+    keeps_values: bool,
 ) -> Result<ParsedPsd<'a>> {
     let cut = || Error::decode(file, "the file is cut short");
     let mut rest = ByteCursor::new(bytes);
@@ -77,8 +78,12 @@ pub fn parse_as<'a>(
     };
     let length = rest.length(header.large).ok_or_else(cut)?;
     let section = ByteCursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
-    let mut reader = RecordReader::new(file, budget, &header, &colors);
-    reader.keeps_inks = keeps_inks && matches!(header.mode, Mode::Cmyk | Mode::Lab | Mode::Gray);
+    let own = match keeps_values && header.mode == Mode::Rgb {
+        true => Colors { icc: None, ..colors },
+        false => colors,
+    };
+    let mut reader = RecordReader::new(file, budget, &header, &own);
+    reader.keeps_inks = keeps_values && matches!(header.mode, Mode::Cmyk | Mode::Lab | Mode::Gray);
     let info = layer_info(section, header.large);
     let records = info.map_or_else(|| Ok(Vec::new()), |info| reader.records(info))?;
     let patterns = pattern::read(global_blocks(section, header.large), &mut reader)?;
@@ -124,7 +129,7 @@ pub fn parse_as<'a>(
         records,
         merged,
         patterns,
-        has_profile: colors.has_profile(),
+        has_profile: own.has_profile(),
         gray: GrayTones::of(&colors, header.bits),
         inks,
         icc: colors.icc,

@@ -210,12 +210,7 @@ fn value_at<const N: usize>(
         return if next == 0 { marks.first() } else { marks.last() }.map(|mark| mark.value);
     };
     let from = marks[i];
-    let s = (t - from.t) / (to.t - from.t);
-    let s = if s < from.middle {
-        0.5 * s / from.middle
-    } else {
-        0.5 + 0.5 * (s - from.middle) / (1.0 - from.middle)
-    };
+    let s = to.bend((t - from.t) / (to.t - from.t));
     // A curve ends where a ramp does, and at hard edges.
     let before = i.checked_sub(1).map(|i| marks[i]).filter(|mark| mark.t < from.t);
     let behind = marks.get(next + 1).filter(|mark| mark.t > to.t);
@@ -287,6 +282,20 @@ mod tests {
         let found = value_at(&marks, 0.25, RampSide::Behind, 1.0).unwrap();
         let far = found.iter().zip([129.0, 10.1, 128.1]).map(|(v, w)| (v - w).abs());
         assert!(far.fold(0.0, f32::max) < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn the_middle_of_a_color_lies_before_it() {
+        let marks = [
+            ink(0.0, [0.0; 3]),
+            Mark { middle: 0.8, ..ink(0.5, [1.0; 3]) },
+            Mark { middle: 0.2, ..ink(1.0, [0.0; 3]) },
+        ];
+        // A narrow light line in the middle.
+        for (t, tone) in [(0.2, 0.25), (0.4, 0.5), (0.5, 1.0), (0.6, 0.5), (0.8, 0.25)] {
+            let [found, ..] = value_at(&marks, t, RampSide::Behind, 0.0).unwrap();
+            assert!((found - tone).abs() < 1e-5, "{t}: {found}");
+        }
     }
 
     #[test]

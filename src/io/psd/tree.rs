@@ -8,10 +8,12 @@ use super::effects::RecordEffects;
 use super::gray::GrayTones;
 use super::ink_layers::{self, InkView, fitting_bytes};
 use super::inks::InkTones;
-use super::layer_base::{CLIPPED_TOGETHER, IGNORES_ALPHA, LayerBase};
+use super::layer_base::{CLIPPED_TO_PASSING, CLIPPED_TOGETHER, IGNORES_ALPHA, LayerBase, is_empty};
+use super::merged::Merged;
 use super::nesting::{with_effects_of_shape, with_effects_within, with_line_over};
 use super::parse::{ParsedPsd, parse, parse_as};
 use super::pattern::PatternResource;
+use super::profiled::{self, show_in_srgb};
 use super::restore::restore;
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, knockout, marks};
 use crate::Budget;
@@ -59,10 +61,14 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     }
     let has_own_values =
         matches!(parsed.header.mode, Mode::Cmyk | Mode::Lab) || parsed.gray.is_some();
-    let merged = parsed.merged.as_ref().filter(|_| has_own_values);
-    if merged.is_some_and(|merged| is_shown_otherwise(&document, merged, is_less, &own_notes))
-        && let Some(fitted) = fit_inks(file, bytes, budget, &mut notes)
-    {
+    let has_profile = parsed.header.mode == Mode::Rgb && parsed.has_profile;
+    let merged = parsed.merged.as_ref().filter(|_| has_own_values || has_profile);
+    let unlike = merged.filter(|merged| is_shown_otherwise(&document, merged, is_less, &own_notes));
+    let fitted = unlike.and_then(|merged| match has_profile {
+        true => keep_values(file, bytes, budget, merged, &mut notes),
+        false => fit_inks(file, bytes, budget, &mut notes),
+    });
+    if let Some(fitted) = fitted {
         (document, is_less) = fitted;
         own_notes = notes;
     }
@@ -92,6 +98,30 @@ fn fit_inks(
     let view = InkView::of(mode, parsed.icc, gray, is_deep)?;
     ink_layers::try_fit(&mut parsed.records, size, &view, is_deep)
         .then(|| build_document(&mut parsed, budget, notes))
+}
+
+/// The document of a file of RGB with its own values, shown as sRGB, and whether something was left
+/// out; `None` unless it looks like the file's own picture.
+fn keep_values(
+    file: &Path,
+    bytes: &[u8],
+    budget: &Budget,
+    merged: &Merged,
+    notes: &mut Vec<String>,
+) -> Option<(Document, bool)> {
+    let mut parsed = parse_as(file, bytes, budget, true).ok()?;
+    let held = parsed.held_bytes.saturating_mul(2).saturating_add(profiled::TABLE_BYTES);
+    budget.room(file, "blending the values of its profile", held).ok()?;
+    let icc = parsed.icc?;
+    let mut found = notes.clone();
+    found.push(profiled::NOTE.into());
+    let (document, is_less) = build_document(&mut parsed, budget, &mut found);
+    let document = show_in_srgb(document, icc)?;
+    if is_shown_otherwise(&document, merged, is_less, &found) {
+        return None;
+    }
+    *notes = found;
+    Some((document, is_less))
 }
 
 /// The document that a file's records say, and whether something was left out.
@@ -284,6 +314,18 @@ impl TreeBuilder<'_> {
         if !layer.clip_below {
             list.base = LayerBase { index: list.layers.len(), ..base };
         } else if layer.visible {
+            if list.base.is_passing(&list.layers) {
+                let adjusts = list.base.has_adjustments(&list.layers);
+                if is_empty(&layer) && !adjusts {
+                    return list.layers.push(Arc::new(Layer { clip_below: false, ..layer }));
+                }
+                if deepest > 0 && !adjusts && !list.base.can_clip_apart() {
+                    list.base.clip_to_passing(&list.layers, self.size);
+                }
+                if !list.base.can_clip_apart() {
+                    self.notes.push(format!("“{}”: {CLIPPED_TO_PASSING}", layer.name));
+                }
+            }
             if let Some(name) = list.base.ignores_alpha.take() {
                 self.notes.push(format!("“{name}”: {IGNORES_ALPHA}"));
                 self.is_less = true;
@@ -386,20 +428,7 @@ impl TreeBuilder<'_> {
         });
     }
 
-    /// Whether what is clipped next lies on a group that passes through.
-    fn is_clipped_to_passing(&self) -> bool {
-        let list = self.open.last().filter(|list| list.base.apart.is_none());
-        let layers = list.map(|list| &list.layers);
-        let below = layers.and_then(|layers| layers.iter().rev().find(|l| !l.clip_below));
-        below.and_then(|base| base.content.group()).is_some_and(|group| group.pass_through)
-    }
-
     fn layer(&mut self, mut record: LayerRecord, content: Content) -> Layer {
-        if record.clipped && record.visible && self.is_clipped_to_passing() {
-            record.note_conversion(
-                "in other programs it is blended with all that its group lets through, too",
-            );
-        }
         let known = BlendMode::from_photoshop(record.blend);
         if known.is_none() && record.blend != PASS_THROUGH {
             let key = String::from_utf8_lossy(&record.blend).into_owned();

@@ -49,6 +49,52 @@ fn layers_that_are_clipped_apart_lie_on_what_is_beneath_their_base() {
     }
 }
 
+/// The difference of two layers in a group that passes through, on the left half of the ground.
+fn passing_group(alpha: u8) -> Vec<MadeLayer> {
+    let mut within = MadeLayer { blend: *b"diff", ..colored_layer("in", 2, 4, [50; 3]) };
+    within.rect = [0, 0, 4, 2];
+    within.channels.push((-1, vec![alpha; 8]));
+    vec![gray("ground", 200), divider(3, b"norm"), within, divider(1, b"pass")]
+}
+
+#[test]
+fn what_is_clipped_to_a_group_that_passes_through_lies_on_what_that_lets_through() {
+    let said = "blended with all that its group lets through";
+    let clipped = MadeLayer { blend: *b"lddg", is_clipped: true, ..gray("clipped", 30) };
+    let shown = |layers: Vec<MadeLayer>| {
+        let back = open(&file(layers));
+        let is_told = back.notes.iter().any(|note| note.contains(said));
+        ([0, 3].map(|x| pixel(&back.document, x, 1)[0]), is_told)
+    };
+    let with = |alpha, top: &MadeLayer| [passing_group(alpha), vec![top.clone()]].concat();
+    assert_eq!(shown(with(255, &clipped)), ([180, 200], false));
+    // Where a layer covers in part, nothing here is the same.
+    assert!(shown(with(100, &clipped)).1);
+    // What shows nothing changes nothing.
+    let nothing = MadeLayer { is_clipped: true, ..empty("nothing", Vec::new()) };
+    assert_eq!(shown(with(100, &nothing)), ([180, 200], false));
+}
+
+#[test]
+fn layers_of_a_profile_that_blend_otherwise_keep_its_values() {
+    let icc = moxcms::ColorProfile::new_display_p3().encode().unwrap();
+    let layers = vec![
+        colored_layer("ground", 4, 4, [200, 100, 50]),
+        MadeLayer { blend: *b"diff", ..colored_layer("top", 4, 4, [100, 200, 250]) },
+    ];
+    let merged = [100, 100, 200].map(|v| vec![v; 16]).to_vec();
+    let resources = vec![(1039, icc)];
+    let made = Made { layers: Some(layers), merged, resources, ..plain(4, 4, [0; 3]) };
+    let back = open(&made);
+    let names: Vec<&str> = back.document.layers.iter().map(|layer| layer.name.as_str()).collect();
+    assert_eq!(names, ["ground", "top", "Color profile"]);
+    let alone = open(&Made { layers: None, ..made });
+    let [shown, exact] = [&back, &alone].map(|opened| pixel(&opened.document, 1, 1));
+    let farthest = shown.iter().zip(exact).map(|(a, b)| a.abs_diff(b)).max();
+    assert!(farthest <= Some(1), "{shown:?} {exact:?}");
+    assert!(back.notes.iter().any(|note| note.contains("“Color profile”")), "{:?}", back.notes);
+}
+
 #[test]
 fn effects_within_may_be_part_of_what_is_filled() {
     let overlay = objc(&[
