@@ -23,6 +23,7 @@ pub mod form_lines;
 pub mod grain;
 pub mod hatching;
 pub mod integrate;
+mod line_ends;
 pub mod links;
 mod maps;
 pub mod nearest_feature;

@@ -16,7 +16,7 @@ mod tests;
 
 pub use colors::PaperColors;
 pub use smooth::SmoothNormals;
-pub(in crate::surface) use smooth::{diffuse_copy, gradient_of};
+pub(in crate::surface) use smooth::{blur_copy, diffuse_copy, gradient_of};
 
 use super::Surface;
 use super::cache::HeapSize;

@@ -1,10 +1,12 @@
 //! Hatching: lines that follow the form, equally far apart on the surface, in nested levels, so that
 //! tone decides only which are drawn and how wide. Floor 2. Here: what is asked of them, their
 //! levels, and the cache. `directions` holds the field that they follow, `guided` spreads drawn
-//! strokes over it, `streamlines` places them, `placed` finds those nearby, `stipples` places points
+//! strokes over it, `streamlines` places them, `bridges` joins
+//! them over gaps, `placed` finds those nearby, `stipples` places points
 //! in their stead, `room` measures how densely they lie. Not here: tone, and strokes along them
 //! (`paint::form_drawing`).
 
+mod bridges;
 mod directions;
 mod guided;
 mod placed;
@@ -212,6 +214,10 @@ fn overlapping_area(dark: f32) -> f32 {
     let ((c0, a0), (c1, a1)) = (all[i - 1], all[i]);
     a0 + (a1 - a0) * ((dark - c0) / (c1 - c0)).max(0.0).min(1.0)
 }
+
+/// The longest taper of a line, in distances of its level: where fine lines end side by side, longer
+/// ones would leave a hole.
+pub const TAPER_OF_ROOM: f32 = 1.5;
 
 /// One of the nested levels of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]

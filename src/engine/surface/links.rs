@@ -14,6 +14,15 @@ pub const UP: u8 = 4;
 /// The neighbor below (y + 1).
 pub const DOWN: u8 = 8;
 
+/// Whether a pixel, the one to its right and those below both are one piece.
+pub fn is_one_piece(all: &Plane<u8>, x: usize, y: usize) -> bool {
+    let here = all.at(x, y);
+    here & RIGHT != 0
+        && here & DOWN != 0
+        && all.at(x + 1, y) & DOWN != 0
+        && all.at(x, y + 1) & RIGHT != 0
+}
+
 /// Slope of the surface in pixels of depth per pixel, image axes, away from the viewer.
 ///
 /// A surface z(x, y) with normal n recedes by n̄/n_z (depth grows where n̄ points).

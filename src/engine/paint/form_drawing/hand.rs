@@ -7,6 +7,7 @@ use crate::math::{Vec2, Vec3, hash, vec2};
 use crate::paint::sample::Sample;
 use crate::paint::stroke::Stroke;
 use crate::surface::form_lines::{FormLine, LinePoint};
+use crate::surface::hatching::TAPER_OF_ROOM;
 use crate::surface::{Operator, Surface};
 use std::sync::Arc;
 
@@ -104,11 +105,13 @@ impl DrawingHand {
     ///
     /// * `from`: the position of its first point on the line: whatever is left of a line has the
     ///   same samples.
+    /// * `room_px`: the distance of its neighbors at each end, which limits the tapers.
     pub(super) fn draw_part(
         &self,
         drawing: &FormDrawing,
         points: &[LinePoint],
         from: usize,
+        room_px: [f32; 2],
     ) -> Arc<Stroke> {
         let last = points.len().saturating_sub(1);
         let kept = |(i, _): &(usize, &LinePoint)| {
@@ -116,7 +119,8 @@ impl DrawingHand {
         };
         let every: Vec<LinePoint> =
             points.iter().enumerate().filter(kept).map(|(_, point)| *point).collect();
-        let (points, taper) = (self.extend_ends(every), [self.taper; 2]);
+        let points = self.extend_ends(every);
+        let taper = room_px.map(|px| self.taper.min(TAPER_OF_ROOM * px));
         self.draw(drawing, &points, taper, LEAST_OF_TONE, |point, _| point.strength)
     }
 

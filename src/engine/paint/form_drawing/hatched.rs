@@ -168,7 +168,8 @@ fn of_line(
                 strength: pressure_of(&drawing.brush, smooth[i] / covered.width),
             };
             let points: Vec<LinePoint> = (from..from + run).map(point).collect();
-            strokes.push(drawing.hand.draw_part(drawing, &points, from));
+            let room_px = [from, from + run - 1].map(|i| line.points[i].room_px);
+            strokes.push(drawing.hand.draw_part(drawing, &points, from, room_px));
         }
         from += run;
     }
@@ -187,7 +188,8 @@ fn of_point(
     let width_px = (area * 4.0 / PI).sqrt() * point.room_px;
     (width_px >= LEAST_PX).then(|| {
         let strength = pressure_of(&drawing.brush, width_px / covered.area.sqrt());
-        drawing.hand.draw_part(drawing, &[LinePoint { at: point.at, strength }], 0)
+        let dot = [LinePoint { at: point.at, strength }];
+        drawing.hand.draw_part(drawing, &dot, 0, [point.room_px; 2])
     })
 }
 

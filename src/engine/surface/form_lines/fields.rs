@@ -248,7 +248,7 @@ pub(super) fn trace_lines(
         .into_par_iter()
         .map(|y| {
             let mut steps = Vec::new();
-            for x in (0..links.width() - 1).filter(|&x| is_whole(links, x, y)) {
+            for x in (0..links.width() - 1).filter(|&x| links::is_one_piece(links, x, y)) {
                 let mut found: Vec<(u64, LinePoint)> = Vec::with_capacity(4);
                 for (a, b, key) in sides(x, y, links.width()) {
                     if let Some((t, strength)) = crossing(a, b) {
@@ -273,15 +273,6 @@ pub(super) fn trace_lines(
         is_closed: chain.is_closed,
     };
     join_steps(&steps).into_iter().map(raw).collect()
-}
-
-/// Whether the four pixels of a cell are one piece.
-fn is_whole(all: &Plane<u8>, x: usize, y: usize) -> bool {
-    let here = all.at(x, y);
-    here & links::RIGHT != 0
-        && here & links::DOWN != 0
-        && all.at(x + 1, y) & links::DOWN != 0
-        && all.at(x, y + 1) & links::RIGHT != 0
 }
 
 /// The middle of a pixel.
@@ -309,7 +300,7 @@ pub(super) fn wires(
             .into_par_iter()
             .map(|y| {
                 let mut steps = Vec::new();
-                for x in (0..links.width() - 1).filter(|&x| is_whole(links, x, y)) {
+                for x in (0..links.width() - 1).filter(|&x| links::is_one_piece(links, x, y)) {
                     wire_steps(plane, spacing, (x, y), &mut steps);
                 }
                 steps

@@ -66,6 +66,20 @@ pub(in crate::surface) fn diffuse_copy(
     plane
 }
 
+/// A map blurred along the links of a surface, about as wide as a Gaussian of σ px: for wide ones,
+/// where its soft corners do not matter.
+pub(in crate::surface) fn blur_copy(
+    plane: &Plane<f32>,
+    surface: &Surface,
+    sigma_px: f32,
+) -> Plane<f32> {
+    let mut plane = plane.clone();
+    if sigma_px > 0.0 {
+        blur_along_links(&mut plane, surface.links_plane(), sigma_px);
+    }
+    plane
+}
+
 /// Diffuses a map along links, as wide as a Gaussian of σ px: a step adds variance 2 · 0.2 px² on
 /// each axis. Wide ones are diffused on steps of several pixels first.
 pub(in crate::surface) fn diffuse(plane: &mut Plane<f32>, links: &Plane<u8>, sigma_px: f32) {

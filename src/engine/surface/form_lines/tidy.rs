@@ -5,8 +5,8 @@ mod line_grid;
 
 use super::{FormLine, LineKind, LinePoint, LineSettings};
 use crate::math::Vec2;
+use crate::surface::line_ends::{JoinedEnds, LineEnd, LineGap, StrungLine};
 use line_grid::{NearPoint, NearPoints};
-use std::collections::HashMap;
 
 /// A line as it was traced.
 #[derive(Clone, Debug)]
@@ -216,103 +216,28 @@ fn smooth_line(mut line: RawLine) -> RawLine {
     line
 }
 
-/// An end of a line: which, and whether it is its last point.
-type LineEnd = (usize, bool);
-
 /// Lines of one kind whose ends are near and point at each other, as one.
 fn join_over_gaps(lines: Vec<RawLine>) -> Vec<RawLine> {
-    let mut pairs = facing_ends(&lines);
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let mut mates: HashMap<LineEnd, LineEnd> = HashMap::new();
-    for (_, a, b) in pairs {
-        if !mates.contains_key(&a) && !mates.contains_key(&b) {
-            mates.insert(a, b);
-            mates.insert(b, a);
-        }
-    }
-    string_lines(lines, &mates)
-}
-
-/// Where an end is, and the direction in which its line would go on.
-fn place_of_end(lines: &[RawLine], (i, is_last): LineEnd) -> (Vec2, Vec2) {
-    let points = &lines[i].points;
-    let far = points.len().saturating_sub(1).min(4);
-    let (at, from) = if is_last {
-        (points[points.len() - 1].at, points[points.len() - 1 - far].at)
-    } else {
-        (points[0].at, points[far].at)
-    };
-    (at, (at - from).normalize_or_zero())
-}
-
-/// The pairs of ends of two lines of one kind that face each other over a gap, and the gap's width.
-fn facing_ends(lines: &[RawLine]) -> Vec<(f32, LineEnd, LineEnd)> {
-    let cell = |at: Vec2| (at / JOIN_PX).floor().as_ivec2();
-    let mut grid: HashMap<(i32, i32), Vec<LineEnd>> = HashMap::new();
-    let ends = || {
-        let open = lines.iter().enumerate().filter(|(_, l)| !l.is_closed && l.points.len() > 1);
-        open.flat_map(|(i, _)| [(i, false), (i, true)])
-    };
-    for own in ends() {
-        let at = cell(place_of_end(lines, own).0);
-        grid.entry((at.x, at.y)).or_default().push(own);
-    }
-    let mut pairs = Vec::new();
-    for own in ends() {
-        let (at, out) = place_of_end(lines, own);
-        let c = cell(at);
-        let near = (-1..=1)
-            .flat_map(|dy| (-1..=1).map(move |dx| (c.x + dx, c.y + dy)))
-            .filter_map(|c| grid.get(&c))
-            .flatten();
-        for other in near.copied().filter(|other| *other > own) {
-            let (there, its_out) = place_of_end(lines, other);
-            let gap = there - at;
-            let agrees = out.dot(-its_out) >= JOIN_COS
-                && (gap.length() < 0.5 || out.dot(gap.normalize_or_zero()) >= JOIN_COS);
-            let is_near = gap.length() <= JOIN_PX && lines[own.0].kind == lines[other.0].kind;
-            if is_near && agrees && own.0 != other.0 {
-                pairs.push((gap.length(), own, other));
+    let open = lines.iter().enumerate().filter(|(_, l)| !l.is_closed && l.points.len() > 1);
+    let ends = open.flat_map(|(i, line)| LineEnd::both_of(i, line.points.iter().map(|p| p.at)));
+    let ends: Vec<LineEnd> = ends.collect();
+    let mut joined = JoinedEnds::default();
+    joined.join(&ends, LineGap { px: JOIN_PX, cos: JOIN_COS }, |a, b| {
+        a.line != b.line && lines[a.line].kind == lines[b.line].kind
+    });
+    let string = |strung: StrungLine| {
+        let points = strung.parts.iter().flat_map(|(part, is_reversed)| {
+            let mut points = lines[*part].points.clone();
+            if *is_reversed {
+                points.reverse();
             }
-        }
-    }
-    pairs
-}
-
-/// Lines strung together at the ends that are mates.
-fn string_lines(lines: Vec<RawLine>, mates: &HashMap<LineEnd, LineEnd>) -> Vec<RawLine> {
-    let mut used = vec![false; lines.len()];
-    let mut all = Vec::with_capacity(lines.len());
-    // First those that begin with an open end, then rings of lines.
-    for only_open in [true, false] {
-        for i in 0..lines.len() {
-            for is_last in [false, true] {
-                if used[i] || only_open && mates.contains_key(&(i, is_last)) {
-                    continue;
-                }
-                let mut line = RawLine { points: Vec::new(), ..lines[i].clone() };
-                let mut entered = (i, is_last);
-                loop {
-                    used[entered.0] = true;
-                    let mut points = lines[entered.0].points.clone();
-                    if entered.1 {
-                        points.reverse();
-                    }
-                    line.points.extend(points);
-                    match mates.get(&(entered.0, !entered.1)) {
-                        Some(next) if !used[next.0] => entered = *next,
-                        Some(next) => {
-                            line.is_closed |= *next == (i, is_last) && !only_open;
-                            break;
-                        }
-                        None => break,
-                    }
-                }
-                all.push(line);
-            }
-        }
-    }
-    all
+            points
+        });
+        let first = &lines[strung.parts[0].0];
+        let is_closed = first.is_closed || strung.is_closed;
+        RawLine { kind: first.kind, points: points.collect(), is_closed }
+    };
+    joined.string_lines(lines.len()).into_iter().map(string).collect()
 }
 
 /// The parts of a line that no line of an earlier kind, nor a longer one, runs along.

@@ -8,7 +8,7 @@ use super::stretch::{PixelStretch, root};
 use super::{GuideLines, HatchSettings, HatchWay};
 use crate::math::{Mat2, Vec2, vec2};
 use crate::raster::Plane;
-use crate::surface::form_lines::{SmoothNormals, diffuse_copy, gradient_of};
+use crate::surface::form_lines::{SmoothNormals, blur_copy, diffuse_copy, gradient_of};
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::unwrap::Unwrapping;
 use crate::surface::{Surface, links};
@@ -16,6 +16,12 @@ use std::f32::consts::FRAC_PI_2;
 
 /// What is added to the doubled direction everywhere, per px.
 const HINT: f32 = 1e-5;
+/// A form that bends alike in all directions takes its own from clearer ones around it, up to so many
+/// times as far as directions spread.
+const AROUND: [f32; 2] = [4.0, 16.0];
+/// How clear directions are, of how much the form bends, where those around count wholly, and from
+/// where on they do not.
+const CLEAR: (f32, f32) = (0.1, 0.4);
 
 /// The field that lines follow.
 pub struct DirectionField<'s> {
@@ -33,6 +39,8 @@ pub struct Principal {
     pub angle: f32,
     /// How clear that is: half of how much more it bends there than across, per px.
     pub directed: f32,
+    /// How much it bends: the mean of both, without their signs, per px.
+    pub bend: f32,
 }
 
 /// K = −S⁻¹ (∂n̄/∂q) S⁻¹, made symmetric: the shape operator in the tangent plane.
@@ -50,8 +58,10 @@ pub fn principal(slopes: [Vec2; 2], root: Mat2) -> Principal {
     let larger = 0.5 * xy.atan2(half);
     // The larger eigenvalue is the one that bends more if the mean is positive.
     let angle = if mean >= 0.0 { larger } else { larger + FRAC_PI_2 };
-    // Half the difference of the absolute curvatures: nothing is clear on a symmetric saddle.
-    Principal { angle, directed: half.hypot(xy).min(mean.abs()) }
+    let (half, mean) = (half.hypot(xy), mean.abs());
+    // Half the difference of the absolute curvatures, and half their sum: nothing is clear on a
+    // symmetric saddle.
+    Principal { angle, directed: half.min(mean), bend: half.max(mean) }
 }
 
 impl<'s> DirectionField<'s> {
@@ -141,18 +151,6 @@ impl<'s> DirectionField<'s> {
         if way.dot(near) < 0.0 { -way } else { way }
     }
 
-    /// Whether a pixel, that beside it and those below both are one piece.
-    fn is_whole(&self, x: i32, y: i32) -> bool {
-        let size = self.surface.size();
-        let is_inside = x >= 0 && y >= 0 && x + 1 < size.width as i32 && y + 1 < size.height as i32;
-        let all = self.surface.links_plane();
-        let linked = |x: i32, y: i32, bits: u8| all.at(x as usize, y as usize) & bits == bits;
-        is_inside
-            && linked(x, y, links::RIGHT | links::DOWN)
-            && linked(x + 1, y, links::DOWN)
-            && linked(x, y + 1, links::RIGHT)
-    }
-
     /// The doubled direction between pixels, of those that are linked to the nearest.
     fn interpolate(&self, at: Vec2) -> Vec2 {
         let size = self.surface.size();
@@ -162,7 +160,9 @@ impl<'s> DirectionField<'s> {
         let (x, y) = (corner.x.floor() as i32, corner.y.floor() as i32);
         let (fx, fy) = (corner.x - x as f32, corner.y - y as f32);
         let own = (middle.0 as usize, middle.1 as usize);
-        if self.is_whole(x, y) {
+        let is_inside = x >= 0 && y >= 0 && x < w && y < h;
+        let links = self.surface.links_plane();
+        if is_inside && links::is_one_piece(links, x as usize, y as usize) {
             let (x, y) = (x as usize, y as usize);
             let row = |y: usize| {
                 let [left, right] = [x, x + 1].map(|x| Vec2::from(self.doubled.at(x, y)));
@@ -214,7 +214,8 @@ fn halve_angle(doubled: Vec2) -> Vec2 {
 }
 
 /// e^{2iθ} of the direction in which the form bends most, weighted by how clear it is and diffused;
-/// then turned.
+/// then turned. Where the form bends alike in all directions these would waver, and lines with them:
+/// there what is diffused farther is added.
 fn of_form(
     surface: &Surface,
     normals: &SmoothNormals,
@@ -234,6 +235,22 @@ fn of_form(
         found.map(move |p| of(2.0 * (p.angle + turned)) * p.directed + of(2.0 * turned) * HINT)
     };
     let spread = |plane: Plane<f32>| diffuse_copy(&plane, surface, settings.spread);
-    let (c, s) = rayon::join(|| spread(weighted(f32::cos)), || spread(weighted(f32::sin)));
+    let bend = found.map(|p| p.bend + HINT);
+    let ((c, s), bend) = rayon::join(
+        || rayon::join(|| spread(weighted(f32::cos)), || spread(weighted(f32::sin))),
+        || spread(bend),
+    );
+    let unclear = Plane::from_fn(surface.size(), |x, y| {
+        let clear = c.at(x, y).hypot(s.at(x, y)) / bend.at(x, y);
+        let t = ((CLEAR.1 - clear) / (CLEAR.1 - CLEAR.0)).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    });
+    let with_around = |near: &Plane<f32>| {
+        let far = AROUND.map(|times| blur_copy(near, surface, times * settings.spread));
+        Plane::from_fn(surface.size(), |x, y| {
+            near.at(x, y) + unclear.at(x, y) * (far[0].at(x, y) + far[1].at(x, y))
+        })
+    };
+    let (c, s) = rayon::join(|| with_around(&c), || with_around(&s));
     [c, s]
 }

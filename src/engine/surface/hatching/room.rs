@@ -2,7 +2,7 @@
 //! lines in an area, so that the width of a line that covers a share of it is known; and how much of
 //! it each point has. Floor 2.
 
-use super::{HatchLine, HatchPoint, HatchSettings};
+use super::{HatchLine, HatchPoint, HatchSettings, TAPER_OF_ROOM};
 use crate::math::{Size, Vec2};
 use crate::raster::{Plane, blur};
 use crate::surface::Surface;
@@ -24,8 +24,8 @@ pub fn measure_room(
         .enumerate()
         .map(|(i, level)| {
             let own = lines.iter().filter(|(level, _)| usize::from(*level) == i);
-            let own: Vec<&[Vec2]> = own.map(|(_, points)| &points[..]).collect();
-            density_of(surface, &own, level.apart * settings.spacing)
+            let apart = level.apart * settings.spacing;
+            density_of(surface, own.flat_map(|(_, points)| count_points(points, apart)), apart)
         })
         .collect();
     let line = |(level, points): (u8, Vec<Vec2>)| {
@@ -40,12 +40,23 @@ pub fn measure_room(
     lines.into_iter().map(line).collect()
 }
 
+/// The points of a line, and what each counts: less where it tapers.
+fn count_points(points: &[Vec2], apart: f32) -> impl Iterator<Item = (Vec2, f32)> {
+    let taper = ((TAPER_OF_ROOM * apart) as usize).min(points.len() / 2);
+    let whole = taper..points.len() - taper;
+    let counts = move |i: usize| if whole.contains(&i) { 1.0 } else { TAPERED };
+    points.iter().enumerate().map(move |(i, at)| (*at, counts(i)))
+}
+
 fn cell(v: f32) -> i32 {
     v as i32 / CELL_PX as i32
 }
 
+/// What a line covers where it tapers, of what it would cover: the mean of t (2 − t) up to 1.
+const TAPERED: f32 = 2.0 / 3.0;
+
 /// How many points there are around a place for each px² of the surface; of lines, that is their
-/// length in px.
+/// length in px, less what they lack where they taper.
 pub(super) struct PointDensity(Plane<f32>);
 
 impl PointDensity {
@@ -55,7 +66,13 @@ impl PointDensity {
 }
 
 /// The density of points that lie so far apart.
-pub(super) fn density_of(surface: &Surface, lines: &[&[Vec2]], apart: f32) -> PointDensity {
+///
+/// * `points`: and what each counts.
+pub(super) fn density_of(
+    surface: &Surface,
+    points: impl Iterator<Item = (Vec2, f32)>,
+    apart: f32,
+) -> PointDensity {
     let size = surface.size();
     let cells = Size::new(
         size.width.div_ceil(CELL_PX as u32).max(1),
@@ -66,9 +83,7 @@ pub(super) fn density_of(surface: &Surface, lines: &[&[Vec2]], apart: f32) -> Po
         (x.clamp(0, cells.width as i32 - 1)
             + y.clamp(0, cells.height as i32 - 1) * cells.width as i32) as usize
     };
-    for points in lines {
-        points.iter().for_each(|at| sums[index(cell(at.x), cell(at.y))][0] += 1.0);
-    }
+    points.for_each(|(at, counts)| sums[index(cell(at.x), cell(at.y))][0] += counts);
     for y in 0..size.height as usize {
         for (x, covered) in surface.coverage_plane().row(y).iter().enumerate() {
             if *covered > 0 {

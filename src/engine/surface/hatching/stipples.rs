@@ -54,7 +54,7 @@ pub(super) fn place_points(
     }
     let last = settings.levels().last().map_or(1.0, |level| level.apart) * settings.spacing;
     let places: Vec<Vec2> = all.placed.iter().map(|(_, at)| *at).collect();
-    let density = density_of(surface, &[&places[..]], last.max(LEAST_PX));
+    let density = density_of(surface, places.iter().map(|at| (*at, 1.0)), last.max(LEAST_PX));
     let line = |(level, at): (u8, Vec2)| {
         let room_px = density.at(at).max(1.0 / (16.0 * last * last)).sqrt().recip();
         HatchLine { level, points: vec![HatchPoint { at, room_px }] }

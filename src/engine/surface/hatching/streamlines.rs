@@ -1,9 +1,11 @@
 //! Streamlines of a field, equally far apart on the surface (Jobard and Lefer 1997, with the
 //! surface's own metric). Floor 2. Placed one after the other in a fixed order.
 
+use super::bridges::{Bridge, Bridges};
 use super::directions::DirectionField;
 use super::placed::{Nearness, PlacedPoint, PlacedPoints};
-use crate::math::{Vec2, hash, vec2};
+use crate::math::{Mat2, Vec2, hash, vec2};
+use crate::surface::line_ends::LineEnd;
 use crate::surface::{Objects, Surface};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -27,6 +29,11 @@ const SAME_FAMILY: f32 = 0.8;
 const SHORTEST: (f32, f32) = (1.5, 7.0);
 /// A step that turns by more ends a line, cos.
 const SHARPEST: f32 = 0.7;
+/// How near others are to a bridge at most, and how far from its ends that is asked, in distances.
+const BRIDGE_STOP: f32 = 0.4;
+const CLEAR_OF_ENDS: f32 = 0.5;
+/// The shortest line that may go on in itself, points.
+const RING_POINTS: usize = 40;
 /// From one place where a neighbor begins to the next along a line, in distances.
 const SEED_EVERY: f32 = 1.2;
 
@@ -40,6 +47,7 @@ pub struct Streamlines<'f> {
     lines: Vec<(u8, Vec<Vec2>)>,
     /// Which point of each line was its first.
     firsts: Vec<u32>,
+    bridges: Bridges,
 }
 
 impl<'f> Streamlines<'f> {
@@ -47,12 +55,13 @@ impl<'f> Streamlines<'f> {
     pub fn new(surface: &'f Surface, field: &'f DirectionField<'f>, family: u8) -> Self {
         let size = (surface.size().width as usize, surface.size().height as usize);
         let (objects, placed) = (surface.objects(), PlacedPoints::new(size));
-        Self { field, size, objects, family, placed, lines: Vec::new(), firsts: Vec::new() }
+        let (lines, firsts, bridges) = (Vec::new(), Vec::new(), Bridges::default());
+        Self { field, size, objects, family, placed, lines, firsts, bridges }
     }
 
     /// The lines, each with its level.
     pub fn into_lines(self) -> Vec<(u8, Vec<Vec2>)> {
-        self.lines
+        self.bridges.string_lines(self.lines)
     }
 
     /// Fills the surface with lines of a level, so far apart, between those that are there.
@@ -78,6 +87,56 @@ impl<'f> Streamlines<'f> {
                 self.follow(&mut queue, level, apart);
             }
         }
+        self.bridge_gaps(level, apart);
+    }
+
+    /// Lets lines of a level that end where others crowd them go on beyond, in lines that they face.
+    fn bridge_gaps(&mut self, level: u8, apart: f32) {
+        let own = self.lines.iter().enumerate().filter(|(_, (of, _))| *of == level);
+        let ends = own.flat_map(|(i, (_, points))| LineEnd::both_of(i, points.iter().copied()));
+        let ends: Vec<LineEnd> = ends.collect();
+        let mut bridges = std::mem::take(&mut self.bridges);
+        bridges.join(&ends, apart, |bridge| self.try_bridge(bridge, apart));
+        self.bridges = bridges;
+    }
+
+    /// Places a bridge if it lies on one piece, and no other line is in its way.
+    fn try_bridge(&mut self, bridge: &Bridge, apart: f32) -> bool {
+        let line = bridge.from.line;
+        let is_short_ring = line == bridge.to.line
+            && self.lines[line].1.len() < RING_POINTS.max(4 * bridge.points.len());
+        let whole = [bridge.from.at].into_iter().chain(bridge.points.iter().copied());
+        let whole: Vec<Vec2> = whole.chain([bridge.to.at]).collect();
+        let is_on = |pair: &[Vec2]| {
+            let pixels = [self.pixel(pair[0]), self.pixel(pair[1])];
+            matches!(pixels, [Some(a), Some(b)] if a == b || self.field.is_joined(a, b))
+        };
+        let way = |at: Vec2, next: Vec2| {
+            let root = self.pixel(at).map_or(Mat2::IDENTITY, |(x, y)| self.field.root(x, y));
+            (root * (next - at)).normalize_or_zero()
+        };
+        let placed: Vec<(Vec2, Vec2)> =
+            whole.windows(2).skip(1).map(|pair| (pair[0], way(pair[0], pair[1]))).collect();
+        let is_free = |(at, way): &(Vec2, Vec2)| {
+            let ends = [bridge.from.at, bridge.to.at].map(|end| end.distance(*at));
+            ends[0].min(ends[1]) < CLEAR_OF_ENDS * apart
+                || !self.is_crowded(*at, *way, BRIDGE_STOP * apart, (line as u32, 0))
+        };
+        let is_possible =
+            !is_short_ring && whole.windows(2).all(is_on) && placed.iter().all(is_free);
+        if is_possible {
+            let end = if bridge.from.is_last {
+                self.lines[line].1.len() as i32 - 1 - self.firsts[line] as i32
+            } else {
+                -(self.firsts[line] as i32)
+            };
+            for (i, (at, way)) in placed.into_iter().enumerate() {
+                let beyond = i as i32 + 1;
+                let along = end + if bridge.from.is_last { beyond } else { -beyond };
+                self.put(at, way, (line as u32, along));
+            }
+        }
+        is_possible
     }
 
     /// Places the neighbors of lines, and theirs.

@@ -71,8 +71,9 @@ fn lines_go_around_the_tube_of_a_torus_or_along_it() {
         let mut off: Vec<f32> = Vec::new();
         for nine in lines.lines.iter().flat_map(|line| line.points.windows(9)) {
             let from = nine[4].at - vec2(120.0, 120.0);
-            // Near both rims it is seen too much aslant.
-            if (from.length() - 70.0).abs() < 26.0 {
+            // Near the outer rim it is seen too much aslant; near the inner one it bends nearly as much
+            // the other way.
+            if (60.0..96.0).contains(&from.length()) {
                 let out = from.normalize();
                 let expected = if is_across { out.perp() } else { out };
                 let way = (nine[8].at - nine[0].at).normalize();
@@ -80,9 +81,35 @@ fn lines_go_around_the_tube_of_a_torus_or_along_it() {
             }
         }
         off.sort_by(f32::total_cmp);
-        let p99 = off[off.len() * 99 / 100];
-        assert!(off.len() > 3000 && p99 < 10.0, "{way:?}: {p99}° of {}", off.len());
+        let [p95, p99] = [95, 99].map(|share| off[off.len() * share / 100]);
+        let is_near = off.len() > 3000 && p95 < 8.0 && p99 < 15.0;
+        assert!(is_near, "{way:?}: {p95}° and {p99}° of {}", off.len());
     }
+}
+
+/// A rod along x, its radius 60 px, that ends in half a ball with faint dents.
+fn rod() -> Surface {
+    surface(Size::new(320, 140), |x, y| {
+        let (across, beyond) = ((70.0 - y) / 60.0, ((70.0 - x) / 60.0).max(0.0));
+        let rest = 1.0 - across * across - beyond * beyond;
+        let dents = if beyond > 0.0 { 0.03 } else { 0.0 };
+        let dent =
+            dents * vec2((x / 9.0).sin() * (y / 11.0).cos(), (x / 8.0).cos() * (y / 10.0).sin());
+        (rest > 0.02).then(|| (vec2(-beyond, across) + dent).extend(rest.sqrt()).normalize())
+    })
+}
+
+#[test]
+fn lines_do_not_waver_where_a_form_bends_alike_in_all_directions() {
+    let settings = HatchSettings { style: HatchStyle::Hatch, ..HatchSettings::DEFAULT };
+    let lines = rod().hatch_lines(&settings, &GuideLines::none());
+    let nines = lines.lines.iter().flat_map(|line| line.points.windows(9));
+    // As around the rod, up to where the ball turns away.
+    let on_ball = nines.filter(|nine| (35.0..70.0).contains(&nine[4].at.x));
+    let upright: Vec<f32> =
+        on_ball.map(|nine| (nine[8].at - nine[0].at).normalize().y.abs()).collect();
+    let mean = upright.iter().sum::<f32>() / upright.len() as f32;
+    assert!(upright.len() > 300 && mean > 0.8, "{mean} of {}", upright.len());
 }
 
 #[test]
