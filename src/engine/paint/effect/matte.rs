@@ -247,20 +247,34 @@ impl LayerEffect {
             BevelTechnique::Smooth => matte.clone().blurred(size),
             BevelTechnique::Chisel => chisel(&matte, size, s.bevel),
         };
-        let lit = self.light_height(&height, size, self.light(light)).blurred(s.soften);
-        let tone = |x: i32, y: i32| match s.bevel {
-            BevelStyle::Outer => lit.at(x, y) * (1.0 - matte.at(x, y)),
-            BevelStyle::Pillow => lit.at(x, y) * (2.0 * matte.at(x, y) - 1.0),
-            BevelStyle::Inner | BevelStyle::Emboss => lit.at(x, y),
+        let lit = |sunken: bool| {
+            self.light_height(&height, size, self.light(light), sunken).blurred(s.soften)
+        };
+        // Around the layer a pillow falls toward it.
+        let around = (s.bevel == BevelStyle::Pillow).then(|| lit(!s.sunken));
+        let lit = lit(s.sunken);
+        let tone = |x: i32, y: i32| match (s.bevel, &around) {
+            (BevelStyle::Outer, _) => lit.at(x, y) * (1.0 - matte.at(x, y)),
+            (_, Some(around)) => {
+                let outside = around.at(x, y);
+                outside + (lit.at(x, y) - outside) * matte.at(x, y)
+            }
+            _ => lit.at(x, y),
         };
         Amounts::of(rect, tone)
     }
 
-    fn light_height(&self, height: &Matte, size: f32, light: EffectLight) -> Matte {
+    fn light_height(
+        &self,
+        height: &Matte,
+        size: f32,
+        light: EffectLight,
+        is_sunken: bool,
+    ) -> Matte {
         let (sin, cos) = light.angle.to_radians().sin_cos();
         let (up, flat) = light.altitude.to_radians().sin_cos();
         let toward = Vec3::new(flat * cos, -flat * sin, up);
-        let slope = self.settings.depth * size * if self.settings.sunken { -0.5 } else { 0.5 };
+        let slope = self.settings.depth * size * if is_sunken { -0.5 } else { 0.5 };
         let gloss = (!self.contour.is_straight()).then(|| self.contour.spline());
         let shine = |v: f32| gloss.as_ref().map_or(v, |curve| curve.at(v.max(0.0).min(1.0)));
         let level = shine(up);

@@ -121,6 +121,29 @@ fn a_bevel_is_light_toward_its_light_and_dark_away_from_it() {
     assert!(amount(&sunken, 32, 28) < -0.3);
 }
 
+/// As in a picture of Photoshop: what leans neither to the light nor away from it gets less of it than
+/// a flat place, around the layer too.
+#[test]
+fn a_pillow_is_sunken_around_its_layer() {
+    let pillow = of(EffectKind::Bevel, |s| {
+        (s.document_light, s.angle, s.altitude, s.size) = (false, 180.0, 30.0, 6.0);
+        s.bevel = BevelStyle::Pillow;
+    });
+    let emboss = of(EffectKind::Bevel, |s| {
+        *s = EffectSettings { bevel: BevelStyle::Emboss, ..pillow.settings };
+    });
+    let sunken = of(EffectKind::Bevel, |s| {
+        *s = EffectSettings { sunken: true, ..emboss.settings };
+    });
+    for (x, y) in [(32, 25), (25, 32), (38, 32)] {
+        assert_eq!(amount(&pillow, x, y), amount(&sunken, x, y), "{x}, {y}");
+    }
+    for (x, y) in [(32, 28), (28, 32), (35, 32)] {
+        assert_eq!(amount(&pillow, x, y), amount(&emboss, x, y), "{x}, {y}");
+    }
+    assert!(amount(&pillow, 32, 25) < -0.01 && amount(&pillow, 25, 32) < -0.1);
+}
+
 #[test]
 fn lengths_are_scaled_and_amounts_are_not() {
     let shadow = of(EffectKind::DropShadow, |s| (s.size, s.distance) = (7.0, 9.0)).scaled(2.0);
