@@ -6,7 +6,7 @@ use super::Surface;
 use super::cache::{Cache, HeapSize, RecentCache};
 use super::chunks::BallPlaces;
 use super::curvature::{Curvature, CurvatureRims, Kappa};
-use super::form_lines::{FormLines, LineKey, SmoothNormals};
+use super::form_lines::{FormLines, LineKey, SmoothNormals, UnlitLines};
 use super::hatching::{HatchKey, HatchLines};
 use super::objects::Objects;
 use super::ray::RayMap;
@@ -62,6 +62,8 @@ caches! {
     ball_places: RecentCache<[u32; 4], BallPlaces>,
     /// Lines where an illustrator puts them, by what is asked of them.
     form_lines: RecentCache<LineKey, FormLines>,
+    /// Those of them that stay when the light moves.
+    unlit_lines: RecentCache<LineKey, UnlitLines>,
     /// Hatching lines, by what is asked of them.
     hatch_lines: RecentCache<HatchKey, HatchLines>,
     /// Normals blurred within each piece, by σ, as bits.

@@ -115,8 +115,7 @@ impl LineSettings {
     }
 
     fn key(&self, colors: Option<&Arc<PaperColors>>) -> LineKey {
-        let is_lit =
-            [LineKind::Light, LineKind::Shadow].into_iter().any(|kind| self.kinds.has_kind(kind));
+        let is_lit = LIT.into_iter().any(|kind| self.kinds.has_kind(kind));
         let light = if is_lit { self.light.normalize_or(Vec3::Z).to_array() } else { [0.0; 3] };
         let [x, y, z] = light.map(f32::to_bits);
         let own = [self.smooth, self.detail, self.shortest, self.gap, self.wires];
@@ -165,6 +164,10 @@ impl FormLine {
         let closing = first.zip(last).filter(|_| self.is_closed);
         steps.sum::<f32>() + closing.map_or(0.0, |(a, b)| a.at.distance(b.at))
     }
+
+    fn bytes(&self) -> u64 {
+        (size_of::<Self>() + self.points.len() * size_of::<LinePoint>()) as u64
+    }
 }
 
 /// The lines of a surface.
@@ -176,32 +179,63 @@ pub struct FormLines {
 
 impl HeapSize for FormLines {
     fn heap_bytes(&self) -> u64 {
-        let points = |line: &FormLine| line.points.len() * size_of::<LinePoint>();
-        let lines = self.lines.iter().map(|line| size_of::<FormLine>() + points(line));
-        lines.sum::<usize>() as u64
+        self.lines.iter().map(FormLine::bytes).sum()
     }
 }
 
 impl FormLines {
     fn of(surface: &Surface, settings: &LineSettings, colors: Option<&Arc<PaperColors>>) -> Self {
-        let mut lines = outlines::trace(surface, settings);
-        let is_smooth = |kind| settings.kinds.has_kind(kind);
-        let needs_normals = [LineKind::Valley, LineKind::Suggestive, LineKind::Ridge]
-            .into_iter()
-            .chain([LineKind::Light, LineKind::Shadow])
-            .any(is_smooth);
-        if needs_normals {
+        let unlit = surface.unlit_lines(settings, colors);
+        let mut lines = unlit.before.clone();
+        let mut more = unlit.after.clone();
+        if LIT.into_iter().any(|kind| settings.kinds.has_kind(kind)) {
             let normals = surface.smooth_normals(settings.smooth);
-            lines.extend(FormCurves { surface, normals: &normals, settings }.trace());
+            let traced = FormCurves { surface, normals: &normals, settings }.trace_light();
+            more.extend(tidy::smooth_lines(traced, settings));
         }
-        if is_smooth(LineKind::Wire) {
+        tidy::add_lines(&mut lines, more, settings);
+        Self { lines: tidy::finish_lines(lines, settings) }
+    }
+}
+
+/// The kinds that follow the light.
+const LIT: [LineKind; 2] = [LineKind::Light, LineKind::Shadow];
+
+/// The lines that stay where they are when the light moves.
+#[derive(Debug)]
+pub(in crate::surface) struct UnlitLines {
+    /// Of kinds before those of the light: no two at one place.
+    before: Vec<FormLine>,
+    /// Of kinds after them, wherever they are.
+    after: Vec<FormLine>,
+}
+
+impl UnlitLines {
+    fn of(surface: &Surface, settings: &LineSettings, colors: Option<&Arc<PaperColors>>) -> Self {
+        let has_kind = |kind| settings.kinds.has_kind(kind);
+        let mut traced = outlines::trace(surface, settings);
+        if [LineKind::Valley, LineKind::Suggestive, LineKind::Ridge].into_iter().any(has_kind) {
+            let normals = surface.smooth_normals(settings.smooth);
+            traced.extend(FormCurves { surface, normals: &normals, settings }.trace_form());
+        }
+        if has_kind(LineKind::Wire) {
             let unwrapped = surface.unwrapping(UnwrapSettings::OF_WIRES);
-            lines.extend(fields::wires(surface, &unwrapped, settings));
+            traced.extend(fields::wires(surface, &unwrapped, settings));
         }
         if let Some(colors) = colors {
-            lines.extend(colors.trace(surface.size(), settings));
+            traced.extend(colors.trace(surface.size(), settings));
         }
-        Self { lines: tidy::tidy_lines(lines, settings) }
+        let smooth = tidy::smooth_lines(traced, settings);
+        let (first, after) = smooth.into_iter().partition(|line| line.kind < LIT[0]);
+        let mut before = Vec::new();
+        tidy::add_lines(&mut before, first, settings);
+        Self { before, after }
+    }
+}
+
+impl HeapSize for UnlitLines {
+    fn heap_bytes(&self) -> u64 {
+        self.before.iter().chain(&self.after).map(FormLine::bytes).sum()
     }
 }
 
@@ -221,6 +255,19 @@ impl Surface {
         let colors = colors.filter(|_| settings.kinds.has_kind(LineKind::Color));
         let compute = |_| FormLines::of(self, settings, colors);
         self.derived.form_lines.get_or_compute(settings.key(colors), KEPT, compute)
+    }
+
+    /// What stays of its lines when the light moves, cached.
+    fn unlit_lines(
+        &self,
+        settings: &LineSettings,
+        colors: Option<&Arc<PaperColors>>,
+    ) -> Arc<UnlitLines> {
+        const KEPT: usize = 2;
+        let kinds = LIT.into_iter().fold(settings.kinds, |kinds, kind| kinds.with(kind, false));
+        let settings = LineSettings { kinds, ..*settings };
+        let compute = |_| UnlitLines::of(self, &settings, colors);
+        self.derived.unlit_lines.get_or_compute(settings.key(colors), KEPT, compute)
     }
 
     /// Its normals, blurred within each piece. Cached.

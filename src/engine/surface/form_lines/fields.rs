@@ -110,8 +110,8 @@ pub(super) struct Crest {
 }
 
 impl FormCurves<'_> {
-    /// The curves of every kind that is wanted.
-    pub fn trace(&self) -> Vec<RawLine> {
+    /// The curves of the form itself, of every kind that is wanted.
+    pub fn trace_form(&self) -> Vec<RawLine> {
         let wants = |kind| self.settings.kinds.has_kind(kind);
         let mut lines = Vec::new();
         if wants(LineKind::Valley) || wants(LineKind::Ridge) {
@@ -120,6 +120,13 @@ impl FormCurves<'_> {
         if wants(LineKind::Suggestive) {
             lines.extend(self.suggestive());
         }
+        lines
+    }
+
+    /// Those of its light.
+    pub fn trace_light(&self) -> Vec<RawLine> {
+        let wants = |kind| self.settings.kinds.has_kind(kind);
+        let mut lines = Vec::new();
         if wants(LineKind::Light) {
             lines.extend(self.light());
         }

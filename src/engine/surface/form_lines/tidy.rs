@@ -35,37 +35,51 @@ const JOINT_PX: f32 = 3.5;
 /// Points at the ends of a line that double nothing: other lines go on there.
 const ENDS: usize = 3;
 
-/// Lines as a hand would draw them, by kind, the longest first.
-pub fn tidy_lines(lines: Vec<RawLine>, settings: &LineSettings) -> Vec<FormLine> {
+/// Traced lines that are clear enough, smooth, joined over gaps and of some length.
+pub fn smooth_lines(lines: Vec<RawLine>, settings: &LineSettings) -> Vec<FormLine> {
     let clear = lines.into_iter().flat_map(|line| clear_runs(line, settings.detail));
     let smooth = clear.flat_map(|line| {
         let even = RawLine { points: resample(&line.points, line.is_closed), ..line };
         split_at_corners(even).into_iter().map(smooth_line)
     });
     let joined = join_over_gaps(smooth.collect());
-    let mut long: Vec<FormLine> =
-        joined.into_iter().map(to_line).filter(|line| is_long(line, settings)).collect();
+    joined.into_iter().map(to_line).filter(|line| is_long(line, settings)).collect()
+}
+
+/// Adds lines, by kind and the longest first, where none is yet.
+///
+/// * `lines`: of earlier kinds.
+pub fn add_lines(lines: &mut Vec<FormLine>, mut more: Vec<FormLine>, settings: &LineSettings) {
     // Ties are broken by place, so that the order of tracing does not matter.
     let key = |line: &FormLine| {
         let first = line.points.first().map_or([0; 2], |p| p.at.to_array().map(f32::to_bits));
         (line.kind, std::cmp::Reverse(line.points.len()), first)
     };
-    long.sort_by_key(key);
+    more.sort_by_key(key);
+    if more.is_empty() {
+        return;
+    }
     let mut known = NearPoints::default();
-    let mut left = Vec::new();
-    for (i, line) in long.into_iter().enumerate() {
+    for (i, line) in lines.iter().enumerate() {
+        known.add(i as u32, line.kind, &line.points);
+    }
+    for line in more {
         for part in without_doubles(line, &known, settings) {
             if is_long(&part, settings) {
-                known.add(i as u32, part.kind, &part.points);
-                left.push(part);
+                known.add(lines.len() as u32, part.kind, &part.points);
+                lines.push(part);
             }
         }
     }
+}
+
+/// Lines as a hand would draw them: with gaps behind what is in front, and joined where they meet.
+pub fn finish_lines(mut lines: Vec<FormLine>, settings: &LineSettings) -> Vec<FormLine> {
     if settings.gap > 0.0 {
-        left = open_gaps(left, settings);
+        lines = open_gaps(lines, settings);
     }
-    find_joints(&mut left);
-    left
+    find_joints(&mut lines);
+    lines
 }
 
 fn is_long(line: &FormLine, settings: &LineSettings) -> bool {
