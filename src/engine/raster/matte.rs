@@ -87,7 +87,7 @@ impl Matte {
     /// What lies within a distance of what is covered: max over q of clamp(by + a(q) − |p − q|), a
     /// partly covered pixel reaching as much less far.
     ///
-    /// Lengths are those of ways in the eight [`STEPS`] and those opposite, as in Photoshop's
+    /// Lengths are those of ways in the eight `STEPS` and those opposite, as in Photoshop's
     /// pictures: up to 2.7 % longer than straight ones.
     pub fn dilated(self, by_px: f32) -> Self {
         self.reaching(by_px, |reach, _| reach.min(1.0))
