@@ -114,8 +114,13 @@ impl LineSettings {
         next
     }
 
+    /// Whether some of the lines follow the light.
+    fn is_lit(&self) -> bool {
+        LIT.into_iter().any(|kind| self.kinds.has_kind(kind))
+    }
+
     fn key(&self, colors: Option<&Arc<PaperColors>>) -> LineKey {
-        let is_lit = LIT.into_iter().any(|kind| self.kinds.has_kind(kind));
+        let is_lit = self.is_lit();
         let light = if is_lit { self.light.normalize_or(Vec3::Z).to_array() } else { [0.0; 3] };
         let [x, y, z] = light.map(f32::to_bits);
         let own = [self.smooth, self.detail, self.shortest, self.gap, self.wires];
@@ -188,7 +193,7 @@ impl FormLines {
         let unlit = surface.unlit_lines(settings, colors);
         let mut lines = unlit.before.clone();
         let mut more = unlit.after.clone();
-        if LIT.into_iter().any(|kind| settings.kinds.has_kind(kind)) {
+        if settings.is_lit() {
             let normals = surface.smooth_normals(settings.smooth);
             let traced = FormCurves { surface, normals: &normals, settings }.trace_light();
             more.extend(tidy::smooth_lines(traced, settings));

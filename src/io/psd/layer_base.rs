@@ -68,15 +68,14 @@ impl LayerBase {
     }
 
     /// What is clipped to a group that passes through lies on all that the group lets through, where
-    /// its layers cover that wholly. Where they cover it in part, nothing here is the same.
+    /// its layers cover that wholly. Where they cover it in part, or adjust it, nothing here is the
+    /// same.
     pub fn clip_to_passing(&mut self, layers: &[Arc<Layer>], size: Size) {
-        let Some(group) = layers.get(self.index) else { return };
-        let alone = Document { layers: vec![group.clone()], ..Document::empty(size) };
-        let adjusts =
-            |layer: &Layer| layer.visible && matches!(layer.content, Content::Adjustment(_));
-        if alone.walk().iter().any(|(_, layer)| adjusts(layer)) {
+        if self.has_adjustments(layers) {
             return;
         }
+        let Some(group) = layers.get(self.index) else { return };
+        let alone = Document { layers: vec![group.clone()], ..Document::empty(size) };
         let Some(shown) = flatten(&alone, &Progress::default()) else { return };
         let alphas = shown.to_straight_rgba(size.rect()).into_iter().skip(3).step_by(4);
         let alphas: Vec<u8> = alphas.collect();
