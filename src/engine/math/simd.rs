@@ -46,6 +46,24 @@ macro_rules! widest {
     )+};
 }
 
+/// The whole part of a number, by the conversion that the compiler vectorizes. On desktops that is
+/// the unchecked one: 0.5 ns a pixel instead of 4. In a browser it is the checked one: the unchecked
+/// one is an instruction that may trap, which there is for single numbers only.
+///
+/// # Safety
+///
+/// The whole part fits an `i32`.
+#[inline(always)]
+pub unsafe fn truncate(value: f32) -> i32 {
+    #[cfg(target_family = "wasm")]
+    return value as i32;
+    #[cfg(not(target_family = "wasm"))]
+    // SAFETY: the caller's.
+    unsafe {
+        value.to_int_unchecked()
+    }
+}
+
 /// Prefetches the cache lines of a slice that will be read soon. Rows of a tile lie pages apart,
 /// where the processor's own prefetching stops; a hint that has an effect only on x86-64.
 #[inline(always)]
