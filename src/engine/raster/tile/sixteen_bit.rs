@@ -76,12 +76,17 @@ crate::widest! {
     pub fn to_bytes(rows16: &[Row16], bytes: &mut [u8]) -> bool {
         let mut off = 0;
         for (row, bytes) in rows16.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
+            // Whole pixels: bytes four apart are written one by one.
+            let mut packed = [0u32; TILE];
             for (c, channel) in row.iter().enumerate() {
                 for x in 0..TILE {
                     let byte = byte_of(channel[x]);
-                    bytes[4 * x + c] = byte;
+                    packed[x] |= u32::from(byte) << (8 * c);
                     off |= channel[x] ^ (u16::from(byte) * LEVEL);
                 }
+            }
+            for (bytes, packed) in bytes.chunks_exact_mut(4).zip(packed) {
+                bytes.copy_from_slice(&packed.to_le_bytes());
             }
         }
         off == 0
