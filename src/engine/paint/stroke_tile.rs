@@ -182,6 +182,12 @@ impl StrokeTile {
         }
     }
 
+    /// Whether no pixel has been reached by a dab: nothing is covered.
+    pub fn is_clear(&self) -> bool {
+        let is_clear = |planes: &PaintPlanes| planes.reach.iter().all(|reach| *reach == 0.0);
+        is_clear(&self.light) && self.dark.as_ref().is_none_or(is_clear)
+    }
+
     /// Merges the two parts of each pixel: nothing more can be painted.
     fn join(&mut self) {
         let Some((grain, mut dark)) = self.grain.take().zip(self.dark.take()) else { return };

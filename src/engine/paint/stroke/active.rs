@@ -62,6 +62,8 @@ struct ActiveTile {
     stroke_tiles: Vec<Option<StrokeTile>>,
     /// What their grains leave of each pixel.
     grains: Vec<Option<Arc<GrainTile>>>,
+    /// What was shown last, if there was paint of theirs.
+    shown: Option<Option<Arc<Tile>>>,
 }
 
 /// What a batch of samples adds to one stroke.
@@ -123,7 +125,7 @@ impl ActiveStroke {
     }
 
     /// The stroke tile to be shown: with the tail. Settled dabs are added to `stroke_tile` for
-    /// good.
+    /// good. `None` where there is no paint.
     fn compose_shown(
         &self,
         fresh: &NewDabs,
@@ -143,13 +145,14 @@ impl ActiveStroke {
         };
         if !settled.is_empty() {
             add(settled, stroke_tile.get_or_insert_with(empty));
+            stroke_tile.take_if(|stroke_tile| stroke_tile.is_clear());
         }
         if tail.is_empty() {
             return stroke_tile.clone();
         }
         let mut shown = stroke_tile.clone().unwrap_or_else(empty);
         add(tail, &mut shown);
-        Some(shown)
+        Some(shown).filter(|shown| !shown.is_clear())
     }
 
     fn part(&self, scene: &Scene) -> CanvasPart {
@@ -199,7 +202,8 @@ impl ActiveStrokes {
         Self { scene: scene.clone(), backdrop, strokes, tiles: HashMap::new() }
     }
 
-    /// Takes the next samples of each stroke; returns the tiles of the layer that changed.
+    /// Takes the next samples of each stroke; returns the tiles of the layer that changed; of
+    /// a stroke layer all that they may touch.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         let Self { scene, backdrop, strokes, tiles } = self;
         let mut changed: Vec<TileAt> =
@@ -218,32 +222,51 @@ impl ActiveStrokes {
             beneath: None,
             stroke_tiles: strokes.iter().map(|_| None).collect(),
             grains: strokes.iter().map(|_| None).collect(),
+            shown: None,
         };
         let mut active_tiles: Vec<_> =
             changed.iter().map(|at| (*at, tiles.remove(at).unwrap_or_else(dry))).collect();
+        // Bent dabs may touch many tiles, and cover pixels of few. Behind contours a stroke layer may
+        // have paint where its tile has none.
+        let shows_all = matches!(backdrop, Backdrop::Strokes(_));
         let paint = |scratch: &mut DabScratch, (at, tile): &mut (TileAt, ActiveTile)| {
-            let mut pixels = backdrop.pixels(scene, *at, &mut tile.beneath);
             let cached = tile.stroke_tiles.iter_mut().zip(&mut tile.grains);
+            let mut shown = Vec::with_capacity(strokes.len());
             for ((stroke, fresh), cached) in strokes.iter().zip(&fresh).zip(cached) {
                 let selected = stroke.selection.as_ref().map(|selection| selection.tile(*at));
                 if matches!(selected, Some(None)) {
                     continue;
                 }
-                if let Some(mut shown) = stroke.compose_shown(fresh, *at, cached, scratch) {
-                    shown.limit_to(&stroke.part(scene), *at);
-                    if let Some(selected) = selected.flatten() {
-                        shown.select(&selected);
-                    }
-                    shown.blend_over(
-                        &mut pixels,
-                        *at,
-                        StrokeBlend::of(&stroke.brush, stroke.color),
-                    );
-                }
+                let stroke_tile = stroke.compose_shown(fresh, *at, cached, scratch);
+                shown.extend(
+                    stroke_tile.map(|stroke_tile| (stroke, selected.flatten(), stroke_tile)),
+                );
             }
-            (*at, backdrop.to_tile(*at, &pixels).map(Arc::new))
+            let before = tile.shown.take();
+            let is_painted = !shown.is_empty();
+            if !shows_all && !is_painted && before.is_none() {
+                return None;
+            }
+            let mut pixels = backdrop.pixels(scene, *at, &mut tile.beneath);
+            for (stroke, selected, mut stroke_tile) in shown {
+                stroke_tile.limit_to(&stroke.part(scene), *at);
+                if let Some(selected) = selected {
+                    stroke_tile.select(&selected);
+                }
+                let blend = StrokeBlend::of(&stroke.brush, stroke.color);
+                stroke_tile.blend_over(&mut pixels, *at, blend);
+            }
+            let pixels = backdrop.to_tile(*at, &pixels).map(Arc::new);
+            tile.shown = is_painted.then(|| pixels.clone());
+            let is_same = match (&before, &pixels) {
+                (Some(Some(before)), Some(pixels)) => before.is_same(pixels),
+                (Some(before), pixels) => before.is_none() && pixels.is_none(),
+                (None, _) => false,
+            };
+            (shows_all || !is_same).then_some((*at, pixels))
         };
-        let painted = active_tiles.par_iter_mut().map_init(DabScratch::default, paint).collect();
+        let painted = active_tiles.par_iter_mut().map_init(DabScratch::default, paint);
+        let painted = painted.flatten_iter().collect();
         tiles.extend(active_tiles);
         painted
     }

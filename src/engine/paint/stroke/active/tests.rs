@@ -103,3 +103,43 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn on_a_paint_layer_the_tiles_that_stay_as_they_are_are_left_out() {
+    let scene = waves();
+    let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
+    let red = Color::parse("#c04020").unwrap();
+    let paint = |strokes: &[Arc<Stroke>]| {
+        let mut grid = TileGrid::for_rect(SIZE.rect());
+        for at in TileAt::covering(SIZE.rect()) {
+            let pixels = render_pixels(strokes, &scene, at);
+            grid.set(at, pixels.and_then(|pixels| pixels.to_tile_over(None)).map(Arc::new));
+        }
+        grid
+    };
+    let under = Stroke::new(Brush::default(), operator, red, samples(5, 6));
+    let layer = paint(&[Arc::new(under)]);
+    for (i, brush) in brushes().into_iter().enumerate() {
+        let like = [Stroke::new(brush.clone(), operator, red, Vec::new())];
+        // At once, and sample by sample: then the end of the curve comes and goes.
+        let begin = || ActiveStrokes::new(&like, Backdrop::Pixels(layer.clone()), &scene);
+        let (mut many, mut few) = (begin(), begin());
+        let samples = samples(11, 24);
+        let (mut at_once, mut one_by_one) = (layer.clone(), layer.clone());
+        let show = |shown: &mut TileGrid, tiles: Vec<(TileAt, Option<Arc<Tile>>)>| {
+            tiles.into_iter().for_each(|(at, tile)| shown.set(at, tile));
+        };
+        show(&mut at_once, many.draw(std::slice::from_ref(&samples)));
+        for sample in samples {
+            show(&mut one_by_one, few.draw(&[vec![sample]]));
+        }
+        assert!(few.draw(&[]).is_empty(), "nothing new comes without samples");
+        for at in TileAt::covering(SIZE.rect()) {
+            let same = match (at_once.tile(at), one_by_one.tile(at)) {
+                (Some(a), Some(b)) => a.is_same(b),
+                (a, b) => a.is_none() && b.is_none(),
+            };
+            assert!(same, "{at:?} of brush {i}");
+        }
+    }
+}
