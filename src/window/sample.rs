@@ -188,24 +188,46 @@ fn ring(p: Vec2) -> Option<Seen> {
         let at = own(z);
         (at.truncate().length() - large).hypot(at.z) - small
     };
-    let (near, far, steps) = (0.42, -0.42, 72);
-    let at = |i: i32| near + (far - near) * i as f32 / steps as f32;
-    // At a rim the line of sight may enter and leave between two steps: near it, smaller steps are
-    // taken.
-    let (outer, inner) = (0..steps).find_map(|i| {
-        if outside(at(i + 1)) < 0.0 {
-            return Some((at(i), at(i + 1)));
-        }
-        let is_nearest = outside(at(i + 1)) <= outside(at(i)).min(outside(at(i + 2)));
-        let nearest = is_nearest.then(|| lowest(&outside, at(i), at(i + 2)))?;
-        (outside(nearest) < 0.0).then_some((at(i), nearest))
-    })?;
+    let (outer, inner) = enter(&outside)?;
     let height = crossing(&outside, outer, inner);
     let on = own(height);
     let ahead = 1.0 - large / on.truncate().length();
     let (x, y, h) = (on.x * ahead, on.y * ahead, on.z);
     let normal = vec3(x, h * sin - y * cos, y * sin + h * cos).normalize_or(Vec3::Z);
     Some(Seen { height, normal })
+}
+
+/// Two places on a line of sight, one before a shape and one in it.
+///
+/// * `outside`: the distance from the shape; negative within.
+fn enter(outside: &impl Fn(f32) -> f32) -> Option<(f32, f32)> {
+    let (near, far, steps) = (0.42, -0.42, 72);
+    let at = |i: i32| near + (far - near) * i as f32 / steps as f32;
+    let step = (near - far) / steps as f32;
+    let mut i = 0;
+    while i < steps {
+        let ahead = outside(at(i + 1));
+        if ahead < 0.0 {
+            return Some((at(i), at(i + 1)));
+        }
+        // Nothing is nearer than that, so these steps and one more meet nothing. Distances are
+        // rounded.
+        let free = ((0.999 * ahead - 1e-5) / step) as i32;
+        if free > 0 {
+            i += free;
+            continue;
+        }
+        // At a rim the line of sight may enter and leave between two steps: near it, smaller steps
+        // are taken.
+        if ahead <= outside(at(i)).min(outside(at(i + 2))) {
+            let nearest = lowest(outside, at(i), at(i + 2));
+            if outside(nearest) < 0.0 {
+                return Some((at(i), nearest));
+            }
+        }
+        i += 1;
+    }
+    None
 }
 
 /// The minimum of a function that has one between two places.
@@ -270,6 +292,24 @@ mod tests {
         let n = surface.normal(middle.x as usize, middle.y as usize);
         assert!(n.z > 0.9, "{n}");
         assert!(!opened.open.is_dirty(), "there is nothing to save yet");
+    }
+
+    #[test]
+    fn the_steps_that_are_left_out_meet_nothing() {
+        let each = |outside: &dyn Fn(f32) -> f32| {
+            let at = |i: i32| 0.42 - 0.84 * i as f32 / 72.0;
+            (0..72).find(|&i| {
+                let nearest = lowest(&outside, at(i), at(i + 2));
+                outside(at(i + 1)) < 0.0 || outside(nearest) < 0.0
+            })
+        };
+        for i in 0..64 * 64 {
+            let q = vec2((i % 64) as f32, (i / 64) as f32) / 64.0 - 0.5;
+            let outside = |z: f32| {
+                (vec2(q.x, 0.4 * q.y + 0.9 * z).length() - 0.3).hypot(0.9 * q.y - 0.4 * z) - 0.1
+            };
+            assert_eq!(enter(&outside).is_some(), each(&outside).is_some(), "{q}");
+        }
     }
 
     #[test]
