@@ -49,8 +49,9 @@ pub fn sleep(time: Duration) {
     std::thread::sleep(time);
 }
 
-/// The time between two looks at a channel.
-const LOOK_AGAIN: Duration = Duration::from_millis(2);
+/// The times between two looks at a channel: an eighth of what was waited, between these. What comes
+/// soon is waited for by a frame.
+const LOOK_AGAIN: (Duration, Duration) = (Duration::from_micros(50), Duration::from_millis(4));
 /// Whoever is as patient as this waits without a limit.
 const FOREVER: Duration = Duration::from_secs(1 << 30);
 
@@ -61,13 +62,17 @@ pub fn recv_timeout<T>(from: &Receiver<T>, patience: Duration) -> Result<T, Recv
     }
     let began = super::Instant::now();
     loop {
+        let waited = began.elapsed();
         match from.try_recv() {
             Ok(received) => return Ok(received),
             Err(TryRecvError::Disconnected) => return Err(RecvTimeoutError::Disconnected),
-            Err(TryRecvError::Empty) if began.elapsed() >= patience => {
+            Err(TryRecvError::Empty) if waited >= patience => {
                 return Err(RecvTimeoutError::Timeout);
             }
-            Err(TryRecvError::Empty) => sleep(LOOK_AGAIN),
+            Err(TryRecvError::Empty) => {
+                let pause = (waited / 8).clamp(LOOK_AGAIN.0, LOOK_AGAIN.1);
+                sleep(pause.min(patience - waited))
+            }
         }
     }
 }
