@@ -53,26 +53,35 @@ class Workers {
   }
 }
 
-/** Compiles the program while it is loaded, and shows how far that is. */
+/** Shows how much of a response has come. */
+async function showProgress(response) {
+  const total = Number(response.headers.get("content-length"));
+  const reader = response.body.getReader();
+  let loaded = 0;
+  for (let part = await reader.read(); !part.done; part = await reader.read()) {
+    loaded += part.value.byteLength;
+    if (total > 0 && loaded <= total) {
+      progress.max = total;
+      progress.value = loaded;
+    }
+  }
+}
+
+/**
+ * Compiles the program while it is loaded. Of the response itself, not of a copy, the browser keeps what
+ * it has compiled for the next visit.
+ */
 async function compiled() {
   const response = await fetch("rilievo_bg.wasm");
   if (!response.ok) {
     throw new Error(`rilievo_bg.wasm: ${response.status} ${response.statusText}`);
   }
-  const total = Number(response.headers.get("content-length"));
-  let loaded = 0;
-  const counted = new TransformStream({
-    transform(chunk, controller) {
-      loaded += chunk.byteLength;
-      if (total > 0 && loaded <= total) {
-        progress.max = total;
-        progress.value = loaded;
-      }
-      controller.enqueue(chunk);
-    },
-  });
-  const headers = { "content-type": "application/wasm" };
-  return WebAssembly.compileStreaming(new Response(response.body.pipeThrough(counted), { headers }));
+  showProgress(response.clone()).catch(() => {});
+  const type = "application/wasm";
+  if (response.headers.get("content-type") === type) {
+    return WebAssembly.compileStreaming(response);
+  }
+  return WebAssembly.compileStreaming(new Response(response.body, { headers: { "content-type": type } }));
 }
 
 /** A number for this page that no other open one has: it is held as a lock, so that others know it lives. */
