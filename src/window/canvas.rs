@@ -153,6 +153,11 @@ impl Canvas {
         self.hand.has_felt_fingers()
     }
 
+    /// Whether what is in sight of the document in front is still to be painted.
+    pub fn is_painting(&self, session: &Session) -> bool {
+        self.is_busy || session.active().is_some_and(|open| self.key != Some(open.key))
+    }
+
     /// Works as the user prefers.
     pub fn prefer(&mut self, preferences: &Preferences) {
         self.hand.prefer(preferences);

@@ -15,6 +15,8 @@ pub struct Swatches {
     thread: Option<SwatchThread>,
     requested: HashSet<String>,
     made: HashMap<String, TextureHandle>,
+    /// None is begun at present: a document is opened or painted, which is waited for.
+    pub is_held: bool,
     /// Errors to report once.
     pub trouble: Option<Error>,
 }
@@ -39,7 +41,7 @@ impl Swatches {
         for (key, image) in thread.coming.try_iter() {
             self.made.insert(key.clone(), ctx.load_texture(key, image, TextureOptions::LINEAR));
         }
-        if self.requested.insert(preset.key.clone()) {
+        if !self.is_held && self.requested.insert(preset.key.clone()) {
             // If the thread has ended, nothing is painted.
             let _ = thread.wanted.send(preset.clone());
         }

@@ -46,6 +46,8 @@ pub struct Thumbnails {
     pub parts: PartPictures,
     /// Of the moods.
     pub moods: MoodPictures,
+    /// None is begun at present.
+    is_held: bool,
     /// Errors to report once.
     pub trouble: Option<Error>,
 }
@@ -81,20 +83,26 @@ impl Thumbnails {
             masks: HashMap::new(),
             parts: PartPictures::default(),
             moods: MoodPictures::default(),
+            is_held: false,
             trouble,
         }
     }
 
     /// Takes what was made.
-    pub fn collect(&mut self, ctx: &egui::Context) {
+    ///
+    /// * `is_painting`: the canvas is behind its picture. Then and while something is dragged, which
+    ///   changes a layer in every frame, no thumbnail is begun: all of them would take the threads
+    ///   that paint what the user looks at.
+    pub fn collect(&mut self, ctx: &egui::Context, is_painting: bool) {
+        self.is_held = is_painting || ctx.input(|input| input.pointer.any_down());
         for Thumbnail { id, image } in self.done.try_iter() {
             let texture = ctx.load_texture(format!("layer {id:?}"), image, TextureOptions::LINEAR);
             self.made.insert(id, texture);
         }
     }
 
-    /// The thumbnail of a layer, updated to the latest version as soon as possible. Adjustments
-    /// have none.
+    /// The thumbnail of a layer, updated to the latest version as soon as nothing else is painted.
+    /// Adjustments have none.
     pub fn of(
         &mut self,
         _ctx: &egui::Context,
@@ -106,7 +114,7 @@ impl Thumbnails {
         }
         let is_ordered =
             self.ordered.get(&layer.id).is_some_and(|known| known.as_ptr() == Arc::as_ptr(layer));
-        if !is_ordered {
+        if !is_ordered && !self.is_held {
             self.ordered.insert(layer.id, Arc::downgrade(layer));
             let alone = Document { layers: vec![without_drawing(layer)], ..document.clone() };
             // Without a thread there is no receiver; the error was reported.

@@ -240,7 +240,10 @@ impl MainWindow {
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
         self.unwrap_ahead();
-        self.thumbnails.collect(ui.ctx());
+        let is_painting = self.canvas.is_painting(&self.session);
+        self.thumbnails.collect(ui.ctx(), is_painting);
+        let is_opening = self.session.active().is_none() && !self.jobs.under_way.is_empty();
+        self.swatches.is_held = is_painting || is_opening;
         self.do_held(&mut requests);
         self.hear_keys(ui.ctx(), &mut requests);
         self.take_dropped(ui.ctx());
