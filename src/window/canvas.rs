@@ -239,7 +239,11 @@ impl Canvas {
                 self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
                 self.draw_aids_unwrapped(&painter, session, OnSheet { layout, surface }, &aids);
             }
-            None => self.draw_aids(ui, &painter, session, &aids),
+            None => {
+                // What is asked for is done before the window is laid out once more, and seen there.
+                let is_unseen = !actions.is_empty() && ui.ctx().current_pass_index() == 0;
+                self.draw_aids(ui, &painter, session, &aids, is_unseen)
+            }
         }
         path_handles::keys(ui, session, actions);
         lasso_keys(ui, session, actions);
@@ -287,14 +291,24 @@ impl Canvas {
         true
     }
 
-    /// What helps the hand, over the picture: guides, rulers, selections, the tool's own marks.
-    fn draw_aids(&mut self, ui: &Ui, painter: &Painter, session: &Session, aids: &AidsPlace) {
+    /// What helps the hand, over the picture: guides, rulers, selections, the tool's own marks, which
+    /// are left out of a layout that nobody sees: a bent outline takes as long as a panel.
+    fn draw_aids(
+        &mut self,
+        ui: &Ui,
+        painter: &Painter,
+        session: &Session,
+        aids: &AidsPlace,
+        is_unseen: bool,
+    ) {
         let AidsPlace { rect, view, screen_from_canvas, under, tool } = *aids;
         let visible = visible_rect(&view, rect);
         guides::draw(painter, session, &to_screen(screen_from_canvas), visible, view.zoom);
         rulers::draw(ui, session, rect, screen_from_canvas, under);
         self.ants.draw(painter, session, screen_from_canvas, visible);
-        marks::draw(painter, session, screen_from_canvas, under, tool);
+        if !is_unseen {
+            marks::draw(painter, session, screen_from_canvas, under, tool);
+        }
         self.parts.draw(painter, session, screen_from_canvas, under, tool);
     }
 
