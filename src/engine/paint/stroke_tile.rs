@@ -184,7 +184,11 @@ impl StrokeTile {
 
     /// Whether no pixel has been reached by a dab: nothing is covered.
     pub fn is_clear(&self) -> bool {
-        let is_clear = |planes: &PaintPlanes| planes.reach.iter().all(|reach| *reach == 0.0);
+        // A row at a time, which is compared side by side.
+        let is_clear_row =
+            |row: &[f32; TILE]| row.iter().fold(0, |any, reach| any | reach.to_bits()) == 0;
+        let is_clear =
+            |planes: &PaintPlanes| planes.reach.as_chunks::<TILE>().0.iter().all(is_clear_row);
         is_clear(&self.light) && self.dark.as_ref().is_none_or(is_clear)
     }
 

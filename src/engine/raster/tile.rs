@@ -165,7 +165,12 @@ impl Tile {
 
     /// Both hold the same pixels.
     pub fn is_same(&self, other: &Tile) -> bool {
-        self.rows16 == other.rows16 && self.bytes() == other.bytes()
+        let is_same_in_16_bits = match (&self.rows16, &other.rows16) {
+            (Some(own), Some(other)) => are_equal(own.as_flattened(), other.as_flattened()),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        let [own, other] = [self, other].map(|tile| tile.bytes().as_chunks::<TILE>().0);
+        is_same_in_16_bits && are_equal(own, other)
     }
 
     /// Premultiplied RGBA bytes, row by row; 16 bits are rounded.
@@ -177,6 +182,15 @@ impl Tile {
     pub fn pixmap(&self) -> &Pixmap {
         &self.pixmap
     }
+}
+
+/// Whether rows are equal. Each is compared as a whole: comparing slices goes byte by byte in a
+/// browser.
+fn are_equal<T: Copy + Into<u32>>(own: &[[T; TILE]], other: &[[T; TILE]]) -> bool {
+    let is_equal = |(own, other): (&[T; TILE], &[T; TILE])| {
+        own.iter().zip(other).fold(0, |off, (a, b)| off | ((*a).into() ^ (*b).into())) == 0
+    };
+    own.len() == other.len() && own.iter().zip(other).all(is_equal)
 }
 
 crate::widest! {
