@@ -6,9 +6,10 @@
 // FOLDER is what dist/web/build made. Needs what dist/web/test.mjs needs. Where Chromium has no GPU, painting
 // the window takes longer than all else; so nothing is painted while frames are timed.
 
-import { mkdtempSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { gzipSync } from "node:zlib";
 import { chromium } from "playwright-core";
 import { serve } from "./server.mjs";
 
@@ -31,12 +32,28 @@ script("brush.jsonl", 1920, 1080, 1);
 script("picture.jsonl", 1920, 1080, 0);
 script("large.jsonl", 4096, 4096, 7);
 
-const server = await serve([folder, scripts], PORT);
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-    .concat(["--disable-background-networking", "--disable-component-update", "--disable-sync"]),
-});
+/** In the program's worker, before it starts: notes when the first block of the picture is uploaded. */
+function noteFirstBlock() {
+  const plain = WebGL2RenderingContext.prototype.texImage2D;
+  WebGL2RenderingContext.prototype.texImage2D = function (...args) {
+    const [, , , width, height] = args;
+    if (width <= 1024 && width * height > 50_000) {
+      self.firstBlock ??= performance.timeOrigin + performance.now();
+    }
+    return plain.apply(this, args);
+  };
+}
+const worker = readFileSync(join(folder, "worker.js"), "utf8");
+const marked = worker.replace("program = new Program", "self.isProgram = true;\n      program = new Program");
+writeFileSync(join(scripts, "worker.js"), `${marked}\n(${noteFirstBlock})();\n`);
+
+const server = await serve([scripts, folder], PORT);
+const launched = () =>
+  chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+      .concat(["--disable-background-networking", "--disable-component-update", "--disable-sync"]),
+  });
 
 /** Keeps what the program's memory is, to be asked for its size. */
 function keepMemory() {
@@ -53,17 +70,21 @@ function keepMemory() {
   };
 }
 
-/** In the program's worker: notes how long frames take, and from a pointer's event to its pixels. */
+/**
+ * In the program's worker: notes how long frames take that hand new pixels to the screen, how long others
+ * take while the pointer moves, and how long it is from a pointer's event to its pixels. A dab comes only
+ * every few events.
+ */
 function noteTimes() {
-  self.figures = { frames: [], seen: [] };
-  let [since, isUploaded] = [null, false];
-  for (const name of ["texSubImage2D", "texImage2D"]) {
-    const plain = WebGL2RenderingContext.prototype[name];
-    WebGL2RenderingContext.prototype[name] = function (...args) {
-      isUploaded = true;
-      return plain.apply(this, args);
-    };
-  }
+  self.figures = { painting: [], others: [], seen: [] };
+  let [since, before, isUploaded] = [null, null, false];
+  const plain = WebGL2RenderingContext.prototype.texSubImage2D;
+  WebGL2RenderingContext.prototype.texSubImage2D = function (...args) {
+    const [, , , , width, height] = args;
+    // Tiles of the picture, not letters.
+    isUploaded ||= width >= 64 && height >= 64;
+    return plain.apply(this, args);
+  };
   // What a GPU does is not done here: without one it takes longer than the program.
   for (const name of ["drawElements", "clear"]) {
     WebGL2RenderingContext.prototype[name] = () => {};
@@ -74,14 +95,13 @@ function noteTimes() {
       const began = performance.now();
       frame(now);
       const ended = performance.now();
-      if (ended - began > 0.3) {
-        self.figures.frames.push(ended - began);
+      if (isUploaded) {
+        self.figures.painting.push(ended - began);
+        self.figures.seen.push(ended - (since ?? before ?? began));
+      } else if (since !== null) {
+        self.figures.others.push(ended - began);
       }
-      if (isUploaded && since !== null) {
-        self.figures.seen.push(ended - since);
-        since = null;
-      }
-      isUploaded = false;
+      [since, before, isUploaded] = [null, since, false];
     });
   const hear = self.onmessage;
   self.onmessage = (event) => {
@@ -92,7 +112,7 @@ function noteTimes() {
   };
 }
 
-async function opened(query) {
+async function opened(browser, query) {
   const context = await browser.newContext({ viewport: { width: 1920, height: 1080 } });
   const page = await context.newPage();
   await page.addInitScript(keepMemory);
@@ -101,7 +121,39 @@ async function opened(query) {
   await page.waitForSelector("body[data-state=ready]", { timeout: 60_000 });
   const window = Date.now() - began;
   await page.waitForFunction(() => document.title.includes(" – "), null, { timeout: 120_000, polling: 20 });
-  return { page, context, window, whole: Date.now() - began };
+  const whole = Date.now() - began;
+  await page.waitForTimeout(50);
+  const program = await programOf(page);
+  const block = () => program.evaluate(() => self.firstBlock ?? 0);
+  let seen = await block();
+  for (; seen === 0; seen = await block()) {
+    await page.waitForTimeout(20);
+  }
+  return { page, context, program, window, whole, seen: Math.round(seen - began) };
+}
+
+/** The worker that the program runs in: the one that paints. */
+async function programOf(page) {
+  for (const worker of page.workers()) {
+    // A thread that waits for work never answers.
+    const silence = new Promise((resolve) => setTimeout(resolve, 300, false));
+    const asked = worker.evaluate(() => self.isProgram === true).catch(() => false);
+    if (await Promise.race([asked, silence])) {
+      return worker;
+    }
+  }
+  throw new Error("no worker is the program");
+}
+
+/** Memory that the browser's processes for the page hold and share with none, MB. */
+async function heldMemory(browser) {
+  const client = await browser.newBrowserCDPSession();
+  const { processInfo } = await client.send("SystemInfo.getProcessInfo");
+  const held = processInfo.filter(({ type }) => type === "renderer").map(({ id }) => {
+    const lines = readFileSync(`/proc/${id}/smaps_rollup`, "utf8");
+    return Number(/^Pss:\s+(\d+)/m.exec(lines)[1]) / 1024;
+  });
+  return Math.round(Math.max(...held));
 }
 
 const at = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(sorted.length * share))] ?? NaN;
@@ -128,10 +180,9 @@ async function drag(page, moves = 240) {
 }
 
 /** Drags across a document; `keys` come before. */
-async function dragged(name, query, keys) {
-  const { page, context } = await opened(query);
+async function dragged(browser, name, query, keys) {
+  const { page, context, program } = await opened(browser, query);
   await page.waitForTimeout(1500);
-  const program = page.workers()[1];
   await program.evaluate(noteTimes);
   for (const key of keys) {
     await page.keyboard.press(key);
@@ -142,33 +193,48 @@ async function dragged(name, query, keys) {
   await program.evaluate(() => Object.values(self.figures).forEach((list) => list.splice(0)));
   await drag(page);
   await page.waitForTimeout(500);
-  const { frames, seen } = await program.evaluate(() => self.figures);
-  console.log(`${name}: frame ${spread(frames)}, seen after ${spread(seen)}`);
+  const { painting, others, seen } = await program.evaluate(() => self.figures);
+  console.log(`${name}: painting ${spread(painting)}, others ${spread(others)}, seen after ${spread(seen)}`);
   await context.close();
 }
 
+const first = readdirSync(folder).filter((name) => /\.(wasm|js|css)$|^index\.html$/.test(name));
+const sizes = first.map((name) => gzipSync(readFileSync(join(folder, name)), { level: 9 }).length);
+console.log(`what is loaded first, compressed: ${(sizes.reduce((a, b) => a + b) / 1e6).toFixed(2)} MB`);
+
+// Each in a browser that has never seen the page, then once more in the same one.
 const loads = [];
-for (let i = 0; i < 5; i++) {
-  const { context, window, whole, page } = await opened("");
-  loads.push([window, whole]);
-  if (i === 4) {
-    console.log(`memory with the sample: ${await megabytes(page)} MB`);
+for (let i = 0; i < Number(process.env.LOADS ?? 5); i++) {
+  const browser = await launched();
+  const first = await opened(browser, "");
+  await first.page.waitForTimeout(6000);
+  const megabytesNow = await megabytes(first.page);
+  await first.context.close();
+  const again = await opened(browser, "");
+  loads.push([first, again].map(({ window, whole, seen }) => [window, whole, seen].join(" ")).join(", again "));
+  if (i === 0) {
+    console.log(`memory with the sample: ${megabytesNow} MB`);
   }
-  await context.close();
+  await browser.close();
 }
-console.log(`window, sample: ${loads.map((load) => load.join(" ")).join("; ")} ms`);
-for (const threads of [1, 2]) {
+console.log(`window, document, its pixels: ${loads.join("; ")} ms`);
+for (const threads of (process.env.THREADS ?? "1 2").split(" ")) {
+  const browser = await launched();
   const larger = Array.from({ length: Number(process.env.LARGER ?? 12) }, () => "BracketRight");
   const on = `#threads=${threads}`;
-  await dragged(`brush, ${threads} threads`, `?open=brush.jsonl${on}`, ["b", "F3", ...larger]);
-  await dragged(`picture, ${threads} threads`, `?open=picture.jsonl${on}`, ["j"]);
+  await dragged(browser, `brush, gloss, ${threads} threads`, `?open=brush.jsonl${on}`, ["b", "F3", ...larger]);
+  await dragged(browser, `brush, flat, ${threads} threads`, `?open=brush.jsonl${on}`, ["b", "F1", ...larger]);
+  await dragged(browser, `picture, ${threads} threads`, `?open=picture.jsonl${on}`, ["j"]);
+  await browser.close();
 }
-const { page, context, whole } = await opened("?open=large.jsonl");
+const browser = await launched();
+const { page, context, whole, seen } = await opened(browser, "?open=large.jsonl");
 await page.waitForTimeout(4000);
 await page.keyboard.press("b");
 await drag(page);
 await page.waitForTimeout(3000);
-console.log(`4096² of ten layers: opened in ${whole} ms, ${await megabytes(page)} MB`);
+const large = `${await megabytes(page)} MB of the program's, ${await heldMemory(browser)} MB of its process`;
+console.log(`4096² of ten layers: opened in ${whole} ms, seen after ${seen}, ${large}`);
 await page.screenshot({ path: join(scripts, "large.png") });
 await context.close();
 await browser.close();
