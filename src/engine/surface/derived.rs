@@ -6,7 +6,7 @@ use super::Surface;
 use super::cache::{Cache, HeapSize, RecentCache};
 use super::chunks::BallPlaces;
 use super::curvature::{Curvature, CurvatureRims, Kappa};
-use super::form_lines::{FormLines, LineKey, SmoothNormals, UnlitLines};
+use super::form_lines::{FormLines, LineKey, SharpLines, SmoothNormals, UnlitLines};
 use super::hatching::{HatchKey, HatchLines};
 use super::objects::Objects;
 use super::ray::RayMap;
@@ -64,6 +64,8 @@ caches! {
     form_lines: RecentCache<LineKey, FormLines>,
     /// Those of them that stay when the light moves.
     unlit_lines: RecentCache<LineKey, UnlitLines>,
+    /// Those where the surface ends or has an edge.
+    sharp_lines: RecentCache<LineKey, SharpLines>,
     /// Hatching lines, by what is asked of them.
     hatch_lines: RecentCache<HatchKey, HatchLines>,
     /// Normals blurred within each piece, by σ, as bits.

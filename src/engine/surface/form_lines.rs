@@ -10,6 +10,7 @@ mod fields;
 mod outlines;
 mod smooth;
 mod tidy;
+mod turns;
 
 #[cfg(test)]
 mod tests;
@@ -218,7 +219,7 @@ pub(in crate::surface) struct UnlitLines {
 impl UnlitLines {
     fn of(surface: &Surface, settings: &LineSettings, colors: Option<&Arc<PaperColors>>) -> Self {
         let has_kind = |kind| settings.kinds.has_kind(kind);
-        let mut traced = outlines::trace(surface, settings);
+        let mut traced = Vec::new();
         if [LineKind::Valley, LineKind::Suggestive, LineKind::Ridge].into_iter().any(has_kind) {
             let normals = surface.smooth_normals(settings.smooth);
             traced.extend(FormCurves { surface, normals: &normals, settings }.trace_form());
@@ -230,7 +231,8 @@ impl UnlitLines {
         if let Some(colors) = colors {
             traced.extend(colors.trace(surface.size(), settings));
         }
-        let smooth = tidy::smooth_lines(traced, settings);
+        let mut smooth = surface.sharp_lines(settings).0.clone();
+        smooth.extend(tidy::smooth_lines(traced, settings));
         let (first, after) = smooth.into_iter().partition(|line| line.kind < LIT[0]);
         let mut before = Vec::new();
         tidy::add_lines(&mut before, first, settings);
@@ -241,6 +243,16 @@ impl UnlitLines {
 impl HeapSize for UnlitLines {
     fn heap_bytes(&self) -> u64 {
         self.before.iter().chain(&self.after).map(FormLine::bytes).sum()
+    }
+}
+
+/// The lines where a surface ends or has an edge, which do not depend on how smooth its form is.
+#[derive(Debug)]
+pub(in crate::surface) struct SharpLines(Vec<FormLine>);
+
+impl HeapSize for SharpLines {
+    fn heap_bytes(&self) -> u64 {
+        self.0.iter().map(FormLine::bytes).sum()
     }
 }
 
@@ -273,6 +285,19 @@ impl Surface {
         let settings = LineSettings { kinds, ..*settings };
         let compute = |_| UnlitLines::of(self, &settings, colors);
         self.derived.unlit_lines.get_or_compute(settings.key(colors), KEPT, compute)
+    }
+
+    /// Its outlines, creases and borders, cached.
+    fn sharp_lines(&self, settings: &LineSettings) -> Arc<SharpLines> {
+        const KEPT: usize = 2;
+        let sharp = [LineKind::Outline, LineKind::Crease, LineKind::Border];
+        let wanted = sharp.into_iter().filter(|kind| settings.kinds.has_kind(*kind));
+        let kinds = wanted.fold(LineKinds::NONE, |kinds, kind| kinds.with(kind, true));
+        let LineSettings { detail, shortest, .. } = *settings;
+        let settings = LineSettings { detail, shortest, kinds, ..LineSettings::DEFAULT };
+        self.derived.sharp_lines.get_or_compute(settings.key(None), KEPT, |_| {
+            SharpLines(tidy::smooth_lines(outlines::trace(self, &settings), &settings))
+        })
     }
 
     /// Its normals, blurred within each piece. Cached.

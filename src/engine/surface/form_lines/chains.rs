@@ -96,17 +96,20 @@ impl Chaining<'_> {
 /// the cell.
 ///
 /// Of four, the shorter pairs; of three or one, none.
-pub fn pair_crossings<T: Copy>(crossings: &[T], apart: impl Fn(T, T) -> f32) -> Vec<[T; 2]> {
-    match *crossings {
-        [a, b] => vec![[a, b]],
-        [a, b, c, d] => {
-            if apart(a, b) + apart(c, d) <= apart(b, c) + apart(d, a) {
-                vec![[a, b], [c, d]]
-            } else {
-                vec![[b, c], [d, a]]
-            }
-        }
-        _ => Vec::new(),
+pub fn pair_crossings<T: Copy>(
+    crossings: [Option<T>; 4],
+    apart: impl Fn(T, T) -> f32,
+) -> [Option<[T; 2]>; 2] {
+    if let [Some(a), Some(b), Some(c), Some(d)] = crossings {
+        return match apart(a, b) + apart(c, d) <= apart(b, c) + apart(d, a) {
+            true => [Some([a, b]), Some([c, d])],
+            false => [Some([b, c]), Some([d, a])],
+        };
+    }
+    let mut found = crossings.into_iter().flatten();
+    match [found.next(), found.next(), found.next()] {
+        [Some(a), Some(b), None] => [Some([a, b]), None],
+        _ => [None; 2],
     }
 }
 

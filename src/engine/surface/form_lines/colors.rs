@@ -2,9 +2,10 @@
 //! changes most along the way in which it changes (Di Zenzo 1986; Canny 1986), traced as crests of
 //! form are (`fields`).
 
-use super::fields::{Turns, trace_lines};
+use super::fields::trace_lines;
 use super::smooth::diffuse;
 use super::tidy::RawLine;
+use super::turns::Turns;
 use super::{LineKind, LinePoint, LineSettings};
 use crate::math::{Size, oklab, srgb};
 use crate::raster::Plane;
@@ -53,7 +54,8 @@ impl PaperColors {
             let is_edge = step > STEP.0 && crest.beside < BESIDE * crest.most;
             is_edge.then_some((crest.t, ((step - STEP.0) / STEP.1).min(1.0)))
         };
-        let mut lines = trace_lines(LineKind::Color, &linked, crossing);
+        let least = STEP.0 / (sigma * TAU.sqrt());
+        let mut lines = trace_lines(LineKind::Color, &linked, turns.crest_cells(least), crossing);
         let points = lines.iter_mut().flat_map(|line| &mut line.points);
         points.for_each(|point: &mut LinePoint| point.at *= scale);
         lines

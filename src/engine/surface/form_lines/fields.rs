@@ -2,11 +2,12 @@
 //! wires. Each is where a map is zero, traced through the cells between four pixels that are linked.
 //! Floor 2. Not here: what is left of them (`tidy`).
 
-use super::chains::{LineStep, join_steps, pair_crossings, sides};
-use super::smooth::{SmoothNormals, diffuse_copy, gradient_of};
+use super::chains::{Chain, LineStep, join_steps, pair_crossings, sides};
+use super::smooth::{SmoothNormals, diffuse_copy, gradient_of, gradient_row};
 use super::tidy::RawLine;
+use super::turns::Turns;
 use super::{LineKind, LinePoint, LineSettings};
-use crate::math::{Vec2, Vec3, vec2, vec3};
+use crate::math::{Vec2, Vec3, fast, vec2, vec3};
 use crate::raster::Plane;
 use crate::surface::shadow::ShadowLamp;
 use crate::surface::unwrap::Unwrapping;
@@ -32,81 +33,6 @@ pub(super) struct FormCurves<'s> {
     pub surface: &'s Surface,
     pub normals: &'s SmoothNormals,
     pub settings: &'s LineSettings,
-}
-
-/// How fast the three values of a map change, as the normals of a surface turn: how fast at most,
-/// per px, and which way.
-pub(super) struct Turns {
-    pub most: Plane<f32>,
-    /// Unit; the sign is arbitrary.
-    pub way: [Plane<f32>; 2],
-    /// How the change grows along that way.
-    pub growth: Plane<f32>,
-}
-
-impl Turns {
-    /// q, the largest singular value of the derivative of three planes along links, its direction t,
-    /// and ∂q/∂t.
-    pub fn of(planes: [&Plane<f32>; 3], links: &Plane<u8>) -> Self {
-        let size = links.size();
-        // q, t_x, t_y.
-        let all = Plane::from_fn(size, |x, y| {
-            let linked = links.at(x, y);
-            if linked == 0 {
-                return [0.0; 3];
-            }
-            let slopes = planes.map(|plane| gradient_of(plane, linked, x, y));
-            let sum = |of: &dyn Fn(Vec2) -> f32| slopes.iter().map(|s| of(*s)).sum::<f32>();
-            let (xx, yy) = (sum(&|s| s.x * s.x), sum(&|s| s.y * s.y));
-            let xy = sum(&|s| s.x * s.y);
-            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-            let larger = mean + half.hypot(xy);
-            let way = if xx > yy { vec2(larger - yy, xy) } else { vec2(xy, larger - xx) };
-            let way = way.normalize_or_zero();
-            [larger.max(0.0).sqrt(), way.x, way.y]
-        });
-        let [most, x, y] = [0, 1, 2].map(|i| all.map(move |v| v[i]));
-        let growth = Plane::from_fn(size, |px, py| {
-            gradient_of(&most, links.at(px, py), px, py).dot(vec2(x.at(px, py), y.at(px, py)))
-        });
-        Self { most, way: [x, y], growth }
-    }
-
-    /// The direction at a pixel.
-    pub fn way_at(&self, (x, y): (usize, usize)) -> Vec2 {
-        vec2(self.way[0].at(x, y), self.way[1].at(x, y))
-    }
-
-    /// Where between two pixels the change is at its most along its way.
-    pub fn crest(
-        &self,
-        a: (usize, usize),
-        b: (usize, usize),
-        links: &Plane<u8>,
-        px: f32,
-    ) -> Option<Crest> {
-        let cos = self.way_at(a).dot(self.way_at(b));
-        if cos.abs() < 0.5 {
-            return None;
-        }
-        let agreed = cos.signum() * self.growth.at(b.0, b.1);
-        let t = zero(self.growth.at(a.0, a.1), agreed)?;
-        let (from, to) = (self.most.at(a.0, a.1), self.most.at(b.0, b.1));
-        let middle = place(a).lerp(place(b), t);
-        let step = (self.way_at(a) + cos.signum() * self.way_at(b)).normalize_or_zero() * px;
-        let beside = [middle + step, middle - step].map(|at| bilinear(&self.most, links, at, a));
-        Some(Crest { t, most: from + t * (to - from), beside: beside[0].max(beside[1]) })
-    }
-}
-
-/// The most of a change between two pixels.
-pub(super) struct Crest {
-    /// Where, `[0, 1]`.
-    pub t: f32,
-    /// How fast it is there, per px.
-    pub most: f32,
-    /// And beside it, on the side where it is faster.
-    pub beside: f32,
 }
 
 impl FormCurves<'_> {
@@ -142,14 +68,12 @@ impl FormCurves<'_> {
 
     /// ∂(n̄·v)/∂ĝ is zero and grows along ĝ = n̄/|n̄| (DeCarlo et al. 2003).
     fn suggestive(&self) -> Vec<RawLine> {
-        let [nx, ny, nz] = &self.normals.planes;
+        let [nx, ny, _] = &self.normals.planes;
         let way = |x: usize, y: usize| {
             let g = vec2(nx.at(x, y), ny.at(x, y));
             g / g.length().max(1e-6)
         };
-        let slope = Plane::from_fn(nz.size(), |x, y| {
-            gradient_of(nz, self.links_at(x, y), x, y).dot(way(x, y))
-        });
+        let slope = self.slopes_toward_viewer();
         let scale = SUGGESTIVE_SCALE * self.normals.smooth_px * self.normals.smooth_px;
         let at = |(x, y): (usize, usize)| {
             let tilt = self.normals.nbar(x, y).length();
@@ -162,7 +86,28 @@ impl FormCurves<'_> {
             let strength = from + t * (to - from);
             (from > 0.0 && to > 0.0 && strength > 0.0).then_some((t, strength.min(1.0)))
         };
-        trace_lines(LineKind::Suggestive, self.surface.links_plane(), crossing)
+        trace_lines(
+            LineKind::Suggestive,
+            self.surface.links_plane(),
+            sign_changes(&slope),
+            crossing,
+        )
+    }
+
+    /// ∂(n̄·v)/∂ĝ.
+    fn slopes_toward_viewer(&self) -> Plane<f32> {
+        let ([nx, ny, nz], links) = (&self.normals.planes, self.surface.links_plane());
+        let mut slopes = Plane::full(nz.size(), 0.0f32);
+        let width = nz.width().max(1);
+        let rows = slopes.values_mut().par_chunks_mut(width).enumerate();
+        rows.for_each_init(
+            || [vec![0.0f32; width], vec![0.0f32; width]],
+            |[across, down], (y, out)| {
+                gradient_row(nz, links, y, across, down);
+                along_row(nx.row(y), ny.row(y), across, down, out);
+            },
+        );
+        slopes
     }
 
     /// q is the largest singular value of ∂n̄/∂q and t its direction: ∂q/∂t is zero, and q a maximum
@@ -187,7 +132,8 @@ impl FormCurves<'_> {
         let mut lines = Vec::new();
         for (kind, hollow) in [(LineKind::Valley, true), (LineKind::Ridge, false)] {
             if self.settings.kinds.has_kind(kind) {
-                lines.extend(trace_lines(kind, links, found(hollow)));
+                let cells = turns.crest_cells(RIDGE.0 / sigma);
+                lines.extend(trace_lines(kind, links, cells, found(hollow)));
             }
         }
         lines
@@ -203,11 +149,13 @@ impl FormCurves<'_> {
     fn light(&self) -> Vec<RawLine> {
         let toward = self.settings.light.normalize_or(Vec3::Z);
         let toward = vec3(toward.x, -toward.y, toward.z);
-        let lit = |(x, y): (usize, usize)| {
+        let lit = Plane::from_fn(self.surface.size(), |x, y| {
             self.normals.nbar(x, y).extend(self.normals.nz(x, y)).dot(toward) - self.settings.lit
+        });
+        let crossing = |a: (usize, usize), b: (usize, usize)| {
+            Some((zero(lit.at(a.0, a.1), lit.at(b.0, b.1))?, 1.0))
         };
-        let crossing = |a, b| Some((zero(lit(a), lit(b))?, 1.0));
-        trace_lines(LineKind::Light, self.surface.links_plane(), crossing)
+        trace_lines(LineKind::Light, self.surface.links_plane(), sign_changes(&lit), crossing)
     }
 
     /// Half of the lamp is seen, where the form faces it.
@@ -225,71 +173,87 @@ impl FormCurves<'_> {
             let t = zero(seen.at(a.0, a.1), seen.at(b.0, b.1))?;
             (is_facing(a) && is_facing(b)).then_some((t, 1.0))
         };
-        trace_lines(LineKind::Shadow, self.surface.links_plane(), crossing)
+        trace_lines(LineKind::Shadow, self.surface.links_plane(), sign_changes(&seen), crossing)
     }
-}
-
-/// A map between pixels; of pixels that are not linked to any, the middle's value.
-fn bilinear(plane: &Plane<f32>, links: &Plane<u8>, at: Vec2, middle: (usize, usize)) -> f32 {
-    let at = at - 0.5;
-    let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
-    let (fx, fy) = (at.x - x as f32, at.y - y as f32);
-    let own = plane.at(middle.0, middle.1);
-    let value = |dx: i32, dy: i32| {
-        let linked = links.get(x + dx, y + dy).unwrap_or(0);
-        if linked == 0 { own } else { plane.at_clamped(x + dx, y + dy) }
-    };
-    let row = |dy: i32| value(0, dy) + fx * (value(1, dy) - value(0, dy));
-    row(0) + fy * (row(1) - row(0))
 }
 
 /// Lines through the cells of linked pixels.
 ///
+/// * `cells`: marks the cells of a row that a line may cross.
 /// * `crossing`: where between two pixels a line of this kind is, and how clear it is.
 pub(super) fn trace_lines(
     kind: LineKind,
     links: &Plane<u8>,
+    cells: impl Fn(usize, &mut [u8]) + Sync,
     crossing: impl Fn((usize, usize), (usize, usize)) -> Option<(f32, f32)> + Sync,
 ) -> Vec<RawLine> {
-    let rows: Vec<Vec<LineStep>> = (0..links.height().saturating_sub(1))
-        .into_par_iter()
-        .map(|y| {
-            let mut steps = Vec::new();
-            for x in (0..links.width() - 1).filter(|&x| links::is_one_piece(links, x, y)) {
-                let mut found: Vec<(u64, LinePoint)> = Vec::with_capacity(4);
-                for (a, b, key) in sides(x, y, links.width()) {
-                    if let Some((t, strength)) = crossing(a, b) {
-                        let at = place(a).lerp(place(b), t);
-                        found.push((key, LinePoint { at, strength }));
-                    }
-                }
-                let apart = |a: (u64, LinePoint), b: (u64, LinePoint)| a.1.at.distance(b.1.at);
-                steps.extend(
-                    pair_crossings(&found, apart)
-                        .into_iter()
-                        .map(|[a, b]| LineStep { keys: [a.0, b.0], points: [a.1, b.1] }),
-                );
-            }
-            steps
-        })
-        .collect();
-    let steps: Vec<LineStep> = rows.into_iter().flatten().collect();
-    let raw = |chain: super::chains::Chain| RawLine {
-        kind,
-        points: chain.points,
-        is_closed: chain.is_closed,
+    let width = links.width().saturating_sub(1);
+    let steps_of_row = |marks: &mut Vec<u8>, y: usize| {
+        cells(y, marks);
+        let mut steps = Vec::new();
+        for x in (0..width).filter(|&x| marks[x] != 0 && links::is_one_piece(links, x, y)) {
+            let found = sides(x, y, links.width()).map(|(a, b, key)| {
+                let (t, strength) = crossing(a, b)?;
+                Some((key, LinePoint { at: place(a).lerp(place(b), t), strength }))
+            });
+            steps.extend(steps_between(found));
+        }
+        steps
     };
-    join_steps(&steps).into_iter().map(raw).collect()
+    let rows = (0..links.height().saturating_sub(1)).into_par_iter();
+    let steps = rows.map_init(|| vec![0u8; width], steps_of_row).collect::<Vec<Vec<LineStep>>>();
+    join_rows(kind, &steps)
+}
+
+/// The steps between the crossings of the sides of a cell, each with its key.
+fn steps_between(found: [Option<(u64, LinePoint)>; 4]) -> impl Iterator<Item = LineStep> {
+    let apart = |a: (u64, LinePoint), b: (u64, LinePoint)| a.1.at.distance(b.1.at);
+    let pairs = pair_crossings(found, apart).into_iter().flatten();
+    pairs.map(|[a, b]| LineStep { keys: [a.0, b.0], points: [a.1, b.1] })
+}
+
+/// The lines that the steps of all rows make.
+fn join_rows(kind: LineKind, rows: &[Vec<LineStep>]) -> Vec<RawLine> {
+    let chains = join_steps(&rows.concat()).into_iter();
+    chains.map(|Chain { points, is_closed }| RawLine { kind, points, is_closed }).collect()
+}
+
+/// Marks the cells of a row that a line where a map is zero may cross.
+fn sign_changes(plane: &Plane<f32>) -> impl Fn(usize, &mut [u8]) + Sync {
+    |y, marks| mark_sign_changes(plane.row(y), plane.row(y + 1), marks)
+}
+
+crate::widest! {
+    fn mark_sign_changes(top: &[f32], bottom: &[f32], marks: &mut [u8]) {
+        let n = marks.len();
+        let (top, bottom) = (&top[..=n], &bottom[..=n]);
+        for x in 0..n {
+            let [a, b] = [top[x] < 0.0, top[x + 1] < 0.0];
+            let [c, d] = [bottom[x] < 0.0, bottom[x + 1] < 0.0];
+            marks[x] = u8::from((a != b) | (c != d) | (a != c));
+        }
+    }
+
+    /// The derivative along (x, y) of each pixel of a row.
+    fn along_row(x: &[f32], y: &[f32], across: &[f32], down: &[f32], out: &mut [f32]) {
+        let n = out.len();
+        let (x, y, across, down) = (&x[..n], &y[..n], &across[..n], &down[..n]);
+        for i in 0..n {
+            let length = (x[i] * x[i] + y[i] * y[i]).sqrt();
+            let per = 1.0 / fast::max(length, 1e-6);
+            out[i] = across[i] * (x[i] * per) + down[i] * (y[i] * per);
+        }
+    }
 }
 
 /// The middle of a pixel.
-fn place((x, y): (usize, usize)) -> Vec2 {
+pub(super) fn place((x, y): (usize, usize)) -> Vec2 {
     vec2(x as f32 + 0.5, y as f32 + 0.5)
 }
 
 /// Where a value from `a` to `b` is zero, `[0, 1]`; `None` if both have one sign.
 #[inline(always)]
-fn zero(a: f32, b: f32) -> Option<f32> {
+pub(super) fn zero(a: f32, b: f32) -> Option<f32> {
     ((a < 0.0) != (b < 0.0)).then(|| (a / (a - b)).max(0.0).min(1.0))
 }
 
@@ -313,12 +277,7 @@ pub(super) fn wires(
                 steps
             })
             .collect();
-        let steps: Vec<LineStep> = rows.into_iter().flatten().collect();
-        lines.extend(join_steps(&steps).into_iter().map(|chain| RawLine {
-            kind: LineKind::Wire,
-            points: chain.points,
-            is_closed: chain.is_closed,
-        }));
+        lines.extend(join_rows(LineKind::Wire, &rows));
     }
     lines
 }
@@ -333,18 +292,13 @@ fn wire_steps(plane: &Plane<f32>, spacing: f32, (x, y): (usize, usize), out: &mu
         return;
     }
     for level in low.ceil() as i32..=high.floor() as i32 {
-        let mut found: Vec<(u64, LinePoint)> = Vec::with_capacity(4);
-        for (a, b, key) in sides(x, y, plane.width()) {
+        let found = sides(x, y, plane.width()).map(|(a, b, key)| {
             let off = |(x, y): (usize, usize)| plane.at(x, y) / spacing - level as f32;
-            if let Some(t) = zero(off(a), off(b)) {
-                let at = place(a).lerp(place(b), t);
-                // Levels that share the side of a cell are told apart.
-                let key = key.wrapping_add((level as u32 as u64) << 40);
-                found.push((key, LinePoint { at, strength: 1.0 }));
-            }
-        }
-        let apart = |a: (u64, LinePoint), b: (u64, LinePoint)| a.1.at.distance(b.1.at);
-        let pairs = pair_crossings(&found, apart).into_iter();
-        out.extend(pairs.map(|[a, b]| LineStep { keys: [a.0, b.0], points: [a.1, b.1] }));
+            let at = place(a).lerp(place(b), zero(off(a), off(b))?);
+            // Levels that share the side of a cell are told apart.
+            let key = key.wrapping_add((level as u32 as u64) << 40);
+            Some((key, LinePoint { at, strength: 1.0 }))
+        });
+        out.extend(steps_between(found));
     }
 }

@@ -44,8 +44,8 @@ struct Partings<'s> {
     shares: Plane<u8>,
     /// The share of each pixel that its own population sees, where it is between parts.
     own: Plane<f32>,
-    /// Pixels of a rim that only coarse maps tore off what they belong to.
-    fringe: Plane<bool>,
+    /// The cells between pixels that something separates, row by row, by their upper left pixel.
+    cells: Vec<Vec<(usize, usize)>>,
 }
 
 /// The lines along broken links.
@@ -55,8 +55,8 @@ pub(super) fn trace(surface: &Surface, settings: &LineSettings) -> Vec<RawLine> 
         own.set(pixel.x as usize, pixel.y as usize, pixel.share);
     }
     let shares = surface.shares();
-    let fringe = fringe_of(surface, &shares);
-    let partings = Partings { surface, shares, own, fringe };
+    let cells = parted_cells(surface, &shares);
+    let partings = Partings { surface, shares, own, cells };
     let kinds = [
         (Parting::Outline, LineKind::Outline),
         (Parting::Crease, LineKind::Crease),
@@ -66,28 +66,71 @@ pub(super) fn trace(surface: &Surface, settings: &LineSettings) -> Vec<RawLine> 
     wanted.flat_map(|(parting, kind)| partings.lines(parting, kind)).collect()
 }
 
-/// Pixels of the surface next to the rim, or next to such a one, that are not linked inward: what
-/// lies there is hardly wider than a pixel, and its own rim is drawn.
-fn fringe_of(surface: &Surface, shares: &Plane<u8>) -> Plane<bool> {
-    let links = surface.links_plane();
-    let is_on = |x: i32, y: i32| shares.get(x, y).is_none_or(|share| share >= 128);
-    Plane::from_fn(shares.size(), |x, y| {
-        let linked = links.at(x, y);
-        let (px, py) = (x as i32, y as i32);
-        let inward =
-            [(links::RIGHT, 1, 0), (links::LEFT, -1, 0), (links::DOWN, 0, 1), (links::UP, 0, -1)];
-        is_on(px, py)
-            && inward.into_iter().any(|(bit, dx, dy)| {
-                linked & bit == 0
-                    && is_on(px + dx, py + dy)
-                    && (!is_on(px - dx, py - dy) || !is_on(px - 2 * dx, py - 2 * dy))
-            })
-    })
+/// The cells whose four pixels are not all one smooth piece of one part, row by row.
+fn parted_cells(surface: &Surface, shares: &Plane<u8>) -> Vec<Vec<(usize, usize)>> {
+    let width = shares.width().saturating_sub(1);
+    let rows = (0..shares.height().saturating_sub(1)).into_par_iter();
+    let cells_of_row = |marks: &mut Vec<u8>, y: usize| -> Vec<(usize, usize)> {
+        let [shares, linked, smooth] =
+            [shares, surface.links_plane(), surface.smooth_links_plane()]
+                .map(|plane| [plane.row(y), plane.row(y + 1)]);
+        mark_torn_cells(shares, linked, smooth, marks);
+        if let Some(parts) = surface.parts_plane() {
+            let (top, bottom) = (parts.row(y), parts.row(y + 1));
+            let pairs = top.windows(2).zip(bottom.windows(2));
+            for (mark, (top, bottom)) in marks.iter_mut().zip(pairs) {
+                *mark |= u8::from(top[0] != top[1] || top != bottom);
+            }
+        }
+        (0..width).filter(|&x| marks[x] != 0).map(|x| (x, y)).collect()
+    };
+    rows.map_init(|| vec![0u8; width], cells_of_row).collect()
+}
+
+crate::widest! {
+    /// Marks the cells between two rows with a pixel off the surface or a link missing.
+    fn mark_torn_cells(
+        shares: [&[u8]; 2],
+        linked: [&[u8]; 2],
+        smooth: [&[u8]; 2],
+        marks: &mut [u8],
+    ) {
+        let n = marks.len();
+        let [[s0, s1], [l0, l1], [m0, m1]] = [shares, linked, smooth].map(|rows| rows.map(|row| &row[..=n]));
+        for x in 0..n {
+            let on = s0[x] & s0[x + 1] & s1[x] & s1[x + 1];
+            let across = l0[x] & m0[x] & l1[x] & m1[x] & links::RIGHT;
+            let down = l0[x] & m0[x] & l0[x + 1] & m0[x + 1] & links::DOWN;
+            let is_whole = (across != 0) & (down != 0);
+            marks[x] = u8::from((on < 128) | !is_whole);
+        }
+    }
 }
 
 impl Partings<'_> {
     fn is_on(&self, (x, y): (usize, usize)) -> bool {
         self.shares.at(x, y) >= 128
+    }
+
+    /// Whether a pixel of the surface next to the rim, or next to such a one, is not linked inward:
+    /// what lies there is hardly wider than a pixel, and its own rim is drawn. Coarse maps tore it
+    /// off what it belongs to.
+    fn is_fringe(&self, (x, y): (usize, usize)) -> bool {
+        let linked = self.surface.links_plane().at(x, y);
+        let (x, y) = (x as i32, y as i32);
+        let is_on = |by: i32, (dx, dy): (i32, i32)| {
+            self.shares.get(x + by * dx, y + by * dy).is_none_or(|share| share >= 128)
+        };
+        let inward = [
+            (links::RIGHT, (1, 0)),
+            (links::LEFT, (-1, 0)),
+            (links::DOWN, (0, 1)),
+            (links::UP, (0, -1)),
+        ];
+        is_on(0, (0, 0))
+            && inward.into_iter().any(|(bit, way)| {
+                linked & bit == 0 && is_on(1, way) && (!is_on(-1, way) || !is_on(-2, way))
+            })
     }
 
     /// What separates two neighbors, if anything does.
@@ -99,7 +142,7 @@ impl Partings<'_> {
         let bit = if a.0 == b.0 { links::DOWN } else { links::RIGHT };
         let is_linked = |links: &Plane<u8>| links.at(a.0, a.1) & bit != 0;
         if !is_linked(self.surface.links_plane()) {
-            let is_torn = self.fringe.at(a.0, a.1) || self.fringe.at(b.0, b.1);
+            let is_torn = self.is_fringe(a) || self.is_fringe(b);
             return (!is_torn).then_some(Parting::Outline);
         }
         if !is_linked(self.surface.smooth_links_plane()) {
@@ -159,16 +202,12 @@ impl Partings<'_> {
 
     /// The lines of one kind.
     fn lines(&self, parting: Parting, kind: LineKind) -> Vec<RawLine> {
-        let size = self.surface.size();
-        let (w, h) = (size.width as usize, size.height as usize);
-        let rows: Vec<Vec<CellStep>> = (0..h.saturating_sub(1))
-            .into_par_iter()
-            .map(|y| {
-                let mut steps = Vec::new();
-                (0..w - 1).for_each(|x| self.steps_of_cell(parting, (x, y), &mut steps));
-                steps
-            })
-            .collect();
+        let steps_of_row = |cells: &Vec<(usize, usize)>| {
+            let mut steps = Vec::new();
+            cells.iter().for_each(|cell| self.steps_of_cell(parting, *cell, &mut steps));
+            steps
+        };
+        let rows: Vec<Vec<CellStep>> = self.cells.par_iter().map(steps_of_row).collect();
         let cells: Vec<CellStep> = rows.into_iter().flatten().collect();
         let steps: Vec<LineStep> = cells.iter().map(|cell| cell.step).collect();
         let chains = join_steps(&steps);

@@ -118,16 +118,30 @@ crate::widest! {
         let n = out.len();
         let (here, linked) = (&here[..n], &linked[..n]);
         let (above, below) = (&beside[0][..n], &beside[1][..n]);
-        for x in 0..n {
-            let (v, l) = (here[x], linked[x]);
-            let left = here[x.saturating_sub(1)] - v;
-            let right = here[(x + 1).min(n - 1)] - v;
-            let bit = |bit: u8| if l & bit != 0 { share } else { 0.0 };
-            out[x] = v
-                + (bit(links::LEFT) * left + bit(links::RIGHT) * right)
-                + (bit(links::UP) * (above[x] - v) + bit(links::DOWN) * (below[x] - v));
+        let inner = n.saturating_sub(2);
+        if let Some(out) = out.get_mut(1..inner + 1) {
+            let (left, own, right) = (&here[..inner], &here[1..=inner], &here[2..]);
+            let (linked, above) = (&linked[1..=inner], &above[1..=inner]);
+            let below = &below[1..=inner];
+            for i in 0..inner {
+                let cross = [left[i], right[i], above[i], below[i]];
+                out[i] = step(own[i], cross, linked[i], share);
+            }
+        }
+        // What lies at the ends of a row has no neighbors there.
+        for x in [0, n - 1] {
+            let (left, right) = (here[x.saturating_sub(1)], here[(x + 1).min(n - 1)]);
+            out[x] = step(here[x], [left, right, above[x], below[x]], linked[x], share);
         }
     }
+}
+
+/// One step of a pixel whose neighbors are at the left, at the right, above and below.
+#[inline(always)]
+fn step(own: f32, [left, right, above, below]: [f32; 4], linked: u8, share: f32) -> f32 {
+    let moved = |bit: u8, other: f32| (if linked & bit != 0 { share } else { 0.0 }) * (other - own);
+    own + (moved(links::LEFT, left) + moved(links::RIGHT, right))
+        + (moved(links::UP, above) + moved(links::DOWN, below))
 }
 
 /// A wide blur whose cost does not depend on its width: passes of a recursive filter (Gastal and
@@ -196,4 +210,54 @@ pub(in crate::surface) fn gradient_of(plane: &Plane<f32>, linked: u8, x: usize, 
         along(plane.at(left, y), plane.at(right, y), right - left),
         along(plane.at(x, up), plane.at(x, down), down - up),
     )
+}
+
+/// The same of every pixel of a row.
+pub(super) fn gradient_row(
+    plane: &Plane<f32>,
+    links: &Plane<u8>,
+    y: usize,
+    across: &mut [f32],
+    down: &mut [f32],
+) {
+    let (here, linked) = (plane.row(y), links.row(y));
+    let above = plane.row(y.saturating_sub(1));
+    let below = plane.row((y + 1).min(plane.height() - 1));
+    slopes_across(here, linked, across);
+    slopes_down([above, here, below], linked, down);
+    // What lies at the ends of a row has no neighbors there.
+    for x in [0, here.len() - 1] {
+        across[x] = gradient_of(plane, linked[x], x, y).x;
+    }
+}
+
+/// Half of the difference from before to after where both are linked, else the whole of it.
+#[inline(always)]
+fn slope([before, here, after]: [f32; 3], is_linked: [bool; 2]) -> f32 {
+    let from = if is_linked[0] { before } else { here };
+    let to = if is_linked[1] { after } else { here };
+    (to - from) * if is_linked[0] & is_linked[1] { 0.5 } else { 1.0 }
+}
+
+crate::widest! {
+    /// Slopes along a row, but at its ends.
+    fn slopes_across(here: &[f32], linked: &[u8], out: &mut [f32]) {
+        let Some(n) = out.len().checked_sub(2) else { return };
+        let (before, own, after) = (&here[..n], &here[1..n + 1], &here[2..n + 2]);
+        let (linked, out) = (&linked[1..n + 1], &mut out[1..n + 1]);
+        for i in 0..n {
+            let is_linked = [linked[i] & links::LEFT != 0, linked[i] & links::RIGHT != 0];
+            out[i] = slope([before[i], own[i], after[i]], is_linked);
+        }
+    }
+
+    /// Slopes from row to row.
+    fn slopes_down(rows: [&[f32]; 3], linked: &[u8], out: &mut [f32]) {
+        let n = out.len();
+        let ([above, here, below], linked) = (rows.map(|row| &row[..n]), &linked[..n]);
+        for i in 0..n {
+            let is_linked = [linked[i] & links::UP != 0, linked[i] & links::DOWN != 0];
+            out[i] = slope([above[i], here[i], below[i]], is_linked);
+        }
+    }
 }
