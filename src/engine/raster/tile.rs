@@ -199,7 +199,11 @@ crate::widest! {
         let mut least = [u8::MAX; 32];
         // Eight pixels at a time, which become one shuffle and one minimum.
         for pixels in rgba.as_chunks_mut::<32>().0 {
-            let alpha: [u8; 32] = std::array::from_fn(|i| pixels[i | 3]);
+            // A loop and no closure, which is not always inlined.
+            let mut alpha = [0; 32];
+            for i in 0..32 {
+                alpha[i] = pixels[i | 3];
+            }
             for i in 0..32 {
                 pixels[i] = pixels[i].min(alpha[i]);
                 least[i] = least[i].min(alpha[i]);

@@ -1,16 +1,19 @@
 //! Chunks of a painted ball: the place on the ball whose paint each pixel of a surface shows, so
 //! that whole brush marks are seen (StyleBlit, Sýkora et al. 2019, MATH 5). Floor 2. Here: the
-//! equations, one pixel at a time, and the cache; `fill` is the fast way over a map, `seams` the
-//! averaging where chunks meet. Not here: the ball's colors (`shading::sphere`).
+//! equations, one pixel at a time, and the cache; `fill` and `sown` are the fast way over a map, `seams` the
+//! averaging where chunks meet, `shown` where some of the ball is seen. Not here: the ball's colors (`shading::sphere`).
 
 mod fill;
 mod seams;
+mod shown;
+mod sown;
 mod ways;
 
 #[cfg(test)]
 mod tests;
 
 pub use seams::SEAM_STEPS;
+pub use shown::BallCells;
 
 use super::Surface;
 use super::cache::HeapSize;
@@ -46,11 +49,21 @@ const LOOKED_UP: u8 = 1;
 
 /// A place on the ball, in steps that `BallPlaces` gives, and which chunk showed it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BallPlace {
+struct BallPlace {
     /// From the upper left of the ball's square.
-    pub at: [u16; 2],
+    at: [u16; 2],
     /// A number that tells neighboring chunks apart; 0 off the surface.
     chunk: u8,
+}
+
+impl BallPlace {
+    /// A place on the ball's square, px.
+    ///
+    /// * `steps`: to a px.
+    #[inline(always)]
+    fn of(place: Vec2, chunk: u8, steps: f32) -> Self {
+        Self { at: [(place.x * steps + 0.5) as u16, (place.y * steps + 0.5) as u16], chunk }
+    }
 }
 
 /// A seed: where a chunk lies on the surface, and on the ball.
@@ -95,6 +108,7 @@ impl SeedGrid {
     }
 
     /// The cell whose seed is nearest to the middle of a pixel, of the nine around it.
+    #[cfg(test)]
     fn nearest(&self, pixel: (usize, usize)) -> (i32, i32) {
         let middle = vec2(pixel.0 as f32 + 0.5, pixel.1 as f32 + 0.5);
         let (mut best, mut least) = ((0, 0), f32::MAX);
@@ -120,8 +134,11 @@ fn square(v: Vec2) -> f32 {
 }
 
 /// A cell and its neighbors, row by row.
+#[inline(always)]
 fn neighboring_cells((i, j): (i32, i32)) -> [(i32, i32); 9] {
-    std::array::from_fn(|k| (i + k as i32 % 3 - 1, j + k as i32 / 3 - 1))
+    let row = |j: i32| [(i - 1, j), (i, j), (i + 1, j)];
+    let [[a, b, c], [d, e, f], [g, h, k]] = [row(j - 1), row(j), row(j + 1)];
+    [a, b, c, d, e, f, g, h, k]
 }
 
 impl ChunkSettings {
@@ -144,18 +161,12 @@ impl ChunkSettings {
         let (x, y) = (place.x * per_px - 1.0, place.y * per_px - 1.0);
         let below = 1.0 - (x * x + y * y);
         let z = below.max(0.0).sqrt();
-        below > 0.0 && (x - nbar.x).abs() + (y - nbar.y).abs() + (z - nz).abs() < NEAR
+        (below > 0.0) & ((x - nbar.x).abs() + (y - nbar.y).abs() + (z - nz).abs() < NEAR)
     }
 
     /// Steps of stored places, a px: a power of two, as fine as 16 bits allow.
     fn steps(&self) -> f32 {
         (f32::from(u16::MAX) / self.ball_px.max(1.0)).log2().floor().exp2()
-    }
-
-    #[inline(always)]
-    fn store_place(&self, place: Vec2, chunk: u8) -> BallPlace {
-        let steps = self.steps();
-        BallPlace { at: [place.x, place.y].map(|v| (v * steps + 0.5) as u16), chunk }
     }
 
     fn key(&self) -> [u32; 4] {
@@ -258,18 +269,24 @@ impl<'a> ChunkMaps<'a> {
         if self.surface.coverage(x, y) == 0 {
             return BallPlace::default();
         }
-        self.settings.sides().find_map(|level| self.chunk_place(level, x, y)).map_or_else(
-            || self.settings.store_place(self.look_up(x, y), LOOKED_UP),
-            |(place, chunk)| self.settings.store_place(place, chunk),
-        )
+        let in_chunk = |level| {
+            let grid = self.grid(level, self.part(x, y));
+            self.chunk_place(&grid, grid.nearest((x, y)), (x, y))
+        };
+        let found = self.settings.sides().find_map(in_chunk);
+        let (place, chunk) = found.unwrap_or((self.look_up(x, y), LOOKED_UP));
+        BallPlace::of(place, chunk, self.settings.steps())
     }
 
-    /// The place in a chunk of one size, if it suits, px of the ball's square; and the chunk.
-    fn chunk_place(&self, level: (u32, f32), x: usize, y: usize) -> Option<(Vec2, u8)> {
-        let part = self.part(x, y);
-        let grid = self.grid(level, part);
-        let cell = grid.nearest((x, y));
-        let seed = self.seed(&grid, cell, part)?;
+    /// The place of a pixel in the chunk of a cell, if it suits, px of the ball's square; and the
+    /// chunk.
+    fn chunk_place(
+        &self,
+        grid: &SeedGrid,
+        cell: (i32, i32),
+        (x, y): (usize, usize),
+    ) -> Option<(Vec2, u8)> {
+        let seed = self.seed(grid, cell, self.part(x, y))?;
         let place = seed.place(vec2(x as f32 + 0.5, y as f32 + 0.5));
         let is_taken = self.settings.is_near(place, self.nbar(x, y), self.seen[2].at(x, y))
             && self.ways.is_reached(seed.pixel(), (x, y));
@@ -337,10 +354,12 @@ impl BallPlaces {
     }
 
     /// The place that the neighbor of a bit shows at (x, y): its own, moved there; in steps.
+    #[inline]
     pub fn place_beside(&self, x: usize, y: usize, bit: usize) -> [f32; 2] {
         let (dx, dy) = SEAM_STEPS[bit & 7];
         let step = self.seam_px as i32;
-        let at = self.places.at_clamped(x as i32 + dx * step, y as i32 + dy * step);
+        let beside = (x as i32 + dx * step, y as i32 + dy * step);
+        let at = self.places.get(beside.0, beside.1).unwrap_or_default();
         let back = self.seam_px as f32 * self.steps;
         [f32::from(at[0]) - dx as f32 * back, f32::from(at[1]) - dy as f32 * back]
     }

@@ -3,12 +3,12 @@
 //! strokes the sphere is read where whole brush marks stay (`surface::chunks`). Floor 3.
 
 use super::{Shading, lobes};
-use crate::math::{srgb, vec2};
+use crate::math::srgb;
 use crate::raster::TILE;
 use crate::shading::LitSphere;
 use crate::shading::sphere::SphereLight;
 use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
-use crate::surface::chunks::{BallPlaces, SEAM_STEPS};
+use crate::surface::chunks::BallPlaces;
 
 /// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest on the
 /// spheres.
@@ -32,10 +32,10 @@ pub fn shade(
         relief.turn(surface_row, LightDirection::VIEWER);
     }
     let shown = look_up_row(surface_row, places, [Some(convex), concave], relief.kappa());
-    let brightest = concave.map_or(0.0, SphereLight::brightest).max(convex.brightest());
-    let delta = reflectances(&shown, 1.0 / shading.reference.resolve(brightest));
     let mut sigma = [1.0; TILE];
     if term.is_scaled() {
+        let brightest = concave.map_or(0.0, SphereLight::brightest).max(convex.brightest());
+        let delta = reflectances(&shown, 1.0 / shading.reference.resolve(brightest));
         lobes::scale(&mut sigma, term.scaling, relief.exponentials(term.scaling), &delta);
     }
     lobes::add_shown(light, term.linear(), &shown, &sigma);
@@ -114,15 +114,61 @@ fn average_seams(
     let Some(seams) = places.seams(surface_row.y) else { return };
     let row = &seams[surface_row.x0..surface_row.x0 + surface_row.width];
     let per_step = places.nbar_per_step();
+    let mut batch = SeamBatch::default();
     for (x, bits) in row.iter().enumerate().filter(|(_, bits)| **bits > 0) {
-        let mut sum = [shown[0][x], shown[1][x], shown[2][x]];
-        for bit in (0..SEAM_STEPS.len()).filter(|bit| bits >> bit & 1 != 0) {
+        let mut left = *bits;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize;
+            left &= left - 1;
             let [across, down] = places.place_beside(surface_row.x0 + x, surface_row.y, bit);
-            let light = sphere.at(vec2(across * per_step - 1.0, down * per_step - 1.0));
-            sum.iter_mut().zip(light).for_each(|(sum, light)| *sum += light);
+            batch.push(x, [across * per_step - 1.0, 1.0 - down * per_step]);
+            if batch.count == TILE {
+                batch.add_to(sphere, shown);
+            }
         }
+    }
+    batch.add_to(sphere, shown);
+    for (x, bits) in row.iter().enumerate().filter(|(_, bits)| **bits > 0) {
         let mean = 1.0 / (1 + bits.count_ones()) as f32;
-        shown.iter_mut().zip(sum).for_each(|(shown, sum)| shown[x] = sum * mean);
+        shown.iter_mut().for_each(|shown| shown[x] *= mean);
+    }
+}
+
+/// Places of neighbors that are looked up at once.
+struct SeamBatch {
+    count: usize,
+    /// The pixels that they are added to.
+    pixels: [u8; TILE],
+    /// n̄ of the ball (y up).
+    nbar: [RowValues; 3],
+}
+
+impl Default for SeamBatch {
+    fn default() -> Self {
+        Self { count: 0, pixels: [0; TILE], nbar: [[0.0; TILE]; 3] }
+    }
+}
+
+impl SeamBatch {
+    fn push(&mut self, pixel: usize, [x, y]: [f32; 2]) {
+        self.pixels[self.count] = pixel as u8;
+        (self.nbar[0][self.count], self.nbar[1][self.count]) = (x, y);
+        self.count += 1;
+    }
+
+    /// Adds what they show, and begins anew.
+    fn add_to(&mut self, sphere: &SphereLight, shown: &mut Light3) {
+        if self.count == 0 {
+            return;
+        }
+        let mut light = [[0.0; TILE]; 3];
+        sphere.at_row(&self.nbar, &mut light);
+        for (shown, light) in shown.iter_mut().zip(&light) {
+            for (pixel, light) in self.pixels[..self.count].iter().zip(light) {
+                shown[usize::from(*pixel)] += light;
+            }
+        }
+        self.count = 0;
     }
 }
 
@@ -134,7 +180,7 @@ fn reflectances(shown: &Light3, per_reference: f32) -> RowValues {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, hash, vec3};
+    use crate::math::{Size, hash, vec2, vec3};
     use crate::raster::{Picture, Plane, TileAt};
     use crate::shading::{BallStrokes, Model};
     use crate::surface::{Maps, Scene, Surface};

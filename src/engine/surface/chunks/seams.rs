@@ -1,66 +1,151 @@
 //! Where chunks meet: which neighbors' places are averaged with a pixel's own. Floor 2.
 
-use super::{BallPlace, BallPlaces, ChunkMaps};
+use super::ways::{WayLanes, WayPairs};
+use super::{BallPlaces, ChunkMaps, ChunkSettings};
 use crate::math::vec2;
 use crate::raster::Plane;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The directions in which neighbors are looked for.
 pub const SEAM_STEPS: [(i32, i32); 8] =
     [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 /// Finds the seams of places.
-pub(super) fn find_seams(maps: &ChunkMaps, places: Plane<BallPlace>) -> BallPlaces {
-    let at = Plane::from_fn(places.size(), |x, y| places.at(x, y).at);
-    let mut joined = BallPlaces::without_seams(at, &maps.settings);
+///
+/// * `chunks`: which chunk each pixel shows; 0 off the surface.
+pub(super) fn find_seams(
+    maps: &ChunkMaps,
+    mut places: BallPlaces,
+    chunks: &Plane<u8>,
+) -> BallPlaces {
     let seam_px = maps.settings.seam_px.round();
     if seam_px < 1.0 {
-        return joined;
+        return places;
     }
-    joined.seam_px = seam_px as usize;
-    let (mut seams, chunks) = (Plane::full(places.size(), 0u8), places.map(|place| place.chunk));
-    let width = places.width().max(1);
+    places.seam_px = seam_px as usize;
+    let mut seams = Plane::full(chunks.size(), 0u8);
+    let width = chunks.width().max(1);
     seams.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-        find_borders(&chunks, y, joined.seam_px, row);
-        for (x, out) in row.iter_mut().enumerate().filter(|(_, bits)| **bits > 0) {
-            *out = average(maps, &joined, (x, y), *out);
+        for (bit, step) in SEAM_STEPS.into_iter().enumerate() {
+            if let Some(pairs) = SeamPairs::of(maps, (&places, chunks), y, step) {
+                mark_seams(&pairs, 1 << bit, &mut row[pairs.own.columns.clone()]);
+            }
         }
     });
-    joined.seams = Some(seams);
-    joined
+    places.seams = Some(seams);
+    places
+}
+
+/// What pixels of a row show.
+struct SeamRow<'r> {
+    columns: Range<usize>,
+    places: &'r [[u16; 2]],
+    chunks: &'r [u8],
+}
+
+/// Pixels of a row, and those that lie a step away.
+struct SeamPairs<'r> {
+    own: SeamRow<'r>,
+    other: SeamRow<'r>,
+    ways: WayPairs<'r>,
+    normals: [&'r [f32]; 3],
+    /// From a place to where it was before the step, in steps of places.
+    back: [f32; 2],
+    settings: ChunkSettings,
+    /// Of a step of places, px.
+    per_step: f32,
+}
+
+impl<'r> SeamPairs<'r> {
+    /// Those within the canvas, if there are any.
+    fn of(
+        maps: &'r ChunkMaps,
+        (places, chunks): (&'r BallPlaces, &'r Plane<u8>),
+        y: usize,
+        (dx, dy): (i32, i32),
+    ) -> Option<Self> {
+        let (width, reach) = (chunks.width(), places.seam_px);
+        let other = y.checked_add_signed(dy as isize * reach as isize)?;
+        if other >= chunks.height() || reach >= width {
+            return None;
+        }
+        let [left, right] = [dx < 0, dx > 0].map(|is_there| reach * usize::from(is_there));
+        let own = left..width - right;
+        let row = |y: usize, columns: Range<usize>| SeamRow {
+            places: &places.row(y)[columns.clone()],
+            chunks: &chunks.row(y)[columns.clone()],
+            columns,
+        };
+        let (steps, far) = (reach as f32 * places.steps, right..width - left);
+        Some(Self {
+            ways: maps.ways.pairs([y, other], [own.clone(), far.clone()]),
+            normals: maps.seen.each_ref().map(|plane| &plane.row(y)[own.clone()]),
+            own: row(y, own),
+            other: row(other, far),
+            back: [dx as f32 * steps, dy as f32 * steps],
+            settings: maps.settings,
+            // Steps are a power of two, so that this is exact.
+            per_step: 1.0 / places.steps,
+        })
+    }
+
+    /// `N` pixels from one on, if there are so many.
+    #[inline(always)]
+    fn lanes<const N: usize>(&self, first: usize) -> Option<SeamLanes<'r, N>> {
+        let Self { own, other, ways, normals: [nx, ny, nz], .. } = self;
+        Some(SeamLanes {
+            chunks: [own.chunks[first..].first_chunk()?, other.chunks[first..].first_chunk()?],
+            places: other.places[first..].first_chunk()?,
+            normals: [
+                nx[first..].first_chunk()?,
+                ny[first..].first_chunk()?,
+                nz[first..].first_chunk()?,
+            ],
+            ways: ways.lanes(first)?,
+        })
+    }
+
+    /// Adds a bit to pixels that are averaged with the other: its place suits, in another chunk,
+    /// and it is joined to the pixel.
+    #[inline(always)]
+    fn mark<const N: usize>(&self, lanes: &SeamLanes<N>, bit: u8, bits: &mut [u8; N]) {
+        let SeamLanes { chunks: [own, other], places, normals: [nx, ny, nz], ways } = lanes;
+        for i in 0..N {
+            let is_border = (own[i] != other[i]) & (own[i] != 0) & (other[i] != 0);
+            let [x, y] = places[i];
+            let at = vec2(f32::from(x) - self.back[0], f32::from(y) - self.back[1]) * self.per_step;
+            let is_near = self.settings.is_near(at, vec2(nx[i], ny[i]), nz[i]);
+            bits[i] |= if is_border & is_near & ways.are_joined(i) { bit } else { 0 };
+        }
+    }
+}
+
+/// Pairs that are worked on at once: chunks of both, the other's place, the own normal, and the
+/// ways between them.
+struct SeamLanes<'r, const N: usize> {
+    chunks: [&'r [u8; N]; 2],
+    places: &'r [[u16; 2]; N],
+    normals: [&'r [f32; N]; 3],
+    ways: WayLanes<'r, N>,
 }
 
 crate::widest! {
-    /// The bits of the neighbors that lie in other chunks.
-    fn find_borders(chunks: &Plane<u8>, y: usize, step: usize, bits: &mut [u8]) {
-        let (own, width) = (chunks.row(y), bits.len());
-        for (bit, (dx, dy)) in SEAM_STEPS.iter().enumerate() {
-            let other = y as i64 + i64::from(*dy) * step as i64;
-            if other < 0 || other >= chunks.height() as i64 || step >= width {
-                continue;
+    /// Adds a bit to the pixels that are averaged with the other.
+    fn mark_seams(pairs: &SeamPairs, bit: u8, bits: &mut [u8]) {
+        let (groups, rest) = bits.as_chunks_mut::<8>();
+        let count = groups.len() * 8;
+        for (group, bits) in groups.iter_mut().enumerate() {
+            if let Some(lanes) = pairs.lanes::<8>(group * 8)
+                && lanes.chunks[0] != lanes.chunks[1]
+            {
+                pairs.mark(&lanes, bit, bits);
             }
-            let other = chunks.row(other as usize);
-            let (from, to) = (if *dx > 0 { step } else { 0 }, if *dx < 0 { step } else { 0 });
-            let count = width - from.max(to);
-            let pixels = bits[to..to + count].iter_mut().zip(&own[to..to + count]);
-            for ((bits, own), other) in pixels.zip(&other[from..from + count]) {
-                let is_border = (own != other) & (*own != 0) & (*other != 0);
-                *bits |= u8::from(is_border) << bit;
+        }
+        for (i, bits) in rest.iter_mut().enumerate() {
+            if let Some(lanes) = pairs.lanes::<1>(count + i) {
+                pairs.mark(&lanes, bit, std::array::from_mut(bits));
             }
         }
     }
-}
-
-/// Those of some neighbors that are joined to the pixel, and whose places suit it.
-fn average(maps: &ChunkMaps, joined: &BallPlaces, (x, y): (usize, usize), bits: u8) -> u8 {
-    let step = joined.seam_px as i32;
-    let (nbar, nz) = (maps.nbar(x, y), maps.seen[2].at(x, y));
-    let is_averaged = |bit: usize| {
-        let (dx, dy) = SEAM_STEPS[bit];
-        let other = ((x as i32 + dx * step) as usize, (y as i32 + dy * step) as usize);
-        let [px, py] = joined.place_beside(x, y, bit).map(|step| step / joined.steps);
-        maps.settings.is_near(vec2(px, py), nbar, nz) && maps.ways.is_reached((x, y), other)
-    };
-    let is_kept = |bit: &usize| bits >> bit & 1 != 0 && is_averaged(*bit);
-    (0..SEAM_STEPS.len()).filter(is_kept).fold(0, |kept, bit| kept | 1 << bit)
 }

@@ -116,9 +116,13 @@ fn no_chunk_goes_across_a_jump_in_depth_or_a_gap() {
 /// The seed of the chunk that a pixel shows.
 fn maps_seed(maps: &ChunkMaps, (x, y): (usize, usize)) -> Option<Seed> {
     let part = maps.part(x, y);
-    let level = maps.settings.sides().find(|level| maps.chunk_place(*level, x, y).is_some())?;
-    let grid = maps.grid(level, part);
-    maps.seed(&grid, grid.nearest((x, y)), part)
+    let chunk = |level| {
+        let grid = maps.grid(level, part);
+        let cell = grid.nearest((x, y));
+        maps.chunk_place(&grid, cell, (x, y)).map(|_| (grid, cell))
+    };
+    let (grid, cell) = maps.settings.sides().find_map(chunk)?;
+    maps.seed(&grid, cell, part)
 }
 
 #[test]

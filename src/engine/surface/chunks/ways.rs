@@ -4,6 +4,7 @@ use crate::math::{Rect, Size};
 use crate::raster::Plane;
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// For every pixel how many links are missing before it, in its row and in its column: two pixels
 /// of a row with the same number are joined. Counts wrap; no row is long enough for that to tell.
@@ -45,6 +46,22 @@ impl WayCounts {
         along(y0) && upright(x1) || upright(x0) && along(y1)
     }
 
+    /// The counts of pixels and of those that they are paired with.
+    ///
+    /// * `rows`, `columns`: of the one and of the other.
+    pub fn pairs(&self, rows: [usize; 2], columns: [Range<usize>; 2]) -> WayPairs<'_> {
+        let corner = |row: usize, column: usize| {
+            let (row, columns) = (rows[row], columns[column].clone());
+            (&self.across.row(row)[columns.clone()], &self.down.row(row)[columns])
+        };
+        WayPairs {
+            here: corner(0, 0),
+            beside: corner(0, 1),
+            below: corner(1, 0),
+            there: corner(1, 1),
+        }
+    }
+
     /// Whether every pixel of a rectangle, as far as it lies on the canvas, is joined to its
     /// neighbors in it.
     pub fn is_whole(&self, rect: Rect) -> bool {
@@ -57,5 +74,46 @@ impl WayCounts {
         let [y0, y1] = [rect.y0, rect.y1 - 1].map(|y| y as usize);
         (y0..=y1).all(|y| self.across.at(x0, y) == self.across.at(x1, y))
             && self.down.row(y0)[x0..=x1] == self.down.row(y1)[x0..=x1]
+    }
+}
+
+/// The counts across and down at the corners of the ways between pairs of pixels.
+pub(super) struct WayPairs<'w> {
+    here: (&'w [u16], &'w [u16]),
+    beside: (&'w [u16], &'w [u16]),
+    below: (&'w [u16], &'w [u16]),
+    there: (&'w [u16], &'w [u16]),
+}
+
+impl<'w> WayPairs<'w> {
+    /// Those of `N` pairs from one on, if there are so many.
+    #[inline(always)]
+    pub fn lanes<const N: usize>(&self, first: usize) -> Option<WayLanes<'w, N>> {
+        let Self { here, beside, below, there } = self;
+        Some(WayLanes {
+            here: (here.0[first..].first_chunk()?, here.1[first..].first_chunk()?),
+            beside: (beside.0[first..].first_chunk()?, beside.1[first..].first_chunk()?),
+            below: (below.0[first..].first_chunk()?, below.1[first..].first_chunk()?),
+            there: (there.0[first..].first_chunk()?, there.1[first..].first_chunk()?),
+        })
+    }
+}
+
+/// Some of them.
+pub(super) struct WayLanes<'w, const N: usize> {
+    here: (&'w [u16; N], &'w [u16; N]),
+    beside: (&'w [u16; N], &'w [u16; N]),
+    below: (&'w [u16; N], &'w [u16; N]),
+    there: (&'w [u16; N], &'w [u16; N]),
+}
+
+impl<const N: usize> WayLanes<'_, N> {
+    /// As [`WayCounts::is_reached`], of one pair.
+    #[inline(always)]
+    pub fn are_joined(&self, i: usize) -> bool {
+        let Self { here, beside, below, there } = self;
+        let along_first = (here.0[i] == beside.0[i]) & (beside.1[i] == there.1[i]);
+        let down_first = (here.1[i] == below.1[i]) & (below.0[i] == there.0[i]);
+        along_first | down_first
     }
 }
