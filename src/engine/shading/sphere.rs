@@ -41,9 +41,14 @@ impl LitSphere {
 
     /// The same, as fine as is seen where its disc is so many px wide.
     pub fn light_at(&self, diameter_px: f32) -> &SphereLight {
-        let texels = self.picture.size.width.min(self.picture.size.height) as f32;
+        self.level(Self::halvings(self.picture.size, diameter_px) as usize)
+    }
+
+    /// How often a picture of a sphere is halved for that.
+    pub fn halvings(size: Size, diameter_px: f32) -> f32 {
+        let texels = size.width.min(size.height) as f32;
         let halvings = (texels / diameter_px.max(1.0)).log2().round();
-        self.level(halvings.max(0.0).min((HALVINGS - 1) as f32) as usize)
+        halvings.max(0.0).min((HALVINGS - 1) as f32)
     }
 
     fn level(&self, times: usize) -> &SphereLight {

@@ -6,8 +6,8 @@ use crate::document::{
 };
 use crate::math::{Size, hash, srgb::Color, vec2, vec3};
 use crate::paint::{Brush, Gradient, GradientStop, Stroke};
-use crate::raster::{BlendMode, Plane, TileGrid};
-use crate::shading::RadianceScaling;
+use crate::raster::{BlendMode, Picture, Plane, TileGrid};
+use crate::shading::{LitSphere, Model, RadianceScaling, Shading};
 use crate::surface::{Maps, Operator, Surface};
 
 const SIZE: Size = Size::new(250, 190);
@@ -224,4 +224,55 @@ fn another_surface_changes_everything() {
     let old = Document { layers: vec![Arc::new(draw.layer(0))], ..Document::empty(SIZE) };
     let new = Document { surface: Some(dome()), ..old.clone() };
     assert_eq!(diff(&old, &new).len(), 12);
+}
+
+/// A ball before a wall, so that there are contours, under a painted ball of stripes.
+fn figure_of_a_painted_ball(dab: Option<(u32, u32)>) -> Document {
+    let size = Size::new(300, 260);
+    let at = |x: usize, y: usize| {
+        let (dx, dy) = ((x as f32 - 150.0) / 90.0, (y as f32 - 130.0) / 90.0);
+        let z2 = 1.0 - dx * dx - dy * dy;
+        let wall = vec3((x as f32 * 0.03).sin(), (y as f32 * 0.04).cos(), 1.5);
+        if z2 > 0.0 { (vec3(dx, -dy, z2.sqrt()), 0.5 - 0.3 * z2.sqrt()) } else { (wall, 1.0) }
+    };
+    let surface = Surface::new(Maps {
+        normals: Plane::from_fn(size, |x, y| at(x, y).0),
+        depth: Plane::from_fn(size, |x, y| at(x, y).1),
+        coverage: Plane::full(size, 255),
+    });
+    let texel = |i: u32| {
+        let (x, y) = (i % 128, i / 128);
+        let is_dab = dab.is_some_and(|(u, v)| x.abs_diff(u) < 5 && y.abs_diff(v) < 5);
+        if is_dab { [255, 0, 0, 255] } else { [(x * 2) as u8, (y * 2) as u8, 90, 255] }
+    };
+    let picture = Picture::srgb8(Size::new(128, 128), (0..128 * 128).map(texel).collect()).unwrap();
+    let mut shading = Shading::new(Model::LitSphere);
+    shading.strokes.on = true;
+    shading.strokes.size = 128.0;
+    let ball = LitSphere::new("ball.png".into(), picture);
+    let layer = Layer::new("Lit", Content::Shading(Live::new(shading.with_ball(false, ball))));
+    Document { surface: surface.ok().map(Arc::new), ..Document::empty(size) }.with_top(layer)
+}
+
+#[test]
+fn a_dab_on_a_painted_ball_changes_the_tiles_that_show_it() {
+    let old = figure_of_a_painted_ball(None);
+    let all = TileAt::covering(old.size.rect()).count();
+    for dab in [(64, 64), (30, 50), (90, 100), (64, 3), (118, 64)] {
+        let mut new = figure_of_a_painted_ball(Some(dab));
+        new.surface = old.surface.clone();
+        // The same layer with another ball.
+        new.layers = vec![Arc::new(Layer {
+            content: new.layers[0].content.clone(),
+            ..Layer::clone(&old.layers[0])
+        })];
+        let told = diff(&old, &new);
+        let [before, after] =
+            [&old, &new].map(|d| flatten(d, &Progress::default()).expect("a picture"));
+        let differing = differing(&before, &after);
+        assert!(!differing.is_empty() && differing.len() < all, "{dab:?}");
+        let missed: Vec<_> = differing.iter().filter(|at| !told.contains(at)).collect();
+        assert!(missed.is_empty(), "{dab:?}: {missed:?}");
+        assert!(told.len() < all, "{dab:?}: {} of {all}", told.len());
+    }
 }

@@ -148,7 +148,15 @@ impl LayerKind for Live<Shading> {
         false
     }
 
-    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
-        Changed::of_live(self, if let Content::Shading(old) = old { Some(old) } else { None })
+    fn difference_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
+        let Content::Shading(old) = old else { return Changed::Wholly };
+        if self.ptr_eq(old) {
+            return Changed::Nowhere;
+        }
+        // Where the ball is painted on, the figure shows few of its places.
+        let tiles = (self.params().has_strokes() && !self.params().has_ground_shadow())
+            .then(|| self.params().repainted_tiles(old.params(), &scene()))
+            .flatten();
+        tiles.map_or(Changed::Wholly, Changed::Tiles)
     }
 }
