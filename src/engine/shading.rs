@@ -14,6 +14,7 @@ pub mod mood;
 mod painter;
 mod pixel;
 pub mod radiance;
+mod repainted;
 pub mod scaling;
 mod shadow;
 pub mod sphere;

@@ -1,12 +1,9 @@
-//! A lit sphere whose brush marks stay whole: its settings, and where a figure looks different after
-//! its ball was painted on. Floor 3. Not here: which place of the ball each pixel shows
-//! (`surface::chunks`), its colors (`sphere`).
+//! A lit sphere whose brush marks stay whole: its settings. Floor 3. Not here: which place of the
+//! ball each pixel shows (`surface::chunks`), its colors (`sphere`).
 
-use super::{LitSphere, Shading};
 use crate::math::number_settings::number_settings;
-use crate::raster::{Picture, TileAt};
-use crate::surface::chunks::{BallCells, BallPlaces, ChunkSettings};
-use crate::surface::{Scene, Surface};
+use crate::surface::Surface;
+use crate::surface::chunks::{BallPlaces, ChunkSettings};
 use std::sync::Arc;
 
 number_settings! {
@@ -41,7 +38,8 @@ impl BallStrokes {
         self.on.then(|| surface.ball_places(&self.chunk_settings()))
     }
 
-    fn chunk_settings(&self) -> ChunkSettings {
+    /// How its places are found.
+    pub fn chunk_settings(&self) -> ChunkSettings {
         ChunkSettings {
             ball_px: self.size,
             chunk_px: self.chunk,
@@ -49,58 +47,4 @@ impl BallStrokes {
             seam_px: self.seams,
         }
     }
-}
-
-impl Shading {
-    /// The tiles that may look different from those of an earlier version whose balls were painted
-    /// on since; `None` if more is different, or if it may be all of them.
-    pub fn repainted_tiles(&self, old: &Self, scene: &Scene) -> Option<Vec<TileAt>> {
-        // How strong scaling is depends on the brightest place of the ball.
-        if !self.has_strokes() || self.specular.is_scaled() {
-            return None;
-        }
-        let of_old = Self {
-            sphere: old.sphere.clone(),
-            sphere_concave: old.sphere_concave.clone(),
-            ..self.clone()
-        };
-        let mut cells = BallCells::none();
-        for hollows in [false, true] {
-            match (old.ball(hollows), self.ball(hollows)) {
-                (None, None) => {}
-                (Some(old), Some(new)) => {
-                    mark_repainted(&old.picture, &new.picture, self.strokes.size, &mut cells)?;
-                }
-                _ => return None,
-            }
-        }
-        let surface = scene.surface.as_ref().filter(|_| of_old == *old)?;
-        Some(surface.tiles_showing_ball(&self.strokes.chunk_settings(), &cells))
-    }
-}
-
-/// Marks where two pictures of a ball look different at a diameter of so many px; `None` if they
-/// are of different sizes.
-fn mark_repainted(
-    old: &Picture,
-    new: &Picture,
-    diameter_px: f32,
-    cells: &mut BallCells,
-) -> Option<()> {
-    /// Texels that a place reads beside it, and those of the rim that go on beyond it.
-    const REACH: f32 = 4.0;
-    let size = new.size;
-    if old.size != size {
-        return None;
-    }
-    let (w, h) = (size.width as usize, size.height as usize);
-    let mut own = BallCells::none();
-    for i in (0..w * h).filter(|i| old.linear_texel(*i) != new.linear_texel(*i)) {
-        let (x, y) = ((i % w) as f32 + 0.5, (i / w) as f32 + 0.5);
-        own.mark([x / w as f32, y / h as f32]);
-    }
-    let texels = LitSphere::halvings(size, diameter_px).exp2() * REACH;
-    let cell = w.min(h) as f32 / BallCells::SIDE as f32;
-    cells.add(&own.grown((texels / cell).ceil() as usize + 1));
-    Some(())
 }

@@ -1,7 +1,8 @@
 //! Chunks of a painted ball: the place on the ball whose paint each pixel of a surface shows, so
 //! that whole brush marks are seen (StyleBlit, Sýkora et al. 2019, MATH 5). Floor 2. Here: the
-//! equations, one pixel at a time, and the cache; `fill` and `sown` are the fast way over a map, `seams` the
-//! averaging where chunks meet, `shown` where some of the ball is seen. Not here: the ball's colors (`shading::sphere`).
+//! equations, one pixel at a time, and the cache; `fill` and `sown` are the fast way over a map,
+//! `seams` the averaging where chunks meet, `shown` where some of the ball is seen. Not here: the
+//! ball's colors (`shading::sphere`).
 
 mod fill;
 mod seams;
@@ -44,6 +45,8 @@ const NEAR: f32 = 2.0 * 24.0 / 255.0;
 const LEVELS: i32 = 7;
 /// Bent chunks are enlarged or reduced up to this factor.
 const MOST_STRETCH: f32 = 4.0;
+/// Pixels of a row that are worked on at once.
+const LANES: usize = 8;
 /// The number of pixels that show what a lit sphere does.
 const LOOKED_UP: u8 = 1;
 

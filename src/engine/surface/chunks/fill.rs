@@ -3,14 +3,12 @@
 
 use super::sown::SownParts;
 use super::{
-    BallPlace, BallPlaces, ChunkMaps, LOOKED_UP, Seed, SeedGrid, neighboring_cells, seams,
+    BallPlace, BallPlaces, ChunkMaps, LANES, LOOKED_UP, Seed, SeedGrid, neighboring_cells, seams,
 };
 use crate::math::{Mat2, Rect, Vec2, fast, vec2};
 use crate::raster::{Plane, TILE};
 use rayon::prelude::*;
 
-/// Pixels that are worked on at once.
-pub(super) const LANES: usize = 8;
 /// Cells from this side on are worked on in lanes; in smaller ones few pixels are left.
 const IN_LANES_PX: f32 = 8.0;
 

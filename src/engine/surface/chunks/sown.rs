@@ -1,8 +1,7 @@
 //! Seeds of small chunks: those of a tile are sown at once, and the nearest are found for some pixels
 //! of a row at a time. Floor 2. The reference is `SeedGrid::nearest`, in the module above.
 
-use super::fill::LANES;
-use super::{ChunkMaps, SeedGrid};
+use super::{ChunkMaps, LANES, SeedGrid};
 use crate::math::{Rect, Vec2};
 
 /// The cells of a level in a tile, for every part that it shows.
