@@ -11,8 +11,9 @@ use crate::math::{Size, Vec2, vec2};
 use crate::raster::{self, Asset, Picture, TileGrid};
 use crate::{Error, Result};
 use image::ImageReader;
+use rayon::prelude::*;
 use resvg::usvg::fontdb::{Database, Family, Query};
-use resvg::usvg::{ImageHrefResolver, Options, Transform, Tree, WriteOptions};
+use resvg::usvg::{ImageHrefResolver, Node, Options, Paint, Transform, Tree, WriteOptions};
 use resvg::{tiny_skia::Pixmap, usvg};
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -52,7 +53,6 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let most = budget.side_px.min(8192) as f32;
     let scale = longer.max(LAYER_PX.min(MOST_ENLARGED * longer)).min(most) / longer;
     let (size, texels) = drawing.render(file, scale, budget)?;
-    let texels = texels.as_chunks().0.to_vec();
     let picture = Picture::srgb8(size, texels);
     let picture = picture.ok_or_else(|| Error::decode(file, "the drawing has no pixels"))?;
     let encoded = Some(drawing.outline_text(bytes));
@@ -65,7 +65,7 @@ pub fn decode_paint(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) 
     let drawing = Drawing::parse(file, bytes, budget)?;
     let (size, texels) = drawing.render(file, 1.0, budget)?;
     let (w, h) = (size.width as usize, size.height as usize);
-    let tiles = TileGrid::from_straight_rgba(&texels, w, h, x, y);
+    let tiles = TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y);
     Ok(Painted { size, tiles, warning: drawing.warning() })
 }
 
@@ -83,8 +83,7 @@ impl raster::VectorDrawing for Drawing {
 
     fn draw(&self, size: Size) -> Option<Vec<[u8; 4]>> {
         let scale = size.width as f32 / self.tree.size().width();
-        let texels = self.paint(size, scale)?;
-        Some(texels.as_chunks().0.to_vec())
+        self.paint(size, scale)
     }
 }
 
@@ -119,7 +118,7 @@ impl Drawing {
     }
 
     /// Straight bytes at a scale.
-    fn render(&self, file: &Path, scale: f32, budget: &Budget) -> Result<(Size, Vec<u8>)> {
+    fn render(&self, file: &Path, scale: f32, budget: &Budget) -> Result<(Size, Vec<[u8; 4]>)> {
         // A length that was scaled to whole pixels may be a little above.
         let side = |length: f32| (length * scale - 1e-3).ceil().max(1.0) as u64;
         let [width, height] = [self.tree.size().width(), self.tree.size().height()].map(side);
@@ -133,17 +132,58 @@ impl Drawing {
 
     /// Straight bytes of a picture of a size, the drawing enlarged; `None` where it panics, or the
     /// picture cannot be had.
-    fn paint(&self, size: Size, scale: f32) -> Option<Vec<u8>> {
-        let mut pixmap = Pixmap::new(size.width, size.height)?;
+    fn paint(&self, size: Size, scale: f32) -> Option<Vec<[u8; 4]>> {
+        let mut texels = vec![[0u8; 4]; size.area()];
+        let (mut bands, mut rest) = (Vec::new(), texels.as_mut_slice());
+        let mut top = 0;
+        for end in self.band_ends(size, scale) {
+            let (band, after) = rest.split_at_mut((end - top) * size.width as usize);
+            bands.push((top, band));
+            (top, rest) = (end, after);
+        }
+        let painted =
+            bands.into_par_iter().map(|(top, band)| self.paint_band(top, scale, size, band));
+        painted.collect::<Option<()>>()?;
+        Some(texels)
+    }
+
+    /// Paints the rows of a picture from one on.
+    fn paint_band(&self, top: usize, scale: f32, size: Size, band: &mut [[u8; 4]]) -> Option<()> {
+        let height = (band.len() / size.width.max(1) as usize) as u32;
+        let mut pixmap = Pixmap::new(size.width, height)?;
+        let at = Transform::from_row(scale, 0.0, 0.0, scale, 0.0, -(top as f32));
         catch_unwind(AssertUnwindSafe(|| {
-            resvg::render(&self.tree, Transform::from_scale(scale, scale), &mut pixmap.as_mut());
+            resvg::render(&self.tree, at, &mut pixmap.as_mut());
         }))
         .ok()?;
-        let mut rgba = pixmap.take();
-        for texel in rgba.as_chunks_mut().0 {
-            *texel = straight(*texel);
+        for (texel, painted) in band.iter_mut().zip(pixmap.data().as_chunks().0) {
+            *texel = straight(*painted);
         }
-        Some(rgba)
+        Some(())
+    }
+
+    /// The rows at which bands of a picture end that are painted side by side: between lines of text,
+    /// where no path is cut. Always the same ones, so that the picture does not depend on threads.
+    fn band_ends(&self, size: Size, scale: f32) -> Vec<usize> {
+        /// So many at most.
+        const BANDS: usize = 4;
+        let height = size.height as usize;
+        let mut is_free = vec![true; height + 1];
+        let mut take = |top: f32, bottom: f32| {
+            let row = |y: f32, by: f32| ((y * scale + by).max(0.0) as usize).min(height);
+            is_free[row(top, -1.0)..=row(bottom, 2.0)].fill(false);
+        };
+        let mut ends = Vec::new();
+        if are_plain(self.tree.root(), &mut take) {
+            for k in 1..BANDS {
+                let (wanted, reach) = (height * k / BANDS, height / (3 * BANDS));
+                let near = (0..reach).flat_map(|by| [wanted - by, wanted + by]);
+                ends.extend(near.into_iter().find(|row| is_free[*row]));
+            }
+        }
+        ends.push(height);
+        ends.dedup();
+        ends
     }
 
     /// The file with its text as outlines: the same on every machine.
@@ -159,6 +199,29 @@ impl Drawing {
         let is_lost = self.has_text && !self.tree.has_text_nodes();
         is_lost.then_some("its text is left out: its fonts are not installed")
     }
+}
+
+/// Whether only paths are painted one over the other, each pixel by itself.
+///
+/// * `take`: is told the upper and the lower end of each path.
+fn are_plain(group: &usvg::Group, take: &mut impl FnMut(f32, f32)) -> bool {
+    let is_bare = group.filters().is_empty()
+        && group.mask().is_none()
+        && group.clip_path().is_none()
+        && !group.should_isolate();
+    is_bare
+        && group.children().iter().all(|node| match node {
+            Node::Group(group) => are_plain(group, take),
+            Node::Path(path) => {
+                let bounds = path.abs_stroke_bounding_box();
+                take(bounds.top(), bounds.bottom());
+                let paints =
+                    [path.fill().map(usvg::Fill::paint), path.stroke().map(usvg::Stroke::paint)];
+                !paints.into_iter().flatten().any(|paint| matches!(paint, Paint::Pattern(_)))
+            }
+            Node::Text(text) => are_plain(text.flattened(), take),
+            Node::Image(_) => false,
+        })
 }
 
 /// A premultiplied texel as straight color.

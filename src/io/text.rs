@@ -10,12 +10,13 @@
 mod columns;
 mod lines;
 mod markup;
+mod shaped;
 
 use super::{Budget, svg};
+use crate::Result;
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::Text;
 use crate::raster::Picture;
-use crate::{Error, Result};
 use lines::{Line, lines};
 use resvg::usvg::{self, Node, Tree, WriteOptions};
 use std::path::Path;
@@ -55,11 +56,13 @@ pub struct Caret {
 /// picture of one transparent pixel.
 pub fn lay_out(text: &Text, budget: &Budget) -> Result<TextPicture> {
     let file = Path::new(FILE);
-    let lines = lines(text)?;
-    let tree = parse(&markup::of_lines(text, &lines))?;
-    let bounds = bounds(&tree);
-    let outlines = markup::drawing_within(&tree.to_string(&WriteOptions::default()), bounds);
-    let outlines = outlines.ok_or_else(|| Error::decode(file, "the text has no outlines"))?;
+    let (mut elements, mut all) = (String::new(), None);
+    for line in &lines(text)? {
+        let inked = push_line(&mut elements, text, line)?;
+        all = join(all, inked);
+    }
+    let bounds = bounds(all);
+    let outlines = markup::drawing_of(&elements, bounds);
     let picture = svg::decode(file, outlines.as_bytes(), budget)?;
     let origin = vec2(-bounds.x0 as f32, -bounds.y0 as f32);
     let size = vec2(bounds.width() as f32, bounds.height() as f32);
@@ -100,26 +103,47 @@ fn parse(markup: &str) -> Result<Tree> {
     svg::tree(Path::new(FILE), markup.as_bytes(), &Budget::default())
 }
 
-/// All that is inked, in whole px, with a pixel around it; a pixel where nothing is.
-fn bounds(tree: &Tree) -> Rect {
-    let mut bounds: Option<usvg::Rect> = None;
+/// Adds the outlines of a line in its place; what is inked of it.
+fn push_line(elements: &mut String, text: &Text, line: &Line) -> Result<Option<usvg::Rect>> {
+    if text.is_in_columns() || line.curve.is_some() {
+        let tree = parse(&markup::of_line(text, line))?;
+        elements.push_str(markup::elements(&tree.to_string(&WriteOptions::default())));
+        return Ok(find_ink(&tree));
+    }
+    let shaped = shaped::shape(line, text.align)?;
+    markup::push_moved(elements, &shaped.outlines, line.at);
+    let (x, y) = (line.at.x, line.at.y);
+    Ok(shaped.inked.and_then(|inked| {
+        let (right, bottom) = (inked.right() + x, inked.bottom() + y);
+        usvg::Rect::from_ltrb(inked.left() + x, inked.top() + y, right, bottom)
+    }))
+}
+
+/// All that is inked of a drawing of ours.
+fn find_ink(tree: &Tree) -> Option<usvg::Rect> {
     let texts = texts(tree.root());
     let lines = texts.iter().map(|text| text.flattened().abs_stroke_bounding_box());
     // Columns are outlines already.
     let columns = texts.is_empty().then(|| tree.root().abs_stroke_bounding_box());
-    for inked in lines.chain(columns) {
-        let is_inked = inked.width() > 0.0 || inked.height() > 0.0;
-        if is_inked {
-            let joined = bounds.map_or(Some(inked), |known| union(known, inked));
-            bounds = joined.or(bounds);
-        }
-    }
-    let Some(bounds) = bounds else { return Rect { x0: 0, y0: 0, x1: 1, y1: 1 } };
+    let all = lines.chain(columns).filter(|inked| inked.width() > 0.0 || inked.height() > 0.0);
+    all.fold(None, |all, inked| join(all, Some(inked)))
+}
+
+/// What is inked, in whole px, with a pixel around it; a pixel where nothing is.
+fn bounds(inked: Option<usvg::Rect>) -> Rect {
+    let Some(bounds) = inked else { return Rect { x0: 0, y0: 0, x1: 1, y1: 1 } };
     Rect {
         x0: bounds.left().floor() as i32 - 1,
         y0: bounds.top().floor() as i32 - 1,
         x1: bounds.right().ceil() as i32 + 1,
         y1: bounds.bottom().ceil() as i32 + 1,
+    }
+}
+
+fn join(a: Option<usvg::Rect>, b: Option<usvg::Rect>) -> Option<usvg::Rect> {
+    match (a, b) {
+        (Some(a), Some(b)) => union(a, b).or(Some(a)),
+        (a, b) => a.or(b),
     }
 }
 
@@ -153,9 +177,7 @@ fn advances(text: &Text, line: &Line) -> Vec<(usize, f32)> {
         column.letters.iter_mut().for_each(|(_, at)| *at += begin);
         return column.letters;
     }
-    let tree = parse(&markup::of_lines(text, std::slice::from_ref(line)));
-    let Ok(tree) = tree else { return vec![(0, 0.0)] };
-    lines::letters(line, &texts(tree.root()))
+    shaped::measure(line, text.align).map_or_else(|_| vec![(0, 0.0)], |letters| letters.to_vec())
 }
 
 #[cfg(test)]

@@ -43,6 +43,12 @@ impl Line {
         Self { pieces, start, at: Vec2::ZERO, curve: None }
     }
 
+    /// A line by itself.
+    #[cfg(test)]
+    pub(super) fn straight(pieces: Vec<TextRun>) -> Self {
+        Self::new(pieces, 0)
+    }
+
     fn string(&self) -> String {
         self.pieces.iter().map(|run| run.string.as_str()).collect()
     }
@@ -120,7 +126,8 @@ fn break_lines(text: &Text, paragraph: Line) -> Vec<Line> {
     let string = paragraph.string();
     let letters = super::advances(text, &paragraph);
     let begins = |byte: usize| {
-        letters.iter().find(|(at, _)| *at >= byte).or(letters.last()).map_or(0.0, |(_, x)| *x)
+        let after = letters.partition_point(|(at, _)| *at < byte);
+        letters.get(after).or(letters.last()).map_or(0.0, |(_, x)| *x)
     };
     let (mut lines, mut start, mut last_break) = (Vec::new(), 0, None);
     for (byte, letter) in string.char_indices() {
@@ -236,21 +243,20 @@ fn arc(text: &Text, first: &Line, along: f32) -> LineCurve {
     LineCurve { data, start: "50%".into(), flat, along, align: TextAlign::Middle, below: 0.0 }
 }
 
-/// Where the letters of a line that was laid out begin: bytes within the line, and px along it;
+/// Where the letters of a line that was laid out at the origin begin: bytes within the line, and px along it;
 /// the last one is its end. A letter from right to left begins at its right side.
 pub(super) fn letters(line: &Line, laid: &[&usvg::Text]) -> Vec<(usize, f32)> {
     let string = line.string();
-    let along = |x: f32| x - line.at.x;
     let glyphs = laid.iter().flat_map(|text| text.layouted()).flat_map(|s| &s.positioned_glyphs);
     let mut glyphs: Vec<(&str, f32, f32)> = glyphs
         .map(|glyph| {
             let at = glyph.transform();
-            let begin = along(at.tx);
+            let begin = at.tx;
             (glyph.text.as_str(), begin, begin)
         })
         .collect();
     let side = laid.first().map(|laid| laid.abs_bounding_box().right());
-    let end = side.map_or(0.0, along);
+    let end = side.unwrap_or(0.0);
     for i in 0..glyphs.len() {
         glyphs[i].2 = glyphs.get(i + 1).map_or(end, |next| next.1);
     }

@@ -2,8 +2,8 @@
 
 use super::columns;
 use super::lines::{Line, LineCurve};
-use crate::math::Rect;
 use crate::math::srgb::Color;
+use crate::math::{Rect, Vec2};
 use crate::paint::{Text, TextAlign, TextRun, TextStyle};
 use std::fmt::Write;
 
@@ -11,46 +11,52 @@ use std::fmt::Write;
 const NAMESPACES: &str =
     r#"xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink""#;
 
-/// An SVG of lines, the first baseline at the origin, one `text` element each.
-pub(super) fn of_lines(text: &Text, lines: &[Line]) -> String {
-    let mut out = format!(r#"<svg {NAMESPACES} width="1" height="1">"#);
-    for (i, line) in lines.iter().enumerate() {
-        if text.is_in_columns() {
-            push_column(&mut out, text, line);
-        } else if line.curve.is_none() {
-            let (x, y) = (line.at.x, line.at.y);
-            let anchor = anchor(text.align);
-            let runs = runs(&line.pieces);
-            let _ = write!(
-                out,
-                r#"<text xml:space="preserve" x="{x}" y="{y}" text-anchor="{anchor}">{runs}</text>"#
-            );
-        } else if let Some(LineCurve { data, start, align, below, .. }) = &line.curve {
-            let (anchor, runs) = (anchor(*align), runs(&line.pieces));
-            let _ = write!(out, r##"<path id="c{i}" fill="none" d="{data}"/>"##);
-            let text = format!(r#"text xml:space="preserve" text-anchor="{anchor}""#);
-            let place = format!(r##"xlink:href="#c{i}" startOffset="{start}""##);
-            let runs = format!(r#"<tspan dy="{below}">{runs}</tspan>"#);
-            let _ = write!(out, "<{text}><textPath {place}>{runs}</textPath></text>");
-        }
-    }
-    out.push_str("</svg>");
-    out
+/// An SVG of ours with some elements.
+fn document(elements: &str) -> String {
+    format!(r#"<svg {NAMESPACES} width="1" height="1">{elements}</svg>"#)
 }
 
-/// A drawing whose picture is a rectangle of its plane; `None` for something else than an SVG.
-pub(super) fn drawing_within(drawing: &str, bounds: Rect) -> Option<String> {
-    let start = drawing.find("<svg")?;
-    let end = start + drawing[start..].find('>')?;
+/// An SVG of a line as a text whose baseline begins, ends or has its middle at the origin.
+pub(super) fn of_straight_line(line: &Line, align: TextAlign) -> String {
+    let (anchor, runs) = (anchor(align), runs(&line.pieces));
+    document(&format!(r#"<text xml:space="preserve" text-anchor="{anchor}">{runs}</text>"#))
+}
+
+/// An SVG of a line that is a column, or runs along a curve, in its place.
+pub(super) fn of_line(text: &Text, line: &Line) -> String {
+    let mut out = String::new();
+    if text.is_in_columns() {
+        push_column(&mut out, text, line);
+    } else if let Some(LineCurve { data, start, align, below, .. }) = &line.curve {
+        let (anchor, runs) = (anchor(*align), runs(&line.pieces));
+        let _ = write!(out, r##"<path id="c" fill="none" d="{data}"/>"##);
+        let text = format!(r#"text xml:space="preserve" text-anchor="{anchor}""#);
+        let place = format!(r##"xlink:href="#c" startOffset="{start}""##);
+        let runs = format!(r#"<tspan dy="{below}">{runs}</tspan>"#);
+        let _ = write!(out, "<{text}><textPath {place}>{runs}</textPath></text>");
+    }
+    document(&out)
+}
+
+/// Adds elements, moved.
+pub(super) fn push_moved(out: &mut String, elements: &str, by: Vec2) {
+    let _ = write!(out, r#"<g transform="translate({} {})">{elements}</g>"#, by.x, by.y);
+}
+
+/// The elements of an SVG that `usvg` wrote.
+pub(super) fn elements(drawing: &str) -> &str {
+    let start = drawing.find("<svg").unwrap_or(drawing.len());
+    let begin = drawing[start..].find('>').map_or(drawing.len(), |end| start + end + 1);
+    let end = drawing.rfind("</svg>").unwrap_or(begin).max(begin);
+    &drawing[begin..end]
+}
+
+/// A drawing of some elements whose picture is a rectangle of its plane.
+pub(super) fn drawing_of(elements: &str, bounds: Rect) -> String {
     let (width, height) = (bounds.width(), bounds.height());
-    let is_empty = drawing[..end].ends_with('/');
-    let close = if is_empty { "/>" } else { ">" };
-    Some(format!(
-        r#"<svg {NAMESPACES} width="{width}" height="{height}" viewBox="{} {} {width} {height}"{close}{}"#,
-        bounds.x0,
-        bounds.y0,
-        &drawing[end + 1..]
-    ))
+    let view = format!("{} {} {width} {height}", bounds.x0, bounds.y0);
+    let size = format!(r#"width="{width}" height="{height}" viewBox="{view}""#);
+    format!("<svg {NAMESPACES} {size}>{elements}</svg>")
 }
 
 fn anchor(align: TextAlign) -> &'static str {
