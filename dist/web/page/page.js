@@ -115,16 +115,27 @@ async function fetched(address) {
 /** What a recipe or a script names that looks like a file. */
 const FILE = /"([^"]+\.(?:png|jpe?g|webp|tiff?|exr|hdr|bmp|tga|svg|json|ora|psd|obj|ttf|otf|cube|gpl))"/gi;
 
-/** The files that a document names, from beside it or from beside the page: a list of [path, bytes]. */
-async function filesNamedIn(address, bytes) {
+/**
+ * The files that a document names, from beside it or from beside the page, and those that recipes among
+ * them name: a list of [path, bytes].
+ */
+async function filesNamedIn(address, bytes, path, known = new Set([path])) {
   const named = new TextDecoder().decode(bytes).matchAll(FILE);
-  const names = [...new Set([...named].map(([, name]) => name))];
-  const files = names.map(async (name) => {
-    const beside = [address, location].map((base) => new URL(name, base).href);
-    const found = await fetched(beside[0]).catch(() => fetched(beside[1])).catch(() => null);
-    return found && [new URL(name, "file:///documents/").pathname, found];
+  const files = [...named].map(async ([, name]) => {
+    const own = new URL(name, `file://${path}`).pathname;
+    if (known.has(own)) {
+      return [];
+    }
+    known.add(own);
+    for (const at of [address, location].map((base) => new URL(name, base))) {
+      const found = await fetched(at.href).catch(() => null);
+      if (found) {
+        return [[own, found], ...(/\.json$/i.test(name) ? await filesNamedIn(at, found, own, known) : [])];
+      }
+    }
+    return [];
   });
-  return (await Promise.all(files)).filter(Boolean);
+  return (await Promise.all(files)).flat();
 }
 
 /** The document that the address names, `?open=URL`, and after it the files that it names itself. */
@@ -135,9 +146,9 @@ async function namedFiles() {
   }
   const address = new URL(named, location);
   const name = decodeURIComponent(address.pathname.split("/").pop()) || "document";
-  const bytes = await fetched(address);
-  const others = /\.jsonl?$/.test(name) ? await filesNamedIn(address, bytes) : [];
-  return [[`/documents/${name}`, bytes], ...others];
+  const [path, bytes] = [`/documents/${name}`, await fetched(address)];
+  const others = /\.jsonl?$/.test(name) ? await filesNamedIn(address, bytes, path) : [];
+  return [[path, bytes], ...others];
 }
 
 async function start() {
