@@ -8,7 +8,7 @@ use rilievo::document::{LayerId, Live, PreparedDocument, diff};
 use rilievo::math::{Vec3, vec3};
 use rilievo::raster::{Picture, PlanarTile, Plane, TileAt};
 use rilievo::shading::{
-    Environment, Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading,
+    Environment, Light, LightKind, LitSphere, Model, RadianceScaling, Reference, Scaling, Shading,
 };
 use rilievo::surface::Scene;
 use rilievo::{Content, Document, Layer, Maps, Progress, Size, Surface, TileGrid};
@@ -107,6 +107,42 @@ fn figure_of_a_repainted_ball(bencher: Bencher, run: Run) {
         pool.install(|| {
             tiles.par_iter().for_each(|at| drop(divan::black_box(shading.render_tile(&scene, *at))))
         });
+    });
+}
+
+/// A dab of an eighth of its ball's width, to the tiles that show it: found, and rendered again; 1080p,
+/// two threads.
+#[divan::bench(sample_count = 20)]
+fn figure_after_a_dab_on_its_ball(bencher: Bencher) {
+    const SIDE: u32 = 512;
+    let (scene, pool) = (balls(HD), pool(2));
+    let painted = |dab: Option<(f32, f32)>| {
+        let texel = |i: u32| {
+            let (x, y) = ((i % SIDE) as f32, (i / SIDE) as f32);
+            let is_dab = dab.is_some_and(|(u, v)| (x - u).hypot(y - v) < SIDE as f32 / 16.0);
+            if is_dab { [200, 40, 30, 255] } else { [(x / 2.0) as u8, (y / 2.0) as u8, 90, 255] }
+        };
+        let texels = (0..SIDE * SIDE).map(texel).collect();
+        let picture = Picture::srgb8(Size::new(SIDE, SIDE), texels).expect("a picture");
+        let mut shading = Shading::new(Model::LitSphere);
+        shading.strokes.on = true;
+        shading.with_ball(false, LitSphere::new("ball.png".into(), picture))
+    };
+    let (before, mut turn) = (painted(None), 0.0f32);
+    before.warm(&scene);
+    let next = || {
+        turn += 0.7;
+        painted(Some((256.0 + 120.0 * turn.cos(), 256.0 + 120.0 * turn.sin())))
+    };
+    bencher.with_inputs(next).bench_local_values(|after| {
+        pool.install(|| {
+            let tiles = after.repainted_tiles(&before, &scene).expect("a dab changes some tiles");
+            after.warm(&scene);
+            tiles.par_iter().for_each(|at| {
+                drop(divan::black_box(after.render_tile(&scene, *at)));
+            });
+        });
+        after
     });
 }
 

@@ -153,6 +153,20 @@ fn form_lines_under_a_moved_light(bencher: Bencher, threads: usize) {
     });
 }
 
+/// The same after σ moved: outlines, creases and borders stay. Argument: threads.
+#[divan::bench(sample_count = 9, args = [2])]
+fn form_lines_under_a_moved_sigma(bencher: Bencher, threads: usize) {
+    let (surface, mut smooth) = (ball_before_a_wall(), 2.0f32);
+    surface.form_lines(&LineSettings::DEFAULT);
+    bencher.bench_local(|| {
+        smooth += 0.01;
+        let settings = LineSettings { smooth, ..LineSettings::DEFAULT };
+        with_threads(threads, || {
+            black_box(surface.form_lines(&settings));
+        });
+    });
+}
+
 /// The lines of crosshatching, from nothing. Argument: threads.
 #[divan::bench(sample_count = 3, args = [1, 2])]
 fn hatch_lines(bencher: Bencher, threads: usize) {

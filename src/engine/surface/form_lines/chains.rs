@@ -1,7 +1,8 @@
 //! Steps of lines through the cells between four pixels, and the chains that they make. Floor 2.
-//! Not here: where a line crosses the side of a cell (`fields`, `outlines`).
+//! Not here: which values are zero along a line (`fields`, `turns`), or what it separates (`outlines`).
 
 use super::LinePoint;
+use crate::math::{Vec2, vec2};
 use std::collections::HashMap;
 
 /// A step of a line: from a place to the next. Steps that share the key of a place are joined
@@ -121,4 +122,15 @@ pub fn sides(x: usize, y: usize, width: usize) -> [CellSide; 4] {
     let across = |x: usize, y: usize| ((x, y), (x + 1, y), 2 * (y * width + x) as u64);
     let down = |x: usize, y: usize| ((x, y), (x, y + 1), 2 * (y * width + x) as u64 + 1);
     [across(x, y), down(x + 1, y), across(x, y + 1), down(x, y)]
+}
+
+/// The middle of a pixel.
+pub fn place((x, y): (usize, usize)) -> Vec2 {
+    vec2(x as f32 + 0.5, y as f32 + 0.5)
+}
+
+/// Where a value from `a` to `b` is zero, `[0, 1]`; `None` if both have one sign.
+#[inline(always)]
+pub fn zero(a: f32, b: f32) -> Option<f32> {
+    ((a < 0.0) != (b < 0.0)).then(|| (a / (a - b)).max(0.0).min(1.0))
 }

@@ -2,7 +2,7 @@
 //! wires. Each is where a map is zero, traced through the cells between four pixels that are linked.
 //! Floor 2. Not here: what is left of them (`tidy`).
 
-use super::chains::{Chain, LineStep, join_steps, pair_crossings, sides};
+use super::chains::{Chain, LineStep, join_steps, pair_crossings, place, sides, zero};
 use super::smooth::{SmoothNormals, diffuse_copy, gradient_of, gradient_row};
 use super::tidy::RawLine;
 use super::turns::Turns;
@@ -244,17 +244,6 @@ crate::widest! {
             out[i] = across[i] * (x[i] * per) + down[i] * (y[i] * per);
         }
     }
-}
-
-/// The middle of a pixel.
-pub(super) fn place((x, y): (usize, usize)) -> Vec2 {
-    vec2(x as f32 + 0.5, y as f32 + 0.5)
-}
-
-/// Where a value from `a` to `b` is zero, `[0, 1]`; `None` if both have one sign.
-#[inline(always)]
-pub(super) fn zero(a: f32, b: f32) -> Option<f32> {
-    ((a < 0.0) != (b < 0.0)).then(|| (a / (a - b)).max(0.0).min(1.0))
 }
 
 /// Lines of the plane that a surface unwraps to, equally far apart there, both ways.

@@ -1,7 +1,7 @@
 //! How the values of a map turn from pixel to pixel, as the normals of a surface do, and the crests
 //! where they turn most (Judd et al. 2007). Floor 2. Not here: lines along them (`fields`, `colors`).
 
-use super::fields::{place, zero};
+use super::chains::{place, zero};
 use super::smooth::gradient_row;
 use crate::math::{Vec2, vec2};
 use crate::raster::Plane;
@@ -162,11 +162,11 @@ crate::widest! {
     fn mark_crests(top: &TurnRow, bottom: &TurnRow, least: f32, marks: &mut [u8]) {
         let n = marks.len();
         let [a, b, c, d] = [top.cut(0, n), top.cut(1, n), bottom.cut(0, n), bottom.cut(1, n)];
-        for x in 0..n {
+        for (x, mark) in marks.iter_mut().enumerate() {
             let has = a.has_crest(&b, x) | b.has_crest(&d, x) | c.has_crest(&d, x) | a.has_crest(&c, x);
             let is_fast = (a.most[x] > least) | (b.most[x] > least)
                 | (c.most[x] > least) | (d.most[x] > least);
-            marks[x] = u8::from(has & is_fast);
+            *mark = u8::from(has & is_fast);
         }
     }
 }
