@@ -173,7 +173,11 @@ fn nearest_inside(picture: &Picture, x: usize, y: usize) -> [f32; 3] {
     let at = vec2((x as f32 + 0.5) / w * 2.0 - 1.0, (y as f32 + 0.5) / h * 2.0 - 1.0);
     // The outermost texel of the rim may be mixed with the background, so it is left out.
     let most = 1.0 - 1.5 / w.min(h);
-    let inside = if at.length() > most { at * (most.max(0.0) / at.length()) } else { at };
+    if at.length() <= most {
+        let [r, g, b, _] = picture.linear_at(x, y);
+        return [r, g, b];
+    }
+    let inside = at * (most.max(0.0) / at.length());
     let index = |v: f32, n: f32| (((v * 0.5 + 0.5) * n) as usize).min(n as usize - 1);
     let [r, g, b, _] = picture.linear_at(index(inside.x, w), index(inside.y, h));
     [r, g, b]
