@@ -12,7 +12,7 @@ impl Shading {
     /// on since; `None` if more is different, or if it may be all of them.
     pub fn repainted_tiles(&self, old: &Self, scene: &Scene) -> Option<Vec<TileAt>> {
         // How strong scaling is depends on the brightest place of the ball.
-        if !self.has_strokes() || self.specular.is_scaled() {
+        if !self.has_strokes() || self.specular.is_scaled() || self.has_ground_shadow() {
             return None;
         }
         let of_old = Self {

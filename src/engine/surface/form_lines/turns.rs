@@ -184,3 +184,80 @@ fn bilinear(plane: &Plane<f32>, links: &Plane<u8>, at: Vec2, middle: (usize, usi
     let row = |dy: i32| value(0, dy) + fx * (value(1, dy) - value(0, dy));
     row(0) + fy * (row(1) - row(0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, hash};
+    use crate::surface::form_lines::smooth::gradient_of;
+    use crate::surface::links;
+
+    const SIZE: Size = Size::new(37, 29);
+
+    /// Three rough maps, and links of which some are missing.
+    fn rough_maps() -> ([Plane<f32>; 3], Plane<u8>) {
+        let value = |c: u32, x: usize, y: usize| hash::unit(c, x as u32, y as u32) - 0.5;
+        let planes = [0, 1, 2].map(|c| Plane::from_fn(SIZE, |x, y| value(c, x, y)));
+        let is_there =
+            |axis: u32, x: usize, y: usize| hash::unit(7 + axis, x as u32, y as u32) > 0.2;
+        let linked = Plane::from_fn(SIZE, |x, y| {
+            let bit = |bit: u8, is: bool| if is { bit } else { 0 };
+            bit(links::LEFT, x > 0 && is_there(0, x.saturating_sub(1), y))
+                | bit(links::RIGHT, x + 1 < SIZE.width as usize && is_there(0, x, y))
+                | bit(links::UP, y > 0 && is_there(1, x, y.saturating_sub(1)))
+                | bit(links::DOWN, y + 1 < SIZE.height as usize && is_there(1, x, y))
+        });
+        (planes, linked)
+    }
+
+    #[test]
+    fn a_row_of_slopes_has_the_bits_of_single_ones() {
+        let ([plane, ..], links) = rough_maps();
+        let width = plane.width();
+        let (mut across, mut down) = (vec![9.0; width], vec![9.0; width]);
+        for y in 0..plane.height() {
+            gradient_row(&plane, &links, y, &mut across, &mut down);
+            for x in 0..width {
+                let expected = gradient_of(&plane, links.at(x, y), x, y);
+                assert_eq!(vec2(across[x], down[x]), expected, "{x} {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn q_is_the_largest_change_and_t_its_direction() {
+        let (planes, links) = rough_maps();
+        let turns = Turns::of([&planes[0], &planes[1], &planes[2]], &links);
+        for (x, y) in (0..29).flat_map(|y| (0..37).map(move |x| (x, y))) {
+            let slopes = [0, 1, 2].map(|c| gradient_of(&planes[c], links.at(x, y), x, y));
+            let along = |way: Vec2| slopes.iter().map(|s| s.dot(way).powi(2)).sum::<f32>().sqrt();
+            let most = (0..720).map(|i| along(Vec2::from_angle(i as f32 * 0.5f32.to_radians())));
+            let most = most.fold(0.0, f32::max);
+            let (q, way) = (turns.most.at(x, y), turns.way_at((x, y)));
+            assert!(
+                (q - most).abs() < 1e-3 && (along(way) - q).abs() < 1e-3,
+                "{x} {y}: {q} {most}"
+            );
+        }
+    }
+
+    #[test]
+    fn every_cell_that_a_crest_crosses_is_marked() {
+        let (planes, links) = rough_maps();
+        let turns = Turns::of([&planes[0], &planes[1], &planes[2]], &links);
+        let mut marks = vec![0u8; 36];
+        let (mut crossed, mut marked) = (0, 0);
+        for y in 0..28 {
+            turns.crest_cells(0.4)(y, &mut marks);
+            for (x, mark) in marks.iter().enumerate() {
+                let sides = crate::surface::form_lines::chains::sides(x, y, 37);
+                let has_crest = sides.iter().any(|(a, b, _)| {
+                    turns.crest(*a, *b, &links, 1.0).is_some_and(|crest| crest.most > 0.4)
+                });
+                assert!(*mark > 0 || !has_crest, "{x} {y}");
+                (crossed, marked) = (crossed + usize::from(has_crest), marked + usize::from(*mark));
+            }
+        }
+        assert!(crossed > 100 && marked < 28 * 36, "{crossed} {marked}");
+    }
+}

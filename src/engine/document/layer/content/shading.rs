@@ -154,9 +154,9 @@ impl LayerKind for Live<Shading> {
             return Changed::Nowhere;
         }
         // Where the ball is painted on, the figure shows few of its places.
-        let tiles = (self.params().has_strokes() && !self.params().has_ground_shadow())
-            .then(|| self.params().repainted_tiles(old.params(), &scene()))
-            .flatten();
+        let has_strokes = self.params().has_strokes();
+        let tiles =
+            has_strokes.then(|| self.params().repainted_tiles(old.params(), &scene())).flatten();
         tiles.map_or(Changed::Wholly, Changed::Tiles)
     }
 }
