@@ -7,20 +7,27 @@
 //! | `gih` | GIMP's image hoses: several pictures and the rule that chooses |
 //! | `vbr` | GIMP's parametric brushes: numbers |
 //! | `kpp` | Krita's presets: settings in a picture |
+//! | `bundle` | Krita's bundles: presets with their tips and patterns |
+//! | `beside` | where the tips and patterns are that a preset names |
+//! | `pat` | GIMP's patterns, which Krita's textures use |
 //! | `myb` | MyPaint's brushes: numbers and curves |
 //! | `abr` | Photoshop's collections: sampled tips |
 //! | `write` | a brush as a preset's file of this program |
 
 mod abr;
+mod beside;
+mod bundle;
 mod gbr;
 mod gih;
 mod kpp;
 mod myb;
+mod pat;
 #[cfg(test)]
 mod tests;
 mod vbr;
 mod write;
 
+pub use beside::{BrushFiles, NeighborFiles, NoBrushFiles, ResourceKind};
 pub use write::{Encoded, encode, pictures_beside, remove};
 
 use super::Budget;
@@ -57,14 +64,17 @@ pub enum BrushFormat {
     MyPaint,
     /// `.abr`: a collection of brushes.
     Photoshop,
+    /// `.bundle`: presets with their tips and patterns.
+    KritaBundle,
 }
 
 /// Endings of the files that hold brushes.
-pub const EXTENSIONS: [(&str, BrushFormat); 6] = [
+pub const EXTENSIONS: [(&str, BrushFormat); 7] = [
     ("gbr", BrushFormat::GimpBrush),
     ("gih", BrushFormat::GimpHose),
     ("vbr", BrushFormat::GimpParametric),
     ("kpp", BrushFormat::Krita),
+    ("bundle", BrushFormat::KritaBundle),
     ("myb", BrushFormat::MyPaint),
     ("abr", BrushFormat::Photoshop),
 ];
@@ -79,6 +89,9 @@ impl BrushFormat {
         if vbr::is_vbr(bytes) {
             return Some(BrushFormat::GimpParametric);
         }
+        if bundle::is_bundle(bytes) {
+            return Some(BrushFormat::KritaBundle);
+        }
         let extension = file.extension()?.to_string_lossy().to_lowercase();
         EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|(_, kind)| *kind)
     }
@@ -92,25 +105,48 @@ impl BrushFormat {
             BrushFormat::Krita => "Krita preset",
             BrushFormat::MyPaint => "MyPaint brush",
             BrushFormat::Photoshop => "Photoshop brushes",
+            BrushFormat::KritaBundle => "Krita bundle",
         }
     }
 }
 
 /// The brushes of a file, in its order; at least one. Fails with a sentence if the file has none of
 /// these formats, is damaged beyond use, or is larger than the budget allows.
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
+///
+/// * `files`: where the tip and the pattern are found that a preset names.
+pub fn read(
+    file: &Path,
+    bytes: &[u8],
+    files: &dyn BrushFiles,
+    budget: &Budget,
+) -> Result<Vec<ImportedBrush>> {
     match BrushFormat::of(file, bytes) {
         Some(BrushFormat::GimpBrush) => gbr::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::GimpHose) => gih::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::GimpParametric) => vbr::read(file, bytes).map(|brush| vec![brush]),
-        Some(BrushFormat::Krita) => kpp::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(BrushFormat::Krita) => kpp::read(file, bytes, files, budget).map(|brush| vec![brush]),
         Some(BrushFormat::MyPaint) => myb::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::Photoshop) => abr::read(file, bytes, budget),
-        None => Err(Error::unsupported_file(
-            file,
-            "it ends in none of .gbr, .gih, .vbr, .kpp, .myb and .abr",
-        )),
+        Some(BrushFormat::KritaBundle) => bundle::read(file, bytes, budget),
+        None => {
+            let endings: Vec<String> =
+                EXTENSIONS.iter().map(|(ending, _)| format!(".{ending}")).collect();
+            let reason = format!("it ends in none of {}", endings.join(", "));
+            Err(Error::unsupported_file(file, reason))
+        }
     }
+}
+
+/// Counts the pixels of the pictures of a file's brushes; fails beyond the budget. `used_px`: of
+/// the pictures before.
+fn spend(file: &Path, budget: &Budget, used_px: &mut u64, px: u64) -> Result<()> {
+    *used_px = used_px.saturating_add(px);
+    if *used_px > budget.document_px {
+        let reason = format!("its pictures hold more than {} pixels together", budget.document_px);
+        return Err(Error::too_large(file, reason));
+    }
+    // Four bytes for each.
+    budget.room(file, "the pictures of its brushes", used_px.saturating_mul(4))
 }
 
 impl ImportedBrush {

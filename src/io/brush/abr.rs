@@ -5,7 +5,7 @@
 mod dynamics;
 mod presets;
 
-use super::{ImportedBrush, TipNames};
+use super::{ImportedBrush, TipNames, spend};
 use crate::Budget;
 use crate::math::Size;
 use crate::paint::{Brush, Tip};
@@ -25,6 +25,35 @@ const SPACING: f32 = 0.25;
 /// Reads every brush of a collection. Damaged ones are left out; the notes of the first intact one
 /// mention them.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
+    let AbrReader { mut brushes, damaged, .. } = read_all(file, bytes, budget, true)?;
+    let Some(first) = brushes.first_mut() else {
+        let reason =
+            if damaged > 0 { "its brushes are damaged" } else { "it holds no sampled tips" };
+        return Err(Error::decode(file, reason));
+    };
+    if damaged > 0 {
+        first.notes.push(format!("{damaged} damaged brushes of the collection were left out"));
+    }
+    Ok(brushes)
+}
+
+/// The sampled tips of a collection in the order of the file, whatever its descriptions say.
+pub fn read_tips(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Picture>> {
+    let AbrReader { brushes, .. } = read_all(file, bytes, budget, false)?;
+    let picture = |imported: &ImportedBrush| match &imported.brush.tip {
+        Tip::Picture(source) => Some(source.picture.clone()),
+        _ => None,
+    };
+    Ok(brushes.iter().filter_map(picture).collect())
+}
+
+/// `is_described`: the brushes are those that later versions describe, not the bare tips.
+fn read_all<'a>(
+    file: &'a Path,
+    bytes: &[u8],
+    budget: &'a Budget,
+    is_described: bool,
+) -> Result<AbrReader<'a>> {
     let mut cursor = ByteCursor::new(bytes);
     let cut = || Error::decode(file, "the collection is cut short");
     let (version, second) = (cursor.u16().ok_or_else(cut)?, cursor.u16().ok_or_else(cut)?);
@@ -40,7 +69,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
     };
     match version {
         1 | 2 => reading.old(&mut cursor, version, usize::from(second))?,
-        6 | 7 | 9 | 10 => reading.later(&mut cursor, second)?,
+        6 | 7 | 9 | 10 => reading.later(&mut cursor, second, is_described)?,
         _ => {
             return Err(Error::unsupported_file(
                 file,
@@ -48,16 +77,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
             ));
         }
     }
-    let AbrReader { mut brushes, damaged, .. } = reading;
-    let Some(first) = brushes.first_mut() else {
-        let reason =
-            if damaged > 0 { "its brushes are damaged" } else { "it holds no sampled tips" };
-        return Err(Error::decode(file, reason));
-    };
-    if damaged > 0 {
-        first.notes.push(format!("{damaged} damaged brushes of the collection were left out"));
-    }
-    Ok(brushes)
+    Ok(reading)
 }
 
 /// A collection being read.
@@ -127,7 +147,12 @@ impl AbrReader<'_> {
     }
 
     /// Versions 6 and later: blocks; one holds all sampled tips, another their names.
-    fn later(&mut self, cursor: &mut ByteCursor, subversion: u16) -> Result<()> {
+    fn later(
+        &mut self,
+        cursor: &mut ByteCursor,
+        subversion: u16,
+        is_described: bool,
+    ) -> Result<()> {
         // A key of 37 letters, followed by undocumented data.
         let before = match subversion {
             1 => 47,
@@ -150,7 +175,9 @@ impl AbrReader<'_> {
                 _ => {}
             }
         }
-        self.call(&said.unwrap_or_default());
+        if is_described {
+            self.call(&said.unwrap_or_default());
+        }
         Ok(())
     }
 
@@ -240,16 +267,6 @@ impl AbrReader<'_> {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
         format!("{stem} {}", self.brushes.len() + 1)
     }
-}
-
-/// Counts the pixels of tips and textures.
-fn spend(file: &Path, budget: &Budget, used_px: &mut u64, px: u64) -> Result<()> {
-    *used_px += px;
-    if *used_px > budget.document_px {
-        let reason = format!("its pictures hold more than {} pixels together", budget.document_px);
-        return Err(Error::too_large(file, reason));
-    }
-    Ok(())
 }
 
 /// What precedes the pixels of a tip in versions 1 and 2: its spacing and its name.

@@ -13,6 +13,8 @@ use std::path::Path;
 pub struct GbrBrush {
     pub name: String,
     pub picture: Picture,
+    /// The picture is coverage, as opaque grays; else it has colors of its own.
+    pub is_coverage: bool,
     /// As a share of the longer side; GIMP's own default if the file is older than spacings.
     pub spacing: f32,
 }
@@ -68,9 +70,10 @@ pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<Gbr
         )
     })?;
     let texels = texels(cursor.take(size.area() * depth.bytes()).ok_or_else(cut)?, depth);
-    let texels = read_pattern_colors(cursor, size, &texels).unwrap_or(texels);
-    let picture = Picture::srgb8(size, texels).ok_or_else(cut)?;
-    Ok(GbrBrush { name, picture, spacing })
+    let colors = read_pattern_colors(cursor, size, &texels);
+    let is_coverage = depth != GbrDepth::Rgba && colors.is_none();
+    let picture = Picture::srgb8(size, colors.unwrap_or(texels)).ok_or_else(cut)?;
+    Ok(GbrBrush { name, picture, is_coverage, spacing })
 }
 
 /// How a pixel is stored.

@@ -1,7 +1,8 @@
 //! GIMP's image hoses: two lines of text, then brushes one after the other.
 //! Floor 5.
 
-use super::{ImportedBrush, TipNames, gbr, text_of};
+use super::gbr::{self, GbrBrush};
+use super::{ImportedBrush, TipNames, text_of};
 use crate::Budget;
 use crate::paint::tip::{Hose, HoseRank, RankSelect};
 use crate::psd::cursor::ByteCursor;
@@ -13,7 +14,27 @@ const MOST: usize = 1024;
 /// GIMP's own ceiling.
 const MOST_RANKS: usize = 4;
 
+/// The pictures of a hose and how one is chosen.
+pub struct GihHose {
+    pub name: String,
+    pub cells: Vec<GbrBrush>,
+    pub ranks: Vec<HoseRank>,
+    /// Sentences about a rule that has no counterpart here.
+    pub notes: Vec<String>,
+}
+
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush> {
+    let GihHose { name, cells, ranks, notes } = read_cells(file, bytes, budget)?;
+    let spacing = cells.first().map_or(0.0, |cell| cell.spacing);
+    let mut tips = TipNames::default();
+    let numbered = (1..).zip(cells);
+    let pictures =
+        numbered.map(|(i, cell)| tips.add(file, cell.picture, &format!("{name} {i}"))).collect();
+    Ok(ImportedBrush { notes, ..ImportedBrush::hose(name, Hose::new(pictures, ranks), spacing) })
+}
+
+/// Reads the text and every picture; at least one.
+pub fn read_cells(file: &Path, bytes: &[u8], budget: &Budget) -> Result<GihHose> {
     let mut lines = bytes.splitn(3, |b| *b == b'\n');
     let (name, description) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
     let (name, description) = (text_of(name), text_of(description));
@@ -26,21 +47,19 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
         return Err(Error::too_large(file, format!("{count} pictures; a hose may have {MOST}")));
     }
     let mut cursor = ByteCursor::new(lines.next().unwrap_or_default());
-    let (mut tips, mut pictures, mut spacing, mut used) =
-        (TipNames::default(), Vec::new(), 0.0f32, 0);
-    for i in 0..count {
-        let stamp = gbr::next(file, &mut cursor, budget)?;
-        used += stamp.picture.size.area() as u64;
+    let (mut cells, mut used) = (Vec::new(), 0);
+    for _ in 0..count {
+        let cell = gbr::next(file, &mut cursor, budget)?;
+        used += cell.picture.size.area() as u64;
         if used > budget.area_px {
             let reason = format!("its pictures hold more than {} pixels together", budget.area_px);
             return Err(Error::too_large(file, reason));
         }
-        spacing = if i == 0 { stamp.spacing } else { spacing };
-        pictures.push(tips.add(file, stamp.picture, &format!("{name} {}", i + 1)));
+        cells.push(cell);
     }
     let mut notes = Vec::new();
     let ranks = ranks(words, count, &mut notes);
-    Ok(ImportedBrush { notes, ..ImportedBrush::hose(name, Hose::new(pictures, ranks), spacing) })
+    Ok(GihHose { name, cells, ranks, notes })
 }
 
 /// `rank0:4 sel0:angular rank1:2 sel1:random …`; without usable words the pictures are used in

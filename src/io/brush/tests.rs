@@ -1,6 +1,6 @@
 //! Brushes of other programs, built byte by byte as their documents say; and the same ones damaged.
 
-mod photoshop;
+pub mod photoshop;
 
 use super::*;
 use crate::math::hash;
@@ -16,13 +16,14 @@ fn budget() -> Budget {
 }
 
 fn only(file: &str, bytes: &[u8]) -> ImportedBrush {
-    let mut brushes = read(Path::new(file), bytes, &budget()).unwrap_or_else(|e| panic!("{e}"));
+    let mut brushes =
+        read(Path::new(file), bytes, &NoBrushFiles, &budget()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(brushes.len(), 1);
     brushes.remove(0)
 }
 
 fn error_of(file: &str, bytes: &[u8]) -> String {
-    read(Path::new(file), bytes, &budget()).map(|_| ()).unwrap_err().to_string()
+    read(Path::new(file), bytes, &NoBrushFiles, &budget()).map(|_| ()).unwrap_err().to_string()
 }
 
 fn texels(source: &PictureSource) -> Vec<[u8; 4]> {
@@ -215,6 +216,18 @@ fn a_mypaint_brush_of_an_older_version_is_read_and_of_another_is_named() {
 }
 
 #[test]
+fn every_ending_is_of_one_format_and_a_refusal_names_them_all() {
+    let said = error_of("b.txt", b"hello");
+    for (ending, format) in EXTENSIONS {
+        let file = format!("A.{}", ending.to_uppercase());
+        assert_eq!(BrushFormat::of(Path::new(&file), b""), Some(format), "{ending}");
+        assert!(said.contains(&format!(".{ending}")), "{said}");
+        let count = EXTENSIONS.iter().filter(|(_, other)| *other == format).count();
+        assert_eq!(count, 1, "{ending}");
+    }
+}
+
+#[test]
 fn what_is_no_brush_gets_a_sentence() {
     for (file, bytes, part) in [
         ("b.txt", &b"hello"[..], "ends in none of"),
@@ -239,7 +252,7 @@ fn a_damaged_tip_is_left_out_and_the_others_stay() {
     // The first tip's compression is unknown.
     let at = bytes.windows(4).position(|w| w == b"samp").unwrap() + 8 + 4 + 47 + 18;
     bytes[at] = 9;
-    let left = read(Path::new("set.abr"), &bytes, &budget()).unwrap();
+    let left = read(Path::new("set.abr"), &bytes, &NoBrushFiles, &budget()).unwrap();
     assert_eq!(left.len(), 1);
     assert_eq!(left[0].notes, ["1 damaged brushes of the collection were left out"]);
 }
@@ -275,7 +288,7 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
                 }
             }
             for ImportedBrush { name, brush, .. } in
-                read(Path::new(file), &bytes, &small).into_iter().flatten()
+                read(Path::new(file), &bytes, &NoBrushFiles, &small).into_iter().flatten()
             {
                 assert!(!name.is_empty());
                 let are_in_range = SETTINGS

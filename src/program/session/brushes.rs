@@ -3,7 +3,7 @@
 //! the formats (`io`).
 
 use super::Session;
-use crate::io::brush::{self, ImportedBrush, plain};
+use crate::io::brush::{self, ImportedBrush, NeighborFiles, plain};
 use crate::io::platform::files;
 use crate::io::recipe::{BrushPreset, PresetGroup, load_preset};
 use crate::io::{Budget, Overwrite, Terms, files::read_file, picture};
@@ -13,22 +13,29 @@ use crate::surface::Operator;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// Extensions of files with brushes: five brush formats, then pictures.
-pub const EXTENSIONS: [&str; 12] =
-    ["gbr", "gih", "myb", "abr", "json", "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp"];
+/// The extension of presets of this program.
+const PRESET: &str = "json";
+/// Extensions of pictures that become tips.
+const PICTURES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp"];
+
+/// Extensions of files with brushes: of other programs, presets, pictures.
+pub fn extensions() -> Vec<&'static str> {
+    let others = brush::EXTENSIONS.iter().map(|(extension, _)| *extension);
+    others.chain([PRESET]).chain(PICTURES).collect()
+}
 
 /// Reads the brushes of a file: another program's, a preset's own, or a picture as a tip. At least
 /// one.
 pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(BrushPreset, Vec<String>)>> {
     let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    if extension == "json" {
+    if extension == PRESET {
         return load_preset(file, budget).map(|preset| vec![(preset, Vec::new())]);
     }
     let bytes = read_file(file, budget.file_bytes)?;
-    if EXTENSIONS[5..].contains(&extension.as_str()) {
+    if PICTURES.contains(&extension.as_str()) {
         return picture_tip(file, &bytes, budget).map(|preset| vec![(preset, Vec::new())]);
     }
-    let brushes = brush::read(file, &bytes, budget)?;
+    let brushes = brush::read(file, &bytes, &NeighborFiles::of(file), budget)?;
     Ok(brushes.into_iter().map(|imported| preset_of(file, imported)).collect())
 }
 
@@ -222,6 +229,16 @@ mod tests {
         Action::Hand(HandAction::Preset { name: "ink".into() }).apply(&mut session).unwrap();
         Action::Hand(HandAction::Preset { name: "pen".into() }).apply(&mut session).unwrap();
         assert_eq!((session.preset.as_str(), session.tools.brush.spacing), ("pen", 0.4));
+    }
+
+    #[test]
+    fn every_file_of_brushes_can_be_chosen_once() {
+        let offered = extensions();
+        let others = brush::EXTENSIONS.iter().map(|(extension, _)| *extension);
+        for extension in others.chain(["json", "png"]) {
+            let count = offered.iter().filter(|known| **known == extension).count();
+            assert_eq!(count, 1, "{extension}");
+        }
     }
 
     #[test]

@@ -1,14 +1,29 @@
 //! Krita's sensors: what an option follows, and by which curve. Several multiply, as curves do
 //! here. Floor 5.
 
-use super::attribute;
+use super::settings::{KppPreset, attribute, number};
 use crate::math::vec2;
 use crate::paint::dynamics::{Curve, Input, MAX_POINTS};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
+/// What an option follows, unless its curves are off. Later presets may have one curve for all
+/// sensors.
+pub fn of_option(preset: &KppPreset, option: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
+    if preset.text(&format!("{option}UseCurve")) == "false" {
+        return Vec::new();
+    }
+    let mut found = read(preset.text(&format!("{option}Sensor")), notes);
+    let is_same = preset.text(&format!("{option}UseSameCurve")) != "false";
+    let common = curve(preset.text(&format!("{option}commonCurve"))).filter(|_| is_same);
+    if let Some(common) = common {
+        found.iter_mut().for_each(|(_, curve)| *curve = common.clone());
+    }
+    found
+}
+
 /// The sensors of an option that have a counterpart; the others are reported once.
-pub fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
+fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
     let mut reader = Reader::from_str(text);
     let mut found: Vec<(Input, Curve)> = Vec::new();
     let mut is_in_curve = false;
@@ -66,7 +81,7 @@ fn input(id: &str) -> Option<Input> {
 fn curve(text: &str) -> Option<Curve> {
     let pairs =
         text.split(';').filter(|pair| !pair.trim().is_empty()).take(MAX_POINTS).map(|pair| {
-            let mut numbers = pair.split(',').map(super::number);
+            let mut numbers = pair.split(',').map(number);
             Some(vec2(numbers.next()??, numbers.next()??))
         });
     Curve::through(pairs.collect::<Option<Vec<_>>>()?)

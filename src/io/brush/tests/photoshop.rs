@@ -53,7 +53,7 @@ pub fn new_abr(subversion: u16) -> Vec<u8> {
 
 #[test]
 fn photoshop_tips_of_every_version_are_read() {
-    let old = read(Path::new("set.abr"), &old_abr(), &budget()).unwrap();
+    let old = read(Path::new("set.abr"), &old_abr(), &NoBrushFiles, &budget()).unwrap();
     assert_eq!(old.len(), 2);
     let round = &old[0].brush;
     assert!(matches!(round.tip, Tip::Ellipse { ratio } if ratio == 0.5));
@@ -64,7 +64,8 @@ fn photoshop_tips_of_every_version_are_read() {
     assert_eq!((old[1].name.as_str(), old[1].brush.spacing), ("Chalk", 0.15));
     assert_eq!(texels(&tips(&old[1])[0])[5], [255; 4]);
     for subversion in [1, 2] {
-        let new = read(Path::new("set.abr"), &new_abr(subversion), &budget()).unwrap();
+        let new =
+            read(Path::new("set.abr"), &new_abr(subversion), &NoBrushFiles, &budget()).unwrap();
         assert_eq!(new.len(), 2);
         assert_eq!((new[0].name.as_str(), new[0].brush.size), ("set 1", 4.0));
         assert_eq!(texels(&tips(&new[0])[0])[11], [77, 77, 77, 255]);
@@ -116,7 +117,7 @@ pub fn named_abr() -> Vec<u8> {
 
 #[test]
 fn later_photoshop_brushes_have_their_names_sizes_and_spacings() {
-    let read = read(Path::new("set.abr"), &named_abr(), &budget()).unwrap();
+    let read = read(Path::new("set.abr"), &named_abr(), &NoBrushFiles, &budget()).unwrap();
     let told: Vec<_> =
         read.iter().map(|b| (b.name.as_str(), b.brush.size, b.brush.spacing)).collect();
     assert_eq!(told, [("Reed", 30.0, 0.4), ("Dot", 12.0, 0.25), ("set 1", 4.0, 0.25)]);

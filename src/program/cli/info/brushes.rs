@@ -4,7 +4,7 @@
 use crate::Result;
 use crate::cli::with_advice;
 use crate::io::Budget;
-use crate::io::brush::{self, BrushFormat, ImportedBrush};
+use crate::io::brush::{self, BrushFormat, ImportedBrush, NeighborFiles};
 use crate::paint::{Brush, Tip};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -20,7 +20,8 @@ impl BrushReport {
     /// `None` where the file is of another kind.
     pub fn of(name: &str, path: &Path, bytes: &[u8], budget: &Budget) -> Option<Self> {
         let kind = BrushFormat::of(path, bytes)?;
-        Some(Self { name: name.to_owned(), kind, read: brush::read(path, bytes, budget) })
+        let read = brush::read(path, bytes, &NeighborFiles::of(path), budget);
+        Some(Self { name: name.to_owned(), kind, read })
     }
 
     pub fn json(&self) -> Value {
