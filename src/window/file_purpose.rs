@@ -3,7 +3,7 @@
 
 use crate::io::palette::PaletteFormat;
 use crate::session::PicturePart;
-use crate::session::brushes::EXTENSIONS;
+use crate::session::brushes;
 use crate::session::storage::{
     DOCUMENTS, PICTURES, SAVED, SCRIPTS, export_extensions, with_document_extension,
 };
@@ -87,7 +87,7 @@ impl FilePurpose {
                 ("Pictures and maps", pictures()),
                 ("Scripts", SCRIPTS.to_vec()),
             ],
-            FilePurpose::Brush => vec![("Brushes", EXTENSIONS.to_vec())],
+            FilePurpose::Brush => vec![("Brushes", brushes::extensions())],
             FilePurpose::Palette => vec![("Palettes", PaletteFormat::EXTENSIONS.to_vec())],
             FilePurpose::ColorTable => vec![("Tables", vec!["cube"])],
             FilePurpose::Place

@@ -12,7 +12,7 @@ use crate::session::{brushes, swatch};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// Convert brushes of GIMP, MyPaint and Photoshop, or show what a brush paints
+/// Convert brushes of GIMP, Krita, MyPaint and Photoshop, or show what a brush paints
 ///
 /// FROM is a brush file of another program, a preset (.json), or the key of a built-in brush.
 #[derive(clap::Args)]

@@ -176,8 +176,8 @@ fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(room_pt);
     set_accessible_name(&ui.add(field), "Search brushes");
     let import = icon_button(ui, Icon::Add, "Import a brush…", false).on_hover_text(
-        "Import brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), a preset (.json), or a picture as \
-         a tip",
+        "Import brushes of GIMP (.gbr, .gih), Krita (.kpp, .bundle), MyPaint (.myb), Photoshop (.abr), a preset \
+         (.json), or a picture as a tip",
     );
     if import.clicked() {
         requests.request(WindowRequest::Choose(FilePurpose::Brush));
