@@ -48,7 +48,11 @@ pub fn read_cells(file: &Path, bytes: &[u8], budget: &Budget) -> Result<GihHose>
     }
     let mut cursor = ByteCursor::new(lines.next().unwrap_or_default());
     let (mut cells, mut used) = (Vec::new(), 0);
-    for _ in 0..count {
+    for i in 0..count {
+        // Some hoses hold fewer than they say.
+        if i > 0 && cursor.rest().is_empty() {
+            break;
+        }
         let cell = gbr::next(file, &mut cursor, budget)?;
         used += cell.picture.size.area() as u64;
         if used > budget.area_px {
@@ -58,7 +62,10 @@ pub fn read_cells(file: &Path, bytes: &[u8], budget: &Budget) -> Result<GihHose>
         cells.push(cell);
     }
     let mut notes = Vec::new();
-    let ranks = ranks(words, count, &mut notes);
+    if cells.len() < count {
+        notes.push(format!("it holds {} of the {count} pictures that it announces", cells.len()));
+    }
+    let ranks = ranks(words, cells.len(), &mut notes);
     Ok(GihHose { name, cells, ranks, notes })
 }
 

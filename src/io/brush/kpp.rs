@@ -62,12 +62,14 @@ pub fn read_preset(file: &Path, bytes: &[u8], pictures: &mut KppPictures) -> Res
         pickup: pickup(&preset),
         ..Brush::default()
     };
-    let brush = read_drives(&preset, brush, &mut notes);
     let brush = tip::read(&preset, brush, pictures, &mut notes);
+    let brush = read_drives(&preset, brush, &mut notes);
     let brush = texture::read(&preset, brush, pictures, &mut notes);
     if preset.is_true("MaskingBrush/Enabled") {
-        let mode = preset.text("MaskingBrush/MaskingCompositeOp").replace('_', " ");
-        let mode = text_of(mode.as_bytes());
+        let mode = match preset.text("MaskingBrush/MaskingCompositeOp") {
+            "" => "multiply".to_owned(),
+            mode => text_of(mode.replace('_', " ").as_bytes()),
+        };
         notes.push(format!("its masked brush, a second tip by “{mode}”, has no counterpart"));
     }
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -104,24 +106,38 @@ const OPTIONS: [(&str, Property); 6] = [
     ("Rotation", Property::Rotation),
     ("Spacing", Property::Spacing),
 ];
+/// Options that later presets cannot switch off, and do not say to be on.
+const ALWAYS: [&str; 2] = ["Opacity", "Flow"];
 
 fn read_drives(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
     let mut brush = brush;
-    let mut follow = |brush: &mut Brush, option: &str, property: Property| {
-        if !preset.is_true(&format!("Pressure{option}")) {
-            return;
+    // Dabs that build up have their opacity each, not the stroke.
+    let is_built_up = preset.number("PaintOpAction") == Some(1.0);
+    if is_built_up {
+        brush.flow *= std::mem::replace(&mut brush.opacity, 1.0);
+    }
+    let follow = |brush: Brush, option: &str, property: Property, notes: &mut Vec<String>| {
+        let is_on = match preset.text(&format!("Pressure{option}")) {
+            "true" => true,
+            "" => ALWAYS.contains(&option),
+            _ => false,
+        };
+        if !is_on {
+            return brush;
         }
-        for (input, curve) in sensors::of_option(preset, option, notes) {
-            brush.dynamics = brush.dynamics.with(property, input, curve);
-        }
+        let found = sensors::of_option(preset, option, &brush, notes);
+        let add = |brush, (input, curve)| sensors::with_factor(brush, property, input, curve);
+        found.into_iter().fold(brush, add)
     };
     for (option, property) in OPTIONS {
-        follow(&mut brush, option, property);
+        let each = is_built_up && property == Property::Opacity;
+        let property = if each { Property::Flow } else { property };
+        brush = follow(brush, option, property, notes);
     }
     if preset.is_true("PressureScatter") {
         // Theirs is a width, ours a radius.
         brush.scatter = (0.5 * preset.number("ScatterValue").unwrap_or(1.0)).max(0.0).min(10.0);
-        follow(&mut brush, "Scatter", Property::Scatter);
+        brush = follow(brush, "Scatter", Property::Scatter, notes);
     }
     brush
 }

@@ -117,6 +117,15 @@ fn a_hose_keeps_its_pictures_and_its_rule() {
     assert_eq!((hose.ranks()[0].count, hose.ranks()[0].select), (2, RankSelect::Incremental));
 }
 
+#[test]
+fn a_hose_with_fewer_pictures_than_it_says_paints_with_those() {
+    let bytes = [b"x\n4 rank0:4 sel0:random\n".to_vec(), gbr("a", 1, 1, 1, 9, &[1])].concat();
+    let brush = only("b.gih", &bytes);
+    assert_eq!(tips(&brush).len(), 1);
+    assert_eq!(brush.notes[0], "it holds 1 of the 4 pictures that it announces");
+    assert!(error_of("b.gih", &bytes[..bytes.len() - 1]).contains("cut short"));
+}
+
 const MYB: &str = r#"{ "version": 3, "group": "", "settings": {
     "radius_logarithmic": { "base_value": 2.3, "inputs": { "pressure": [[0, -0.5], [1, 0.5]] } },
     "hardness": { "base_value": 0.5, "inputs": {} },

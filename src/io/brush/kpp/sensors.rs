@@ -3,13 +3,61 @@
 
 use super::settings::{KppPreset, attribute, number};
 use crate::math::vec2;
-use crate::paint::dynamics::{Curve, Input, MAX_POINTS};
+use crate::paint::Brush;
+use crate::paint::dynamics::{Curve, FAR_DIAMETERS, Input, MAX_POINTS, Property};
 use quick_xml::Reader;
-use quick_xml::events::Event;
+use quick_xml::events::{BytesStart, Event};
 
-/// What an option follows, unless its curves are off. Later presets may have one curve for all
-/// sensors.
-pub fn of_option(preset: &KppPreset, option: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
+/// Points of a curve that is computed.
+const POINTS: usize = 17;
+
+/// One sensor of an option.
+struct KppSensor {
+    input: Input,
+    curve: Curve,
+    reach: Reach,
+}
+
+/// Where a curve over the stroke ends.
+enum Reach {
+    /// It is over something else.
+    None,
+    Px(f32),
+    Dabs(f32),
+}
+
+impl Reach {
+    fn of(id: &str, start: &BytesStart) -> Self {
+        let length = |plain: f32| {
+            attribute(start, "length").and_then(|text| number(&text)).unwrap_or(plain).max(1.0)
+        };
+        match id {
+            "distance" => Reach::Px(length(30.0)),
+            "fade" => Reach::Dabs(length(1000.0)),
+            _ => Reach::None,
+        }
+    }
+
+    /// In px for a brush.
+    fn px(&self, brush: &Brush) -> Option<f32> {
+        match self {
+            Reach::None => None,
+            Reach::Px(px) => Some(*px),
+            Reach::Dabs(count) => Some(count * brush.spacing * brush.size),
+        }
+    }
+}
+
+/// What an option follows, unless its curves are off; what has no counterpart is reported once.
+/// Later presets may have one curve for all sensors.
+///
+/// * `brush`: with its size and spacing.
+pub fn of_option(
+    preset: &KppPreset,
+    option: &str,
+    brush: &Brush,
+    notes: &mut Vec<String>,
+) -> Vec<(Input, Curve)> {
     if preset.text(&format!("{option}UseCurve")) == "false" {
         return Vec::new();
     }
@@ -17,15 +65,61 @@ pub fn of_option(preset: &KppPreset, option: &str, notes: &mut Vec<String>) -> V
     let is_same = preset.text(&format!("{option}UseSameCurve")) != "false";
     let common = curve(preset.text(&format!("{option}commonCurve"))).filter(|_| is_same);
     if let Some(common) = common {
-        found.iter_mut().for_each(|(_, curve)| *curve = common.clone());
+        found.iter_mut().for_each(|sensor| sensor.curve = common.clone());
     }
-    found
+    let is_product = preset.number(&format!("{option}curveMode")).is_none_or(|mode| mode == 0.0);
+    if found.len() > 1 && !is_product {
+        let name = option.split('/').next().unwrap_or_default().to_lowercase();
+        notes.push(format!("what its {name} follows multiplies here"));
+    }
+    let along = |sensor: KppSensor| {
+        let reach_px = sensor.reach.px(brush);
+        let curve = reach_px.and_then(|px| stretch(&sensor.curve, FAR_DIAMETERS * brush.size / px));
+        (sensor.input, curve.unwrap_or(sensor.curve))
+    };
+    found.into_iter().map(along).collect()
 }
 
-/// The sensors of an option that have a counterpart; the others are reported once.
-fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
+/// A brush of which one more input drives a property; the curve that it has there already stays as
+/// a factor.
+pub fn with_factor(mut brush: Brush, property: Property, input: Input, by: Curve) -> Brush {
+    let both = match brush.dynamics.curve(property, input) {
+        None => Some(by),
+        Some(other) => curve_of(|x| by.at(x) * other.at(x)),
+    };
+    if let Some(curve) = both {
+        brush.dynamics = brush.dynamics.with(property, input, curve);
+    }
+    brush
+}
+
+/// A curve of many points.
+pub fn curve_of(at: impl Fn(f32) -> f32) -> Option<Curve> {
+    let xs = (0..POINTS).map(|i| i as f32 / (POINTS - 1) as f32);
+    Curve::through(xs.map(|x| vec2(x, at(x).max(0.0).min(1.0))).collect())
+}
+
+/// The curve over an input of which 1 is what was `share`.
+fn stretch(curve: &Curve, share: f32) -> Option<Curve> {
+    let share = share.max(1e-6);
+    let line = [vec2(0.0, curve.at(0.0)), vec2(1.0, curve.at(1.0))];
+    let points = match curve {
+        Curve::Points(points) => points,
+        _ => &line[..],
+    };
+    let inside = points.iter().filter(|point| point.x <= share);
+    let mut points: Vec<_> = inside.map(|point| vec2(point.x / share, point.y)).collect();
+    points.truncate(MAX_POINTS - 1);
+    if share < 1.0 {
+        points.push(vec2(1.0, curve.at(share)));
+    }
+    Curve::through(points)
+}
+
+/// The sensors that have a counterpart; the others are reported once.
+fn read(text: &str, notes: &mut Vec<String>) -> Vec<KppSensor> {
     let mut reader = Reader::from_str(text);
-    let mut found: Vec<(Input, Curve)> = Vec::new();
+    let mut found: Vec<KppSensor> = Vec::new();
     let mut is_in_curve = false;
     loop {
         let Ok(event) = reader.read_event() else { return found };
@@ -38,7 +132,11 @@ fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
                 {
                     match input(&id) {
                         // Without a curve of its own it is linear.
-                        Some(input) => found.push((input, Curve::Share(1.0))),
+                        Some(input) => found.push(KppSensor {
+                            input,
+                            curve: Curve::Share(1.0),
+                            reach: Reach::of(&id, &start),
+                        }),
                         None => note(&id, notes),
                     }
                 }
@@ -46,7 +144,7 @@ fn read(text: &str, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
             Event::Text(points) if is_in_curve => {
                 let curve = curve(&points);
                 if let (Some(last), Some(curve)) = (found.last_mut(), curve) {
-                    last.1 = curve;
+                    last.curve = curve;
                 }
             }
             Event::End(_) => is_in_curve = false,

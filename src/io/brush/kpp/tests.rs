@@ -354,3 +354,47 @@ fn numbers_that_are_none_or_too_large_stay_within_their_ranges() {
         }
     }
 }
+
+#[test]
+fn opacity_and_flow_follow_their_sensors_unless_the_preset_says_no() {
+    let sensor = "<params id=\"pressure\"/>";
+    let at = |params: &[(&str, &str)]| {
+        let params = [&[("OpacitySensor", sensor), ("FlowSensor", sensor)], params].concat();
+        let brush = read_kpp(&kpp("paintbrush", ROUND, &params)).unwrap().brush;
+        let light = DabInputs { pressure: 0.5, ..DabInputs::default() };
+        let value = |property| brush.dynamics.value(property, 1.0, &light);
+        (brush.opacity, brush.flow, value(Property::Opacity), value(Property::Flow))
+    };
+    assert_eq!(at(&[]), (1.0, 1.0, 0.5, 0.5));
+    assert_eq!(
+        at(&[("PressureOpacity", "false"), ("FlowUseCurve", "false")]),
+        (1.0, 1.0, 1.0, 1.0)
+    );
+    // Each dab has its opacity.
+    let built_up = [("PaintOpAction", "1"), ("OpacityValue", "0.5"), ("FlowValue", "0.5")];
+    assert_eq!(at(&built_up), (1.0, 0.25, 1.0, 0.25));
+}
+
+#[test]
+fn what_fades_along_the_stroke_fades_over_its_length() {
+    let at = |sensor: &str, distance: f32| {
+        let params = [("PressureSize", "true"), ("SizeSensor", sensor)];
+        let brush = read_kpp(&kpp("paintbrush", ROUND, &params)).unwrap().brush;
+        let inputs = DabInputs { distance, ..DabInputs::default() };
+        brush.dynamics.value(Property::Size, 1.0, &inputs)
+    };
+    // A brush of 40 px counts to 400 px.
+    let half = "<params id=\"distance\" length=\"200\"><curve>0,1;1,0;</curve></params>";
+    assert_eq!((at(half, 0.25), at(half, 0.5), at(half, 1.0)), (0.5, 0.0, 0.0));
+    // 100 dabs of 8 px.
+    let twice = "<params id=\"fade\" length=\"100\"/>";
+    assert_eq!((at(twice, 0.5), at(twice, 1.0)), (0.25, 0.5));
+}
+
+#[test]
+fn sensors_that_do_not_multiply_are_told_of() {
+    let both = "<params id=\"sensorslist\"><ChildSensor id=\"pressure\"/><ChildSensor id=\"speed\"/></params>";
+    let params = [("PressureSize", "true"), ("SizeSensor", both), ("SizecurveMode", "1")];
+    let notes = read_kpp(&kpp("paintbrush", ROUND, &params)).unwrap().notes;
+    assert_eq!(notes, ["what its size follows multiplies here"]);
+}

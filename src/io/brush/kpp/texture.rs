@@ -9,18 +9,16 @@
 use super::pictures::KppPictures;
 use super::settings::KppPreset;
 use super::{sensors, tip};
-use crate::math::{Size, vec2};
+use crate::math::Size;
 use crate::paint::Brush;
 use crate::paint::dynamics::{Curve, Input, Property};
 use crate::paint::grain::{BrushGrain, GrainSource};
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
 
-/// Points of a curve that is computed.
-const POINTS: usize = 17;
 /// The reading at which a texture whose strength follows the pen looks as it does in Krita: a hand
 /// that is neither light nor heavy.
-const USUAL: f32 = 2.0 / 3.0;
+const USUAL: f32 = 0.5;
 
 /// How a texture changes a dab, by Krita's numbers.
 const MODES: [(&str, TextureMode); 16] = [
@@ -145,12 +143,16 @@ pub fn read(
 }
 
 /// What the strength follows.
-fn strength_drives(preset: &KppPreset, notes: &mut Vec<String>) -> Vec<(Input, Curve)> {
+fn strength_drives(
+    preset: &KppPreset,
+    brush: &Brush,
+    notes: &mut Vec<String>,
+) -> Vec<(Input, Curve)> {
     // Older presets write the name of the option with and without its last stroke.
     let is_on = preset.is_true("PressureTexture/Strength/")
         || preset.is_true("PressureTexture/Strength")
         || preset.text("PressureTexture/Strength/").is_empty();
-    if is_on { sensors::of_option(preset, "Texture/Strength/", notes) } else { Vec::new() }
+    if is_on { sensors::of_option(preset, "Texture/Strength/", brush, notes) } else { Vec::new() }
 }
 
 /// The grain, and the flow that goes with it.
@@ -163,7 +165,7 @@ fn with_grain(
     notes: &mut Vec<String>,
 ) -> Brush {
     let Texels::Srgb8(texels) = &pattern.texels else { return brush };
-    let followed = strength_drives(preset, notes);
+    let followed = strength_drives(preset, &brush, notes);
     let grays: Vec<u8> = texels.iter().map(pattern_gray).collect();
     let counts = GrayCounts::of(&grays, &PatternLevels::of(preset));
     let full = settings.strength;
@@ -183,8 +185,10 @@ fn with_grain(
     if !is_bare {
         brush.flow *= share(paint(full), counts.sum(baked));
         for (input, curve) in &followed {
-            let by = curve_of(|x| share(paint(full * curve.at(x)), paint(full)));
-            brush = multiplied(brush, Property::Flow, *input, by);
+            let by = sensors::curve_of(|x| share(paint(full * curve.at(x)), paint(full)));
+            if let Some(by) = by {
+                brush = sensors::with_factor(brush, Property::Flow, *input, by);
+            }
         }
     }
     brush
@@ -193,12 +197,6 @@ fn with_grain(
 /// A part of a whole, `[0, 1]`; 1 of nothing.
 fn share(part: f64, whole: f64) -> f32 {
     if whole > 0.0 { (part / whole).max(0.0).min(1.0) as f32 } else { 1.0 }
-}
-
-/// A curve of many points.
-fn curve_of(at: impl Fn(f32) -> f32) -> Option<Curve> {
-    let xs = (0..POINTS).map(|i| i as f32 / (POINTS - 1) as f32);
-    Curve::through(xs.map(|x| vec2(x, at(x).max(0.0).min(1.0))).collect())
 }
 
 /// How often each gray of a pattern is there, and what it becomes before it acts.
@@ -223,19 +221,6 @@ impl GrayCounts {
     fn table(&self, by: impl Fn(f32) -> f32) -> [u8; 256] {
         self.grays.map(|t| (by(t) * 255.0).round().max(0.0).min(255.0) as u8)
     }
-}
-
-/// With one more factor of a property; the curve that the input has there already stays.
-fn multiplied(mut brush: Brush, property: Property, input: Input, by: Option<Curve>) -> Brush {
-    let Some(by) = by else { return brush };
-    let both = match brush.dynamics.curve(property, input) {
-        None => Some(by),
-        Some(other) => curve_of(|x| by.at(x) * other.at(x)),
-    };
-    if let Some(curve) = both {
-        brush.dynamics = brush.dynamics.with(property, input, curve);
-    }
-    brush
 }
 
 /// A pattern's pixel as Krita's gray; what is transparent is white.

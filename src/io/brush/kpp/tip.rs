@@ -2,10 +2,11 @@
 //! are (`beside`), what drives the tip (`sensors`).
 
 use super::pictures::KppPictures;
+use super::sensors;
 use super::settings::{KppPreset, attribute, element, number};
 use super::tip_file::{TipFile, TipPicture};
 use crate::math::{Vec2, vec2};
-use crate::paint::dynamics::{Input, Property};
+use crate::paint::dynamics::Input;
 use crate::paint::tip::Hose;
 use crate::paint::{Brush, PictureSource, Tip};
 use crate::raster::Picture;
@@ -129,7 +130,7 @@ fn file_tip(
         outer.number("scale").unwrap_or(1.0).max(0.0) * if version == "1" { 2.0 } else { 1.0 };
     let own_px = file.own_size();
     let size = clamp_size(own_px.max_element() * scale);
-    let step_px = outer.step(extent(&brush, own_px * scale), 0.25);
+    let step_px = outer.step(extent(preset, &brush, own_px * scale), 0.25);
     let tip = look.tip(file, &name, pictures);
     spaced(Brush { size, tip, ..brush }, step_px)
 }
@@ -149,13 +150,15 @@ fn stem(name: &str) -> &str {
 
 /// How far a tip reaches along a stroke, px: along its own x if it turns with the stroke, else the
 /// mean of both sides, which Krita tells apart.
-fn extent(brush: &Brush, size_px: Vec2) -> f32 {
+fn extent(preset: &KppPreset, brush: &Brush, size_px: Vec2) -> f32 {
     let (sin, cos) = brush.rotation.to_radians().sin_cos();
     let turned = vec2(
         (size_px.x * cos).abs() + (size_px.y * sin).abs(),
         (size_px.x * sin).abs() + (size_px.y * cos).abs(),
     );
-    if brush.dynamics.curve(Property::Rotation, Input::Direction).is_some() {
+    let turns = sensors::of_option(preset, "Rotation", brush, &mut Vec::new());
+    let is_turning = turns.iter().any(|(input, _)| *input == Input::Direction);
+    if is_turning && preset.is_true("PressureRotation") {
         turned.x
     } else {
         (turned.x * turned.y).max(0.0).sqrt()

@@ -5,7 +5,8 @@ use crate::Result;
 use crate::cli::with_advice;
 use crate::io::Budget;
 use crate::io::brush::{self, BrushFormat, ImportedBrush, NeighborFiles};
-use crate::paint::{Brush, Tip};
+use crate::paint::grain::{BrushGrain, GrainSource};
+use crate::paint::{Brush, PictureSource, Tip};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -59,18 +60,26 @@ impl BrushReport {
 
 fn looks(brush: &Brush) -> String {
     let drives = brush.dynamics.drives().len();
-    let pictures: Vec<String> =
-        brush.pictures().take(1).map(|p| format!(" of {} px", p.picture.size)).collect();
-    let count = brush.pictures().count();
-    let several = if count > 1 {
-        format!(", {}", count_text(count, "picture", "pictures"))
-    } else {
-        String::new()
+    let size = |source: &PictureSource| format!(" of {} px", source.picture.size);
+    let pictures: &[PictureSource] = match &brush.tip {
+        Tip::Picture(source) => std::slice::from_ref(source),
+        Tip::Hose(hose) => hose.pictures(),
+        _ => &[],
+    };
+    let first = pictures.first().map(size).unwrap_or_default();
+    let several = match pictures.len() {
+        0 | 1 => String::new(),
+        count => format!(", {}", count_text(count, "picture", "pictures")),
+    };
+    let grain = match &brush.grain {
+        Some(BrushGrain { source: GrainSource::Picture(source), .. }) => {
+            format!(", with a texture{}", size(source))
+        }
+        _ => String::new(),
     };
     format!(
-        "{}{}{several}, {:.4} px across, a dab every {:.0} % of it, {}",
+        "{}{first}{several}, {:.4} px across, a dab every {:.0} % of it, {}{grain}",
         tip(&brush.tip),
-        pictures.concat(),
         (brush.size * 10.0).round() / 10.0,
         brush.spacing * 100.0,
         count_text(drives, "curve", "curves"),
