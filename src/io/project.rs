@@ -34,6 +34,7 @@ mod tests;
 mod thumbnail;
 
 pub use archive::Archive;
+pub use krita::blend_of as krita_blend;
 pub use layer_preview::Cancelable;
 pub use open::{ProjectContents, read, read_back};
 pub use thumbnail::{SmallPicture, stored_thumbnail};

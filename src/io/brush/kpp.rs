@@ -25,6 +25,8 @@ use super::{BrushFiles, ImportedBrush, text_of};
 use crate::Budget;
 use crate::paint::dynamics::{Dynamics, Property};
 use crate::paint::{Brush, BrushMode, Pickup};
+use crate::project::krita_blend;
+use crate::raster::BlendMode;
 use crate::{Error, Result};
 use settings::KppPreset;
 use std::path::Path;
@@ -59,6 +61,7 @@ pub fn read_preset(file: &Path, bytes: &[u8], pictures: &mut KppPictures) -> Res
         opacity: preset.unit("OpacityValue", 1.0),
         flow: preset.unit("FlowValue", 1.0),
         erases: preset.text("CompositeOp") == "erase" || preset.is_true("EraserMode"),
+        blend: blend(&preset, &mut notes),
         pickup: pickup(&preset),
         ..Brush::default()
     };
@@ -84,6 +87,16 @@ pub fn read_tip(file: &Path, name: &str, pictures: &mut KppPictures) -> Result<I
     let brush = tip::plain_brush(tip, name, pictures);
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     Ok(ImportedBrush { name: text_of(stem.as_bytes()), brush, notes: Vec::new() })
+}
+
+fn blend(preset: &KppPreset, notes: &mut Vec<String>) -> BlendMode {
+    let op = preset.text("CompositeOp");
+    krita_blend(op).unwrap_or_else(|| {
+        if op != "erase" {
+            notes.push(format!("its blend mode “{}” has no counterpart", text_of(op.as_bytes())));
+        }
+        BlendMode::Normal
+    })
 }
 
 /// A color smudge preset: what is not its own color was picked up.

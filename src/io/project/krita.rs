@@ -80,7 +80,7 @@ impl KritaReader<'_, '_> {
             }
         };
         let op = node.text("compositeop");
-        let blend = blend(op).unwrap_or_else(|| {
+        let blend = blend_of(op).unwrap_or_else(|| {
             let note =
                 format!("“{name}” is blended by “{op}” in Krita; here it is blended normally");
             self.reading.note_loss(note);
@@ -206,8 +206,8 @@ fn is_inheriting_alpha(node: &KritaNode) -> bool {
     flags.ends_with('0') && flags.contains('1')
 }
 
-/// The blend mode of one of Krita's.
-fn blend(op: &str) -> Option<BlendMode> {
+/// The blend mode of one of Krita's composite operations.
+pub fn blend_of(op: &str) -> Option<BlendMode> {
     Some(match op {
         "" | "normal" | "alphadarken" => BlendMode::Normal,
         "add" | "linear_dodge" => BlendMode::LinearDodge,

@@ -7,6 +7,7 @@ use crate::paint::Brush;
 use crate::paint::dynamics::{Curve, FAR_DIAMETERS, Input, MAX_POINTS, Property};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
+use std::f32::consts::FRAC_PI_2;
 
 /// Points of a curve that is computed.
 const POINTS: usize = 17;
@@ -73,8 +74,11 @@ pub fn of_option(
         notes.push(format!("what its {name} follows multiplies here"));
     }
     let along = |sensor: KppSensor| {
-        let reach_px = sensor.reach.px(brush);
-        let curve = reach_px.and_then(|px| stretch(&sensor.curve, FAR_DIAMETERS * brush.size / px));
+        let curve = match sensor.reach.px(brush) {
+            Some(px) => stretch(&sensor.curve, FAR_DIAMETERS * brush.size / px),
+            None if sensor.input == Input::Tilt => curve_of(|x| sensor.curve.at(elevation(x))),
+            None => None,
+        };
         (sensor.input, curve.unwrap_or(sensor.curve))
     };
     found.into_iter().map(along).collect()
@@ -97,6 +101,11 @@ pub fn with_factor(mut brush: Brush, property: Property, input: Input, by: Curve
 pub fn curve_of(at: impl Fn(f32) -> f32) -> Option<Curve> {
     let xs = (0..POINTS).map(|i| i as f32 / (POINTS - 1) as f32);
     Curve::through(xs.map(|x| vec2(x, at(x).max(0.0).min(1.0))).collect())
+}
+
+/// Krita's reading of a pen that leans so far, of 90°: 1 upright, 0 from 60° on.
+fn elevation(tilt: f32) -> f32 {
+    (1.5 * tilt).max(0.0).min(1.0).acos() / FRAC_PI_2
 }
 
 /// The curve over an input of which 1 is what was `share`.

@@ -398,3 +398,31 @@ fn sensors_that_do_not_multiply_are_told_of() {
     let notes = read_kpp(&kpp("paintbrush", ROUND, &params)).unwrap().notes;
     assert_eq!(notes, ["what its size follows multiplies here"]);
 }
+
+#[test]
+fn a_preset_keeps_its_blend_mode_or_tells_of_it() {
+    let read = |op: &str| {
+        let imported = read_kpp(&kpp("paintbrush", ROUND, &[("CompositeOp", op)])).unwrap();
+        (imported.brush.blend, imported.notes)
+    };
+    assert_eq!(read("dodge"), (BlendMode::ColorDodge, Vec::new()));
+    let (blend, notes) = read("tangent_normalmap");
+    assert_eq!(blend, BlendMode::Normal);
+    assert_eq!(notes, ["its blend mode “tangent_normalmap” has no counterpart"]);
+    assert!(read("erase").1.is_empty());
+}
+
+#[test]
+fn a_pen_that_leans_lowers_its_declination() {
+    let sensor = "<params id=\"declination\"><curve>0,0.2;1,1;</curve></params>";
+    let params = [("PressureSize", "true"), ("SizeSensor", sensor)];
+    let brush = read_kpp(&kpp("paintbrush", ROUND, &params)).unwrap().brush;
+    let at = |tilt: f32| {
+        let inputs = DabInputs { tilt, ..DabInputs::default() };
+        brush.dynamics.value(Property::Size, 1.0, &inputs)
+    };
+    let near = |a: f32, b: f32| (a - b).abs() < 0.01;
+    assert!(near(at(0.0), 1.0) && near(at(0.7), 0.2) && near(at(1.0), 0.2));
+    // At 30°, half of 60°, acos ½ is two thirds of a right angle.
+    assert!(near(at(1.0 / 3.0), 0.2 + 0.8 * 2.0 / 3.0), "{}", at(1.0 / 3.0));
+}

@@ -64,16 +64,16 @@ impl TextureMode {
     /// The share of a dab's coverage that is left at a gray, all in `[0, 1]`.
     fn share_at(self, t: f32, s: f32) -> f32 {
         // Where a full dab shows nothing of the texture, what a half covered one shows.
-        let half = 0.5 * s;
+        let half = s.min(0.5);
         let steep = 1.0 / (1.0 - 0.99 * s);
         let left = match self {
             TextureMode::Color => 1.0,
             TextureMode::Multiply => t * s,
             TextureMode::Subtract => s - t,
             TextureMode::Darken => t.min(s),
-            TextureMode::Overlay => 4.0 * half * t,
-            TextureMode::Dodge => 2.0 * half / (1.0 - t).max(1e-3),
-            TextureMode::Burn => 2.0 * (1.0 - (1.0 - half) / t.max(1e-3)),
+            TextureMode::Overlay => 2.0 * half * t,
+            TextureMode::Dodge => half / (1.0 - t).max(1e-3),
+            TextureMode::Burn => 1.0 - (1.0 - half) / t.max(1e-3),
             TextureMode::LinearDodge => t + half,
             TextureMode::LinearBurn => t + s - 1.0,
             TextureMode::HardMix => f32::from(u8::from(t + half > 1.0)),

@@ -131,7 +131,7 @@ fn what_a_texture_leaves_is_a_share() {
     let near = |a: f32, b: f32| (a - b).abs() < 1e-6;
     assert!(near(TextureMode::Subtract.share_at(0.3, 1.0), 0.7));
     assert!(near(TextureMode::LinearBurn.share_at(0.3, 0.9), 0.2));
-    assert!(near(TextureMode::Overlay.share_at(0.3, 1.0), 0.6));
+    assert!(near(TextureMode::Overlay.share_at(0.3, 1.0), 0.3));
     assert!(near(TextureMode::SofterMix.share_at(0.5, 1.0), 0.5));
     assert!(near(TextureMode::PhotoshopHeight.share_at(0.3, 0.1), 0.7));
     assert!(near(TextureMode::PhotoshopLinearHeight.share_at(0.5, 0.05), 0.25));
