@@ -16,35 +16,35 @@ const POINTS: usize = 17;
 struct KppSensor {
     input: Input,
     curve: Curve,
-    reach: Reach,
+    length: SensorLength,
 }
 
 /// Where a curve over the stroke ends.
-enum Reach {
+enum SensorLength {
     /// It is over something else.
     None,
     Px(f32),
     Dabs(f32),
 }
 
-impl Reach {
+impl SensorLength {
     fn of(id: &str, start: &BytesStart) -> Self {
         let length = |plain: f32| {
             attribute(start, "length").and_then(|text| number(&text)).unwrap_or(plain).max(1.0)
         };
         match id {
-            "distance" => Reach::Px(length(30.0)),
-            "fade" => Reach::Dabs(length(1000.0)),
-            _ => Reach::None,
+            "distance" => SensorLength::Px(length(30.0)),
+            "fade" => SensorLength::Dabs(length(1000.0)),
+            _ => SensorLength::None,
         }
     }
 
     /// In px for a brush.
     fn px(&self, brush: &Brush) -> Option<f32> {
         match self {
-            Reach::None => None,
-            Reach::Px(px) => Some(*px),
-            Reach::Dabs(count) => Some(count * brush.spacing * brush.size),
+            SensorLength::None => None,
+            SensorLength::Px(px) => Some(*px),
+            SensorLength::Dabs(count) => Some(count * brush.spacing * brush.size),
         }
     }
 }
@@ -74,7 +74,7 @@ pub fn of_option(
         notes.push(format!("what its {name} follows multiplies here"));
     }
     let along = |sensor: KppSensor| {
-        let curve = match sensor.reach.px(brush) {
+        let curve = match sensor.length.px(brush) {
             Some(px) => stretch(&sensor.curve, FAR_DIAMETERS * brush.size / px),
             None if sensor.input == Input::Tilt => curve_of(|x| sensor.curve.at(elevation(x))),
             None => None,
@@ -144,7 +144,7 @@ fn read(text: &str, notes: &mut Vec<String>) -> Vec<KppSensor> {
                         Some(input) => found.push(KppSensor {
                             input,
                             curve: Curve::Share(1.0),
-                            reach: Reach::of(&id, &start),
+                            length: SensorLength::of(&id, &start),
                         }),
                         None => note(&id, notes),
                     }

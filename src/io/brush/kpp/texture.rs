@@ -8,7 +8,7 @@
 
 use super::pictures::KppPictures;
 use super::settings::KppPreset;
-use super::{sensors, tip};
+use super::{sensors, tip_file};
 use crate::math::Size;
 use crate::paint::Brush;
 use crate::paint::dynamics::{Curve, Input, Property};
@@ -225,7 +225,7 @@ impl GrayCounts {
 
 /// A pattern's pixel as Krita's gray; what is transparent is white.
 fn pattern_gray(texel: &[u8; 4]) -> u8 {
-    let (gray, alpha) = (u32::from(tip::gray(texel)), u32::from(texel[3]));
+    let (gray, alpha) = (u32::from(tip_file::gray(texel)), u32::from(texel[3]));
     ((gray * alpha + 255 * (255 - alpha) + 127) / 255) as u8
 }
 

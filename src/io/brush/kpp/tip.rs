@@ -4,7 +4,7 @@
 use super::pictures::KppPictures;
 use super::sensors;
 use super::settings::{KppPreset, attribute, element, number};
-use super::tip_file::{TipFile, TipPicture};
+use super::tip_file::{TipFile, TipPicture, gray};
 use crate::math::{Vec2, vec2};
 use crate::paint::dynamics::Input;
 use crate::paint::tip::Hose;
@@ -232,11 +232,6 @@ impl TipLook {
         };
         Picture::srgb8(tip.picture.size, texels).unwrap_or_else(|| tip.picture.clone())
     }
-}
-
-/// Krita's gray of a color.
-pub fn gray(&[r, g, b, _]: &[u8; 4]) -> u8 {
-    ((11 * u32::from(r) + 16 * u32::from(g) + 5 * u32::from(b)) / 32) as u8
 }
 
 /// How the grays of a tip with colors are changed.

@@ -47,7 +47,7 @@ impl TipPicture {
     pub fn mean_gray(&self) -> f32 {
         let add = |(sum, weight): (f64, f64), texel: &[u8; 4]| {
             let alpha = f64::from(texel[3]);
-            (sum + alpha * f64::from(super::tip::gray(texel)), weight + alpha)
+            (sum + alpha * f64::from(gray(texel)), weight + alpha)
         };
         let (sum, weight) = self.texels().iter().fold((0.0, 0.0), add);
         if weight > 0.0 { (sum / weight) as f32 } else { 127.0 }
@@ -130,4 +130,9 @@ pub fn decode_sampled(
         Error::decode(file, format!("it has {count} sampled tips and no tip {number}"))
     })?;
     Ok(TipFile::single(TipPicture::new(picture, true)))
+}
+
+/// Krita's gray of a color.
+pub fn gray(&[r, g, b, _]: &[u8; 4]) -> u8 {
+    ((11 * u32::from(r) + 16 * u32::from(g) + 5 * u32::from(b)) / 32) as u8
 }
