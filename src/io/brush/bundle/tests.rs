@@ -90,23 +90,45 @@ fn entries_beyond_the_budget_are_notes() {
     assert!(note.contains("“tip.gbr” cannot be used") && note.contains("too large"), "{note}");
 }
 
+/// The same bytes with a few changes.
+fn damage(bytes: &mut Vec<u8>, chance: &impl Fn(u32) -> u32) {
+    for change in 0..1 + chance(0) % 4 {
+        let at = chance(10 + change) as usize % bytes.len();
+        match chance(20 + change) % 4 {
+            0 => bytes[at] = chance(30 + change) as u8,
+            1 => bytes[at] = [0, 255, 127, 128][chance(40 + change) as usize % 4],
+            2 => bytes.truncate(at.max(1)),
+            _ if bytes.len() > 1 => drop(bytes.remove(at)),
+            _ => {}
+        }
+    }
+}
+
 #[test]
 fn damaged_bundles_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
     let whole = bundle();
+    let inner: [(&str, Vec<u8>); 3] = [
+        ("brushes/tip.gbr", gray_gbr(3, 2, &[1, 2, 3, 4, 5, 6])),
+        ("patterns/p.pat", pat(2, 1, 3, &[0, 0, 0, 255, 255, 255])),
+        ("paintoppresets/b.kpp", kpp("paintbrush", TIP, &TEXTURE)),
+    ];
     let small =
         Budget { side_px: 4096, area_px: 1 << 16, document_px: 1 << 18, ..Budget::default() };
-    for round in 0..1500u32 {
+    for round in 0..3000u32 {
         let chance = |what: u32| hash::mix(hash::mix(round) ^ hash::mix(what));
-        let mut bytes = whole.clone();
-        for change in 0..1 + chance(0) % 4 {
-            let at = chance(10 + change) as usize % bytes.len();
-            match chance(20 + change) % 4 {
-                0 => bytes[at] = chance(30 + change) as u8,
-                1 => bytes[at] = [0, 255, 127, 128][chance(40 + change) as usize % 4],
-                2 => bytes.truncate(at.max(1)),
-                _ => drop(bytes.remove(at)),
+        // The zip itself, or one of its entries.
+        let bytes = match round % 4 {
+            0 => {
+                let mut bytes = whole.clone();
+                damage(&mut bytes, &chance);
+                bytes
             }
-        }
+            entry => {
+                let mut inner = inner.clone();
+                damage(&mut inner[entry as usize - 1].1, &chance);
+                pack(&inner.each_ref().map(|(name, bytes)| (*name, &bytes[..])))
+            }
+        };
         let brushes = read(Path::new("set.bundle"), &bytes, &small).into_iter().flatten();
         for ImportedBrush { name, brush, .. } in brushes {
             let is_in_range = |setting: &crate::paint::settings::BrushSetting| {
