@@ -33,9 +33,8 @@ pub fn show(
     }
     brush(ui, session, drawing, setter);
     title(ui, "Hand");
-    painter::settings(ui, DrawingHand::SETTINGS, drawing.hand, setter, |hand| Property::Hand {
-        hand,
-    });
+    let hand = DrawingHand::settings_of(&drawing.pattern);
+    painter::settings(ui, hand, drawing.hand, setter, |hand| Property::Hand { hand });
     let hint = "The lines become strokes, to be edited one by one";
     if ui.button("Make strokes").on_hover_text(hint).clicked() {
         setter.act(|layer| LayerAction::MakeStrokes { layer });

@@ -17,7 +17,7 @@ type ColorOf = fn(&mut Painter) -> &mut Color;
 /// A row for each number of a table.
 pub fn settings<T: Copy + 'static>(
     ui: &mut Ui,
-    table: &'static [NumberSetting<T>],
+    table: impl IntoIterator<Item = &'static NumberSetting<T>>,
     all: T,
     setter: &mut LayerSetter,
     put: fn(T) -> Property,

@@ -1,9 +1,9 @@
 //! How a hand follows a line: pressure by what the line is, tapered ends, overshoot and wobble.
 //! Floor 3. All of it is fixed by where the line is, so that it does not flicker while others move.
 
-use super::FormDrawing;
+use super::{FormDrawing, FormPattern};
 use crate::math::number_settings::number_settings;
-use crate::math::{Vec2, Vec3, hash, vec2};
+use crate::math::{NumberSetting, Vec2, Vec3, hash, vec2};
 use crate::paint::sample::Sample;
 use crate::paint::stroke::Stroke;
 use crate::surface::form_lines::{FormLine, LinePoint};
@@ -26,6 +26,10 @@ number_settings! {
         by_light: "Weight by light", "How much thinner lines are in the light", 0.0..=1.0, 0.4;
         /// How much lighter it is far away.
         by_distance: "Weight by nearness", "How much thinner lines are far away", 0.0..=1.0, 0.0;
+        /// How much lighter it is where a line runs along the nib.
+        by_angle: "Weight by angle", "How much thinner lines are that run along the nib", 0.0..=1.0, 0.0;
+        /// The direction of the nib's edge, degrees, anticlockwise from the right as seen.
+        nib_angle: "Nib angle", "Which way the thinnest lines run, degrees", 0.0..=180.0, 45.0;
         and
     }
 }
@@ -63,6 +67,14 @@ impl LightOnLines<'_> {
 }
 
 impl DrawingHand {
+    /// What changes a pattern: the weight of hatching is its tone, whatever the hand.
+    pub fn settings_of(
+        pattern: &FormPattern,
+    ) -> impl Iterator<Item = &'static NumberSetting<Self>> + use<> {
+        let has_weight = matches!(pattern, FormPattern::Lines(_));
+        Self::SETTINGS.iter().filter(move |setting| has_weight || setting.is_length)
+    }
+
     /// The same on a canvas `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut next = *self;
@@ -92,12 +104,15 @@ impl DrawingHand {
                 if line.is_closed || is_joined { 0.0 } else { self.taper }
             },
         );
+        let nib = Vec2::from_angle(-self.nib_angle.to_radians()); // canvas y is down
         self.draw(drawing, &points, taper, LEAST, |point, left| {
             let (lit, away) = light.at(point.at + BESIDE_PX * left);
+            let along_nib = 1.0 - left.dot(nib).abs();
             let thin = |share: f32, by: f32| 1.0 - share * by.clamp(0.0, 1.0);
             thin(self.by_strength, 1.0 - point.strength)
                 * thin(self.by_light, lit)
                 * thin(self.by_distance, away)
+                * thin(self.by_angle, along_nib)
         })
     }
 

@@ -7,7 +7,7 @@ use crate::paint::sample::Sample;
 use crate::paint::stroke;
 use crate::raster::Plane;
 use crate::raster::TileAt;
-use crate::surface::form_lines::{LineKind, LineKinds};
+use crate::surface::form_lines::{FormLine, LineKind, LineKinds, LinePoint};
 use crate::surface::hatching::{GuideLines, HatchPoint, HatchStyle};
 use crate::surface::{Maps, Surface};
 
@@ -65,6 +65,43 @@ fn a_hand_overshoots_and_strays_the_same_way_each_time() {
     assert!((0.5..4.5).contains(&off), "{off}");
     let xs = samples.iter().map(|s| s.at.x).fold(0.0, f32::max);
     assert!(xs > 163.0, "{xs}");
+}
+
+#[test]
+fn a_line_along_the_nib_is_thin_and_one_across_it_is_not() {
+    let scene = roof(); // its ridge runs level
+    let heaviest = |by_angle: f32, nib_angle: f32| {
+        let hand = DrawingHand { by_angle, nib_angle, taper: 0.0, ..DrawingHand::DEFAULT };
+        let strokes = drawing(hand).strokes(&scene);
+        strokes[0].samples().iter().map(|s| s.pressure).fold(0.0, f32::max)
+    };
+    let plain = heaviest(0.0, 0.0);
+    for (by_angle, nib_angle, share) in
+        [(1.0, 90.0, 1.0), (1.0, 30.0, 0.5), (0.5, 30.0, 0.75), (0.6, 180.0, 0.4)]
+    {
+        let weight = heaviest(by_angle, nib_angle) / plain;
+        assert!((weight - share).abs() < 0.02, "{by_angle} at {nib_angle}°: {weight}, not {share}");
+    }
+    // Degrees run anticlockwise as seen: a line that rises to the right is thin at 45°.
+    let rising = rising_line();
+    let weight = |nib_angle: f32| {
+        let hand = DrawingHand { by_angle: 1.0, nib_angle, taper: 0.0, ..DrawingHand::DEFAULT };
+        let light =
+            hand::LightOnLines { surface: scene.surface.as_deref().unwrap(), light: Vec3::Y };
+        let stroke = hand.stroke(&drawing(hand), &rising, &light);
+        stroke.samples().iter().map(|s| s.pressure).fold(0.0, f32::max)
+    };
+    assert!(weight(45.0) < 0.05 && weight(135.0) > 0.4, "{} {}", weight(45.0), weight(135.0));
+}
+
+/// A line across the roof that rises to the right.
+fn rising_line() -> FormLine {
+    let point = |i: u32| {
+        let at = vec2(20.0 + i as f32, 100.0 - i as f32);
+        LinePoint { at, strength: 1.0 }
+    };
+    let points = (0..60).map(point).collect();
+    FormLine { kind: LineKind::Crease, points, is_closed: false, is_joined: [false; 2] }
 }
 
 #[test]
