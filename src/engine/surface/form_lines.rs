@@ -55,6 +55,11 @@ crate::named! {
     }
 }
 
+impl LineKind {
+    /// The kinds where a surface ends or has an edge, however smooth its form is.
+    pub const SHARP: [Self; 3] = [Self::Outline, Self::Crease, Self::Border];
+}
+
 /// Which kinds of lines are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LineKinds(u16);
@@ -246,7 +251,7 @@ impl HeapSize for UnlitLines {
     }
 }
 
-/// The lines where a surface ends or has an edge, which do not depend on how smooth its form is.
+/// The lines of the sharp kinds, which stay when the form is smoothed.
 #[derive(Debug)]
 pub(in crate::surface) struct SharpLines(Vec<FormLine>);
 
@@ -290,8 +295,7 @@ impl Surface {
     /// Its outlines, creases and borders, cached.
     fn sharp_lines(&self, settings: &LineSettings) -> Arc<SharpLines> {
         const KEPT: usize = 2;
-        let sharp = [LineKind::Outline, LineKind::Crease, LineKind::Border];
-        let wanted = sharp.into_iter().filter(|kind| settings.kinds.has_kind(*kind));
+        let wanted = LineKind::SHARP.into_iter().filter(|kind| settings.kinds.has_kind(*kind));
         let kinds = wanted.fold(LineKinds::NONE, |kinds, kind| kinds.with(kind, true));
         let LineSettings { detail, shortest, .. } = *settings;
         let settings = LineSettings { detail, shortest, kinds, ..LineSettings::DEFAULT };

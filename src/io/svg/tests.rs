@@ -58,6 +58,39 @@ fn text_becomes_outlines_that_show_the_same_without_fonts() {
 }
 
 #[test]
+fn bands_that_are_painted_side_by_side_are_the_drawing() {
+    let line = |y: usize| {
+        format!(
+            r#"<text x="7.3" y="{y}" font-size="23">Quick brown foxes {y}</text>
+            <path d="M 5 {} q 90 9 180 0" stroke="url(#ramp)" stroke-width="2" fill="none"/>"#,
+            y + 6
+        )
+    };
+    let text = format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="240" height="400"><defs>
+        <linearGradient id="ramp"><stop stop-color="#a04020"/><stop offset="1" stop-color="#2040a0"/>
+        </linearGradient></defs>{}</svg>"##,
+        (0..9).map(|i| line(40 + 40 * i)).collect::<String>()
+    );
+    let file = Path::new("a.svg");
+    let drawing = Drawing::parse(file, text.as_bytes(), &Budget::default()).unwrap();
+    for scale in [1.0, 2.7] {
+        let size = Size::new((240.0 * scale) as u32, (400.0 * scale) as u32);
+        assert!(drawing.band_ends(size, scale).len() > 2, "no bands at {scale}");
+        let mut whole = vec![[0u8; 4]; size.area()];
+        drawing.paint_band(0, scale, size, &mut whole).unwrap();
+        let painted = drawing.paint(size, scale).unwrap();
+        let off = painted.iter().flatten().zip(whole.iter().flatten());
+        let off = off.map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(off <= Some(1), "{off:?} of 255 at {scale}");
+    }
+    // A path from top to bottom leaves no row where the drawing may be cut.
+    let bar = text.replace("</svg>", r##"<path d="M 200 0 v 400" stroke="#000"/></svg>"##);
+    let drawing = Drawing::parse(file, bar.as_bytes(), &Budget::default()).unwrap();
+    assert_eq!(drawing.band_ends(Size::new(240, 400), 1.0), [400]);
+}
+
+#[test]
 fn nothing_outside_of_the_file_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let red = image::RgbaImage::from_pixel(4, 4, image::Rgba([255, 0, 0, 255]));

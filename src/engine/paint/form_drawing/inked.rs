@@ -79,11 +79,9 @@ impl InkOnCanvas {
         strokes: &NearStrokes,
         settings: &LineSettings,
     ) -> Vec<FormLine> {
-        let reach_px = match line.kind {
-            LineKind::Outline | LineKind::Crease | LineKind::Border => REACH_PX,
-            // Blurred normals turn beside the rim of a form.
-            _ => REACH_PX + settings.smooth,
-        };
+        // Blurred normals turn beside the rim of a form.
+        let is_sharp = LineKind::SHARP.contains(&line.kind);
+        let reach_px = if is_sharp { REACH_PX } else { REACH_PX + settings.smooth };
         let is_inked = |i: usize| {
             self.has_ink_within(line.points[i].at, reach_px) || strokes.has_alike(&line.points, i)
         };

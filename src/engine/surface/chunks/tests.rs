@@ -179,6 +179,44 @@ fn seams_take_what_neighbors_show() {
     assert!(none.seams(0).is_none());
 }
 
+/// The bits of the neighbors that a pixel is averaged with: in another chunk, joined to the pixel,
+/// and their place, taken back by the step, suits its normal.
+fn seam_bits(maps: &ChunkMaps, (x, y): (usize, usize)) -> u8 {
+    let (reach, size) = (maps.settings.seam_px as i32, maps.surface.size());
+    let own = maps.place_at(x, y);
+    let is_seam = |(dx, dy): (i32, i32)| {
+        let (ox, oy) = (x as i32 + dx * reach, y as i32 + dy * reach);
+        if !size.rect().contains(ox, oy) {
+            return false;
+        }
+        let (ox, oy) = (ox as usize, oy as usize);
+        let other = maps.place_at(ox, oy);
+        let back = vec2((dx * reach) as f32, (dy * reach) as f32);
+        let at = Vec2::from(other.at.map(f32::from)) / maps.settings.steps() - back;
+        own.chunk != other.chunk
+            && own.chunk != 0
+            && other.chunk != 0
+            && maps.settings.is_near(at, maps.nbar(x, y), maps.seen[2].at(x, y))
+            && maps.ways.is_reached((x, y), (ox, oy))
+    };
+    (0..8).filter(|bit| is_seam(SEAM_STEPS[*bit])).map(|bit| 1 << bit).sum()
+}
+
+#[test]
+fn seams_are_those_that_single_pixels_find() {
+    for (seam_px, follow, step) in [(1.0, 0.0, 0.5), (3.0, 0.6, 0.0)] {
+        let surface = bumps((150, 97), step);
+        let settings = ChunkSettings { seam_px, follow, ..PLAIN };
+        let (found, maps) = (surface.ball_places(&settings), ChunkMaps::of(&surface, settings));
+        for y in 0..97 {
+            let seams = found.seams(y).unwrap();
+            for x in 0..150 {
+                assert_eq!(seams[x], seam_bits(&maps, (x, y)), "{seam_px} px: {x}, {y}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_surface_twice_as_large_shows_chunks_twice_as_large() {
     let surface = Arc::new(bumps((150, 97), 0.0));

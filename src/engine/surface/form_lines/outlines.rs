@@ -2,6 +2,9 @@
 //! at the places that contours know between pixels. Floor 2. Not here: curves of smooth forms
 //! (`fields`).
 
+#[cfg(test)]
+mod tests;
+
 use super::chains::{CellSide, Chain, LineStep, join_steps, sides};
 use super::tidy::RawLine;
 use super::{LineKind, LinePoint, LineSettings};

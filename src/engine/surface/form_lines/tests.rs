@@ -7,7 +7,7 @@ use crate::surface::Maps;
 
 /// A surface from a height above the picture, px, where there is one; its derivatives are taken
 /// finely.
-fn surface(size: Size, height: impl Fn(f32, f32) -> Option<f32> + Sync) -> Surface {
+pub(super) fn surface(size: Size, height: impl Fn(f32, f32) -> Option<f32> + Sync) -> Surface {
     const H: f32 = 0.01;
     let (w, h) = (size.width as f32, size.height as f32);
     let range = w.max(h);
@@ -63,7 +63,7 @@ fn convex(size: f32, planes: Vec<(Vec3, f32)>) -> impl Fn(f32, f32) -> Option<f3
     }
 }
 
-fn cube(size: f32, half: f32) -> impl Fn(f32, f32) -> Option<f32> + Sync {
+pub(super) fn cube(size: f32, half: f32) -> impl Fn(f32, f32) -> Option<f32> + Sync {
     // Turned about y by 35°, then about x by 30°.
     let (sy, cy) = 35f32.to_radians().sin_cos();
     let (sx, cx) = 30f32.to_radians().sin_cos();
@@ -76,7 +76,12 @@ fn cube(size: f32, half: f32) -> impl Fn(f32, f32) -> Option<f32> + Sync {
 }
 
 /// A torus seen from so many degrees above its plane.
-fn torus(size: f32, big: f32, small: f32, degrees: f32) -> impl Fn(f32, f32) -> Option<f32> + Sync {
+pub(super) fn torus(
+    size: f32,
+    big: f32,
+    small: f32,
+    degrees: f32,
+) -> impl Fn(f32, f32) -> Option<f32> + Sync {
     let (s, c) = degrees.to_radians().sin_cos();
     move |x, y| {
         let (x, y) = (x - 0.5 * size, 0.5 * size - y);

@@ -163,8 +163,7 @@ fn resample(points: &[LinePoint], is_closed: bool) -> Vec<LinePoint> {
 /// The pieces between sharp corners.
 fn split_at_corners(mut line: RawLine) -> Vec<RawLine> {
     let n = line.points.len();
-    let splits = matches!(line.kind, LineKind::Outline | LineKind::Crease | LineKind::Border);
-    if !splits || n < 4 * CORNER_PX {
+    if !LineKind::SHARP.contains(&line.kind) || n < 4 * CORNER_PX {
         return vec![line];
     }
     let cos = |i: usize| {
