@@ -8,6 +8,7 @@ mod balls;
 pub mod brushes;
 pub mod drawing;
 pub mod exporting;
+mod last_actions;
 pub mod memory;
 mod open_document;
 mod palettes;
@@ -25,6 +26,7 @@ pub use actions::Action;
 pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
 pub use exporting::{ExportSettings, ExportSize, ExportedFile};
+pub use last_actions::last_actions;
 pub use open_document::{CloneSource, Edit, OpenDocument, is_same, is_same_look};
 pub use open_document::{labels, selected_layers};
 pub use palettes::PaletteShelf;
@@ -73,6 +75,12 @@ pub struct Session {
     pub hides_selection: bool,
     /// The picture is shown in grays of its luminance.
     pub shows_values: bool,
+    /// Whether the picture is shown as it will be printed, where a profile for that is known.
+    pub shows_proof: bool,
+    /// Whether colors that cannot be printed are marked there.
+    pub marks_gamut: bool,
+    /// Whether the picture is shown as the document's file holds it.
+    pub shows_saved: bool,
     /// Balls that are painted in documents of their own.
     balls: Vec<balls::BallLink>,
     /// The text that the text tool was last pressed on.
@@ -132,6 +140,9 @@ impl Default for Session {
             palettes: PaletteShelf::default(),
             hides_selection: false,
             shows_values: false,
+            shows_proof: false,
+            marks_gamut: false,
+            shows_saved: false,
             balls: Vec::new(),
             writing: None,
             copied: None,

@@ -36,8 +36,8 @@ pub use selection::{EdgeChange, SelectionAction};
 pub use strokes::{StrokeAction, Style};
 pub use views::ViewAction;
 
-use super::Session;
 use super::replay::ReplayValue;
+use super::{Session, last_actions};
 use crate::Result;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -56,6 +56,11 @@ macro_rules! rooms {
         impl Action {
             /// The words of all rooms.
             pub const ROOMS: &'static [&'static str] = &[$($word),+];
+
+            /// The word of its room, and its own there.
+            pub fn words(&self) -> [&'static str; 2] {
+                match self { $(Action::$room(action) => [$word, action.word()]),+ }
+            }
         }
 
         impl ReplayValue for Action {
@@ -127,6 +132,8 @@ impl Action {
     /// Performs it. What cannot be done changes nothing; only files fail. An edit that no file
     /// could hold is refused in a note.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
+        last_actions::note(self.words());
+        session.shows_saved &= matches!(self, Action::View(_));
         session.record_targets();
         let mut done = Ok(());
         match self {

@@ -187,6 +187,11 @@ macro_rules! actions {
             /// The words of all of them.
             #[cfg(test)]
             pub const WORDS: &'static [&'static str] = &[$($word),+];
+
+            /// Its word.
+            pub fn word(&self) -> &'static str {
+                match self { $(Self::$variant { .. } => $word),+ }
+            }
         }
 
         #[cfg(test)]

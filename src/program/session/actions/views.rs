@@ -1,7 +1,7 @@
 //! Actions on the view of the canvas. They do not change a document.
 //! Floor 6.
 
-use crate::math::Vec2;
+use crate::math::{Size, Vec2};
 use crate::session::replay::actions;
 use crate::session::{Session, view::CanvasView};
 
@@ -22,6 +22,12 @@ actions! {
         "overlay opacity" OverlayOpacity { to: f32 }
         /// The picture in grays of its luminance, or in its colors.
         "values" Values { on: bool }
+        /// The picture as it will be printed, where the window knows a profile for that.
+        "proof" Proof { on: bool }
+        /// Marks colors that cannot be printed, there.
+        "gamut" Gamut { on: bool }
+        /// The picture as the document's file holds it, until anything else is done.
+        "saved" Saved { on: bool }
         /// The surface unwrapped instead of the picture, as the current operator says. The pen's
         /// points are then those of the sheet.
         "unwrapped" Unwrapped { on: bool }
@@ -35,6 +41,9 @@ impl ViewAction {
             ViewAction::Overlay { view } => session.overlay.clone_from(view),
             ViewAction::OverlayOpacity { to } => session.overlay_opacity = to.max(0.0).min(1.0),
             ViewAction::Values { on } => session.shows_values = *on,
+            ViewAction::Proof { on } => session.shows_proof = *on,
+            ViewAction::Gamut { on } => session.marks_gamut = *on,
+            ViewAction::Saved { on } => session.shows_saved = *on,
             ViewAction::Unwrapped { on } => unwrap(session, *on),
             _ => {
                 if let Some(open) = session.active_mut() {
@@ -42,14 +51,17 @@ impl ViewAction {
                     let view = open
                         .view
                         .unwrap_or_else(|| CanvasView::fitting(size, Vec2::new(800.0, 600.0)));
-                    open.view = Some(self.clamped(view, size));
+                    open.view = self.view_after(view, size).or(open.view);
                 }
             }
         }
     }
 
-    fn clamped(&self, view: CanvasView, canvas: crate::math::Size) -> CanvasView {
-        match self {
+    /// The view after an action that moves it; `None` if the action is none of those.
+    ///
+    /// * `canvas`: the size of the canvas, px.
+    pub fn view_after(&self, view: CanvasView, canvas: Size) -> Option<CanvasView> {
+        Some(match self {
             ViewAction::Pan { by } => view.panned(*by),
             ViewAction::Zoom { factor, about } => view.zoomed(*factor, *about),
             ViewAction::ZoomTo { zoom } => view.zoomed(zoom / view.zoom, Vec2::ZERO),
@@ -64,8 +76,11 @@ impl ViewAction {
             ViewAction::Overlay { .. }
             | ViewAction::OverlayOpacity { .. }
             | ViewAction::Values { .. }
-            | ViewAction::Unwrapped { .. } => view,
-        }
+            | ViewAction::Proof { .. }
+            | ViewAction::Gamut { .. }
+            | ViewAction::Saved { .. }
+            | ViewAction::Unwrapped { .. } => return None,
+        })
     }
 }
 
