@@ -70,6 +70,7 @@ mod tree;
 mod verify;
 mod write;
 
+pub(crate) use colors::Press;
 pub use export::write;
 pub use tree::read;
 

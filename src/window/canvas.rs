@@ -33,13 +33,15 @@ use super::render_thread::RenderThread;
 use super::theme;
 use crate::Error;
 use crate::document::Document;
+use crate::io::proof::ProofTable;
+use crate::math::srgb::Color;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::tools::ToolKind;
 use ants::Ants;
-use blocks::{corners, on_screen, quad};
+use blocks::{ShownColors, corners, on_screen, quad};
 use eframe::egui::{
     self, Color32, ColorImage, Painter, Sense, Stroke, TextureHandle, TextureOptions,
     TextureWrapMode, Ui, pos2,
@@ -49,6 +51,7 @@ use parts::PartMarks;
 use pointer::PointerState;
 use sheet::TileSheet;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Duration;
 use unwrapped::{OnSheet, UnwrappedSheet};
 use wobble::Wobble;
@@ -77,6 +80,8 @@ pub struct Canvas {
     wobble: Option<Wobble>,
     /// Whether pixels are enlarged while a color is taken.
     has_loupe: bool,
+    /// How the picture will be printed, once a profile was chosen.
+    pub proof: Option<Arc<ProofTable>>,
     /// The picture for the navigator, and whether it is outdated.
     small: Option<TextureHandle>,
     small_is_old: bool,
@@ -131,6 +136,7 @@ impl Canvas {
             parts: PartMarks::default(),
             wobble: None,
             has_loupe: true,
+            proof: None,
             small: None,
             small_is_old: true,
             area_pt: vec2(800.0, 600.0),
@@ -211,7 +217,7 @@ impl Canvas {
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
         self.magnify(view.zoom * ui.ctx().pixels_per_point(), open.document().size, size);
-        self.show_values(session.shows_values);
+        self.show_colors(session);
 
         let painter = ui.painter_at(rect);
         let canvas = size.rect();
@@ -227,6 +233,9 @@ impl Canvas {
         let line = Stroke::new(1.0, Color32::from_black_alpha(110));
         painter.add(egui::Shape::closed_line(outline.to_vec(), line));
 
+        if session.shows_saved {
+            show_badge(ui, rect, "As saved");
+        }
         self.hand.listen(ui, &response, session, &view, middle, actions);
         let pointer = response.hover_pos().filter(|_| !self.hand.is_looking());
         let inverse = screen_from_canvas.inverse();
@@ -245,14 +254,12 @@ impl Canvas {
                 self.draw_aids(ui, &painter, session, &aids, is_unseen)
             }
         }
-        path_handles::keys(ui, session, actions);
-        lasso_keys(ui, session, actions);
-        crop::keys(ui, session, actions);
+        keys_of_tools(ui, session, actions);
         if tool == ToolKind::Anchors && layout.is_none() {
             self.insets.draw(ui.ctx(), session, &painter);
             self.trouble = self.trouble.take().or(self.insets.trouble.take());
         }
-        self.draw_loupe(ui, session, inverse, layout.is_some());
+        self.draw_loupe(ui, self.hand.picking(), session, inverse, layout.is_some());
         if response.hovered() || self.hand.is_looking() {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
@@ -265,10 +272,16 @@ impl Canvas {
         self.sheet.shown.magnify(scale, sheet_px);
     }
 
-    /// Shows the pictures in grays of their luminance, or in colors.
-    fn show_values(&mut self, on: bool) {
+    /// Shows the pictures in their colors, in grays, or as they will be printed.
+    fn show_colors(&mut self, session: &Session) {
+        let proof = self.proof.clone().filter(|_| session.shows_proof);
+        let colors = match proof {
+            _ if session.shows_values => ShownColors::Values,
+            Some(table) => ShownColors::Proof { table, is_marked: session.marks_gamut },
+            None => ShownColors::Own,
+        };
         for sheet in [&mut self.whole, &mut self.draft, &mut self.sheet.shown] {
-            sheet.show_values(on);
+            sheet.show_in(&colors);
         }
     }
 
@@ -348,10 +361,19 @@ impl Canvas {
     }
 
     /// While a color is taken: the pixels around the pen, the new color and the one before.
-    fn draw_loupe(&self, ui: &Ui, session: &Session, canvas_from_screen: Affine2, is_flat: bool) {
-        let Some((at, before)) = self.hand.picking().filter(|_| self.has_loupe) else { return };
+    ///
+    /// * `picking`: where the pen is, and the color before.
+    fn draw_loupe(
+        &self,
+        ui: &Ui,
+        picking: Option<(egui::Pos2, Color)>,
+        session: &Session,
+        canvas_from_screen: Affine2,
+        is_unwrapped: bool,
+    ) {
+        let Some((at, before)) = picking.filter(|_| self.has_loupe) else { return };
         let pixel = canvas_from_screen.transform_point2(vec2(at.x, at.y));
-        let grid = &self.texture_in_front(is_flat).grid;
+        let grid = &self.texture_in_front(is_unwrapped).grid;
         let colors = loupe::LoupeColors { new: session.picked_color().unwrap_or(before), before };
         loupe::draw(ui, at, pixel, grid, colors);
     }
@@ -372,12 +394,25 @@ impl Canvas {
     }
 
     /// Draws the picture in another place, as far as it is painted.
-    fn draw_elsewhere(&self, painter: &egui::Painter, screen_from_canvas: Affine2, size: Size) {
+    fn draw_elsewhere(
+        &mut self,
+        ctx: &egui::Context,
+        session: &Session,
+        painter: &Painter,
+        screen_from_canvas: Affine2,
+    ) {
+        let Some(size) = session.shown_document().map(|document| document.size) else { return };
         let at = corners(size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
         if let Some(checker) = &self.checker {
             painter.add(checker_shape(checker.id(), at));
         }
         self.texture_in_front(false).draw(painter, screen_from_canvas, size);
+        self.draw_overlay(ctx, session, painter, screen_from_canvas);
+    }
+
+    /// The window has read the pen's events of a frame, in all its views.
+    pub fn end_frame(&mut self) {
+        self.hand.end_frame();
     }
 
     fn draw_checker(&mut self, ui: &Ui, painter: &egui::Painter, canvas: [egui::Pos2; 4]) {
@@ -423,6 +458,13 @@ fn checker_shape(texture: egui::TextureId, canvas: [egui::Pos2; 4]) -> egui::Sha
     quad(texture, uv, Color32::WHITE)
 }
 
+/// The keys that are meant for what a tool has begun.
+fn keys_of_tools(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    path_handles::keys(ui, session, actions);
+    lasso_keys(ui, session, actions);
+    crop::keys(ui, session, actions);
+}
+
 /// Enter closes a lasso of clicks, Escape cancels it.
 fn lasso_keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     if session.tools.lasso.is_empty()
@@ -460,6 +502,19 @@ fn to_screen(screen_from_canvas: Affine2) -> impl Fn(Vec2) -> egui::Pos2 {
         let p = screen_from_canvas.transform_point2(p);
         pos2(p.x, p.y)
     }
+}
+
+/// Words over the picture, for what it is if it is not the document.
+fn show_badge(ui: &Ui, area: egui::Rect, text: &str) {
+    const INSET_PT: f32 = 8.0;
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let color = ui.visuals().strong_text_color();
+    let words = ui.painter().layout_no_wrap(text.to_owned(), font, color);
+    let size = words.size() + egui::Vec2::splat(2.0 * INSET_PT);
+    let place = egui::Align2::CENTER_TOP.align_size_within_rect(size, area.shrink(INSET_PT));
+    let painter = ui.painter_at(area);
+    painter.rect_filled(place, 4.0, ui.visuals().panel_fill);
+    painter.galley(place.min + egui::Vec2::splat(INSET_PT), words, color);
 }
 
 /// A sentence in place of a picture.

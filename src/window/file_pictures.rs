@@ -9,9 +9,10 @@ use crate::memory::catch_out_of_memory;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// The longer side of a picture, px.
+/// The longer side of a picture in a list, px.
 const SIDE_PX: u32 = 128;
 /// The most pictures that are kept.
 const MOST: usize = 400;
@@ -21,22 +22,49 @@ const LARGEST_BYTES: u64 = 256 << 20;
 /// A file, and its picture if it has one.
 type FilePicture = (PathBuf, Option<ColorImage>);
 
+/// A picture that was asked for.
+pub enum PictureState {
+    Awaited,
+    /// The file cannot be shown.
+    Missing,
+    Made(TextureHandle, Arc<ColorImage>),
+}
+
 /// The pictures that are made, and the thread that makes them.
-#[derive(Default)]
 pub struct FilePictures {
+    /// Their longer side, px.
+    side_px: u32,
     thread: Option<(Sender<PathBuf>, Receiver<FilePicture>)>,
-    /// `None` for a file whose picture is awaited, or that has none.
-    made: HashMap<PathBuf, Option<TextureHandle>>,
+    made: HashMap<PathBuf, PictureState>,
+}
+
+impl Default for FilePictures {
+    fn default() -> Self {
+        Self::with_side(SIDE_PX)
+    }
 }
 
 impl FilePictures {
+    /// Pictures whose longer side has so many pixels at most.
+    pub fn with_side(side_px: u32) -> Self {
+        Self { side_px, thread: None, made: HashMap::new() }
+    }
+
     /// The picture of a file, once it is made; `None` before, and if the file has none.
     pub fn of(&mut self, ctx: &Context, file: &Path) -> Option<&TextureHandle> {
+        match self.state(ctx, file) {
+            PictureState::Made(texture, _) => Some(texture),
+            PictureState::Awaited | PictureState::Missing => None,
+        }
+    }
+
+    /// What became of the picture of a file.
+    pub fn state(&mut self, ctx: &Context, file: &Path) -> &PictureState {
         self.collect(ctx);
         if !self.made.contains_key(file) {
             self.order(ctx, file);
         }
-        self.made.get(file).and_then(Option::as_ref)
+        self.made.get(file).unwrap_or(&PictureState::Missing)
     }
 
     /// The file has changed: its picture is made again when it is asked for.
@@ -52,31 +80,40 @@ impl FilePictures {
             let (orders, coming) = channel();
             let (finished, done) = channel();
             let waker = ctx.clone();
-            let work = move || make_all(&coming, &finished, &waker);
+            let side_px = self.side_px;
+            let work = move || make_all(side_px, &coming, &finished, &waker);
             // Without a thread there are no pictures.
             let _ = jobs::spawn("pictures of files", work);
             self.thread = Some((orders, done));
         }
         let Some((orders, _)) = &self.thread else { return };
         let _ = orders.send(file.to_owned());
-        self.made.insert(file.to_owned(), None);
+        self.made.insert(file.to_owned(), PictureState::Awaited);
     }
 
     fn collect(&mut self, ctx: &Context) {
         let Some((_, done)) = &self.thread else { return };
         for (file, image) in done.try_iter() {
-            let load =
-                |image| ctx.load_texture(file.to_string_lossy(), image, TextureOptions::LINEAR);
+            let load = |image: ColorImage| {
+                let (name, image) = (file.to_string_lossy(), Arc::new(image));
+                let texture = ctx.load_texture(name, image.clone(), TextureOptions::LINEAR);
+                PictureState::Made(texture, image)
+            };
             // What was forgotten meanwhile is not wanted.
             if let Some(place) = self.made.get_mut(&file) {
-                *place = image.map(load);
+                *place = image.map_or(PictureState::Missing, load);
             }
         }
     }
 }
 
 /// The thread: until nobody asks any more.
-fn make_all(coming: &Receiver<PathBuf>, finished: &Sender<FilePicture>, waker: &Context) {
+fn make_all(
+    side_px: u32,
+    coming: &Receiver<PathBuf>,
+    finished: &Sender<FilePicture>,
+    waker: &Context,
+) {
     let mut waiting = Vec::new();
     loop {
         if waiting.is_empty() {
@@ -86,7 +123,7 @@ fn make_all(coming: &Receiver<PathBuf>, finished: &Sender<FilePicture>, waker: &
         waiting.extend(coming.try_iter());
         // What is in sight now was asked for last.
         let Some(file) = waiting.pop() else { continue };
-        let image = catch_out_of_memory(|| make(&file)).ok().flatten();
+        let image = catch_out_of_memory(|| make(&file, side_px)).ok().flatten();
         if finished.send((file, image)).is_err() {
             return;
         }
@@ -94,11 +131,11 @@ fn make_all(coming: &Receiver<PathBuf>, finished: &Sender<FilePicture>, waker: &
     }
 }
 
-fn make(file: &Path) -> Option<ColorImage> {
+fn make(file: &Path, side_px: u32) -> Option<ColorImage> {
     if files::metadata(file).ok()?.len() > LARGEST_BYTES {
         return None;
     }
-    let small = thumbnail(file, SIDE_PX, &Budget::of_this_machine()).ok()?;
+    let small = thumbnail(file, side_px, &Budget::of_this_machine()).ok()?;
     let size = [small.size.width as usize, small.size.height as usize];
     Some(ColorImage::from_rgba_unmultiplied(size, &small.rgba))
 }

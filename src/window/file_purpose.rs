@@ -15,6 +15,10 @@ pub enum FilePurpose {
     Open,
     Place,
     ImportUnwrapped,
+    /// A picture over the canvas.
+    Reference,
+    /// Of a press or a screen.
+    ColorProfile,
     Brush,
     /// Colors of another program.
     Palette,
@@ -49,6 +53,8 @@ impl FilePurpose {
             FilePurpose::Open => "Open",
             FilePurpose::Place => "Place an image",
             FilePurpose::ImportUnwrapped => "Import a picture of the unwrapped surface",
+            FilePurpose::Reference => "Pin a reference",
+            FilePurpose::ColorProfile => "ICC profile of a press or a screen",
             FilePurpose::Brush => "Import a brush",
             FilePurpose::Palette => "Import a palette",
             FilePurpose::ColorTable => "Color look-up table",
@@ -88,6 +94,10 @@ impl FilePurpose {
                 ("Scripts", SCRIPTS.to_vec()),
             ],
             FilePurpose::Brush => vec![("Brushes", brushes::extensions())],
+            FilePurpose::ColorProfile => vec![("ICC profiles", vec!["icc", "icm"])],
+            FilePurpose::Reference => {
+                vec![("Pictures and documents", [&PICTURES[..], &DOCUMENTS].concat())]
+            }
             FilePurpose::Palette => vec![("Palettes", PaletteFormat::EXTENSIONS.to_vec())],
             FilePurpose::ColorTable => vec![("Tables", vec!["cube"])],
             FilePurpose::Place

@@ -35,6 +35,7 @@ mod preferences;
 #[cfg(not(target_family = "wasm"))]
 mod program_icon;
 mod recovery;
+mod references;
 mod render_thread;
 mod requests;
 mod sample;

@@ -75,6 +75,8 @@ pub struct PanelLayout {
     /// Panels in windows of their own.
     pub floating: Vec<PanelKind>,
     pub width_pt: f32,
+    /// Whether references are not shown.
+    pub hides_references: bool,
 }
 
 impl PanelLayout {
@@ -117,6 +119,7 @@ impl Default for PanelLayout {
             below: PanelKind::Layers,
             floating: Vec::new(),
             width_pt: 268.0,
+            hides_references: false,
         }
     }
 }

@@ -101,6 +101,12 @@ pub enum WindowRequest {
     Menus,
     /// Opens or closes the second view of the document.
     SecondView,
+    /// Shows the picture as it will be printed, or in its own colors.
+    ToggleProof,
+    /// Shows or hides the references.
+    ToggleReferences,
+    /// Removes all references.
+    ClearReferences,
     TogglePanels,
     OtherSide,
     PanelsApart,

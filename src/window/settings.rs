@@ -9,6 +9,7 @@ use super::jobs;
 use super::keymap::{KeyPreset, Keymap};
 use super::panel_layout::{ColorView, PanelKind, PanelLayout, SIDES};
 use super::preferences::Preferences;
+use super::references::ReferencePins;
 use super::theme::Look;
 use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
 use crate::document::Progress;
@@ -57,6 +58,10 @@ pub struct Settings {
     pub shelf: BrushShelf,
     /// How documents were exported, and presets for that.
     pub exports: ExportMemory,
+    /// Pictures over the canvas.
+    pub references: ReferencePins,
+    /// The profile that the picture is proofed with.
+    pub proof: Option<PathBuf>,
 }
 
 impl Default for Settings {
@@ -77,6 +82,8 @@ impl Default for Settings {
             bookmarks: Vec::new(),
             shelf: BrushShelf::default(),
             exports: ExportMemory::default(),
+            references: ReferencePins::default(),
+            proof: None,
         }
     }
 }
@@ -94,7 +101,8 @@ impl Settings {
     }
 
     fn to_json(&self) -> Value {
-        let PanelLayout { side, is_hidden, front, below, floating, width_pt } = &self.layout;
+        let PanelLayout { side, is_hidden, front, below, floating, width_pt, hides_references } =
+            &self.layout;
         let paths = |paths: &[PathBuf]| -> Vec<String> {
             paths.iter().map(|path| path.to_string_lossy().into_owned()).collect()
         };
@@ -108,7 +116,7 @@ impl Settings {
             "hint done": self.is_hint_done,
             "panels": {
                 "side": side, "hidden": is_hidden, "front": front.name(), "below": below.name(), "apart": floating,
-                "width": width_pt.round(),
+                "width": width_pt.round(), "no references": hides_references,
             },
             "key preset": self.keymap.preset().name(),
             "keys": self.keymap.to_json(),
@@ -124,6 +132,8 @@ impl Settings {
             "bookmarks": paths(&self.bookmarks),
             "brushes": self.shelf.to_json(),
             "exports": self.exports.to_json(),
+            "references": self.references.to_json(),
+            "proof": self.proof.as_ref().map(|file| file.to_string_lossy()),
         })
     }
 
@@ -158,6 +168,7 @@ impl Settings {
                 .filter_map(|name| PanelKind::from_name(name))
                 .collect(),
             width_pt: width.max(200.0).min(800.0),
+            hides_references: flag(panels, "no references"),
         };
         let preferences = Preferences::from_json(object("preferences"));
         let paths = |name: &str, most: usize| {
@@ -210,6 +221,8 @@ impl Settings {
             bookmarks,
             shelf: BrushShelf::from_json(object("brushes")),
             exports: ExportMemory::from_json(object("exports")),
+            references: ReferencePins::from_json(value.get("references")),
+            proof: value.get("proof").and_then(Value::as_str).map(PathBuf::from),
         }
     }
 
@@ -329,6 +342,7 @@ mod tests {
             below: PanelKind::Shape,
             floating: vec![PanelKind::Navigator],
             width_pt: 300.0,
+            hides_references: true,
         };
         let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
         let (is_wheel, has_sliders, has_numbers) = (true, true, true);
@@ -347,8 +361,10 @@ mod tests {
             preferences,
             colors,
             bookmarks,
+            proof: Some(PathBuf::from("/profiles/press.icc")),
             ..Settings::default()
         };
+        settings.references.pin(PathBuf::from("/pictures/cat.png"));
         (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
         settings.write(&file).unwrap();
         let read = Settings::read(&file).unwrap();

@@ -7,6 +7,7 @@ mod files;
 mod interface;
 mod layout;
 mod leaving;
+mod proof;
 mod requested;
 mod steps;
 mod typing;
@@ -23,6 +24,7 @@ use super::panel_layout::PanelKind;
 use super::panels::menu::MenuState;
 use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
+use super::references::References;
 use super::requests::{UiRequests, WindowRequest};
 use super::sample::{SAMPLES, StartSample};
 use super::sample_pictures::SamplePictures;
@@ -50,6 +52,7 @@ pub struct MainWindow {
     pub session: Session,
     canvas: Canvas,
     second_view: SecondView,
+    references: References,
     thumbnails: Thumbnails,
     swatches: Swatches,
     samples: SamplePictures,
@@ -122,6 +125,7 @@ impl MainWindow {
             session,
             canvas: Canvas::new(ctx),
             second_view: SecondView::default(),
+            references: References::default(),
             thumbnails: Thumbnails::new(ctx),
             swatches: Swatches::default(),
             samples: SamplePictures::default(),
@@ -162,6 +166,12 @@ impl MainWindow {
         if let Some(folder) = crate::io::recovery::folder() {
             window.keep_recovery_in(folder);
         }
+        let crashed = crate::io::crash_report::folder();
+        let crashed = crashed.and_then(|folder| crate::io::crash_report::take_unread(&folder));
+        window.messages.extend(crashed.map(|report| {
+            let report = report.display();
+            format!("Rilievo crashed. A report is in {report}; please send it. Nothing was sent.")
+        }));
         if let Some(folder) = settings::brushes() {
             window.keep_brushes_in(folder);
         }
@@ -205,6 +215,7 @@ impl MainWindow {
 
     /// The tablet that the pointer may belong to.
     pub fn draw_on(&mut self, tablet: SharedTablet) {
+        self.second_view.draw_on(tablet.clone());
         self.canvas.draw_on(tablet);
     }
 
@@ -249,7 +260,9 @@ impl MainWindow {
         self.take_dropped(ui.ctx());
         self.lay_out(ui, &mut requests);
         let keymap = self.is_free_for_keys().then_some(&self.settings.keymap);
-        self.second_view.show(ui.ctx(), &self.canvas, &self.session, keymap, &mut requests);
+        let (canvas, session) = (&mut self.canvas, &self.session);
+        self.second_view.show(ui.ctx(), canvas, session, keymap, &mut requests);
+        self.canvas.end_frame();
         self.show_dialog(ui.ctx(), &mut requests);
         self.show_editing(ui.ctx());
         self.guard_leaving(ui.ctx());
@@ -276,6 +289,7 @@ impl MainWindow {
         settings.shelf.note_used(&session.preset);
         session.keep_steps(preferences.undo_steps);
         self.canvas.prefer(preferences);
+        self.second_view.prefer(preferences);
         let has_fingers = self.canvas.has_felt_fingers();
         theme::enlarge_targets(ctx, preferences.has_large_targets || has_fingers);
         settings.keep_recent();

@@ -1,10 +1,13 @@
 //! Every panel next to the canvas, in a window of its own, and hidden.
 
-use super::{Story, click, command, key, press, session, steps, until, window};
+use super::{
+    Story, choose, click, command, key, press, session, steps, stroke, until, window, window_at,
+};
 use eframe::egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, pos2, vec2,
 };
 use egui_kittest::kittest::Queryable;
+use rilievo::{Progress, flatten_layer};
 
 const PANELS: [&str; 6] = ["Color", "Brushes", "Properties", "Surface", "History", "Navigator"];
 
@@ -202,24 +205,145 @@ fn a_canvas_that_was_seen_whole_is_so_in_a_window_that_grew_behind_another() {
 }
 
 #[test]
-fn a_second_view_shows_the_document_until_it_is_asked_to_go() {
+fn a_second_view_is_painted_in_and_moved_apart_from_the_first() {
     let mut harness = window();
     command(&mut harness, "Second view");
     let view = harness.get_by_label("Second view").rect();
     assert!(view.width() > 200.0 && view.height() > 200.0, "{view:?}");
     let before = session(&harness).active().unwrap().view;
-    harness.drag_at(view.center());
-    steps(&mut harness);
-    harness.drop_at(view.center() + vec2(30.0, 20.0));
-    steps(&mut harness);
+    let past = |harness: &Story| session(harness).active().unwrap().history.past_names().len();
+    let drag = |harness: &mut Story| {
+        harness.drag_at(view.center());
+        steps(harness);
+        harness.drop_at(view.center() + vec2(30.0, 20.0));
+        steps(harness);
+    };
+    // The middle of the view is the middle of the canvas: a stroke begins there.
+    drag(&mut harness);
     let open = session(&harness).active().unwrap();
-    assert_eq!(
-        (open.view, open.history.past_names().len()),
-        (before, 0),
-        "nothing is painted or moved"
-    );
+    assert_eq!((open.view, past(&harness)), (before, 1), "a stroke, and no other view");
+    let document = open.document();
+    let middle = document.size.center();
+    let painted = flatten_layer(
+        document,
+        document.layers[document.layers.len() - 1].id,
+        &Progress::default(),
+    )
+    .unwrap();
+    let [x, y] = [middle.x as i32, middle.y as i32];
+    assert!(painted.bounds().contains(x, y), "{:?}, not {middle}", painted.bounds());
+    // The hand moves this view alone.
+    command(&mut harness, "Hand");
+    drag(&mut harness);
+    assert_eq!((session(&harness).active().unwrap().view, past(&harness)), (before, 1));
+    command(&mut harness, "Brush");
+    drag(&mut harness);
+    let document = session(&harness).active().unwrap().document();
+    let painted = flatten_layer(
+        document,
+        document.layers[document.layers.len() - 1].id,
+        &Progress::default(),
+    )
+    .unwrap();
+    let left = middle.x - painted.bounds().x0 as f32;
+    assert!(left > 25.0, "the second stroke lies where the view was moved to, {left} px left");
     command(&mut harness, "Second view");
     assert!(harness.query_by_label("Second view").is_none());
+}
+
+#[test]
+fn a_reference_is_pinned_over_the_canvas_gives_its_colors_and_is_there_again() {
+    let home = tempfile::tempdir().unwrap();
+    let (settings, file) = (home.path().join("settings.json"), home.path().join("parrot.png"));
+    let red = image::RgbImage::from_pixel(64, 32, image::Rgb([200, 30, 40]));
+    red.save(&file).unwrap();
+    let mut harness = window_at(1.0, Some(settings.clone()));
+    command(&mut harness, "Pin a reference");
+    choose(&mut harness, &file);
+    let is_seen = |harness: &Story| harness.query_by_label("Reference parrot.png").is_some();
+    until(&mut harness, is_seen);
+    let place = |harness: &Story| harness.get_by_label("Reference parrot.png").rect();
+    // It has the shape of the picture once that is read.
+    until(&mut harness, |harness| (place(harness).aspect_ratio() - 2.0).abs() < 0.02);
+    let first = place(&harness);
+    let drag = |harness: &mut Story, from, to| {
+        harness.drag_at(from);
+        steps(harness);
+        harness.hover_at(to);
+        steps(harness);
+        harness.drop_at(to);
+        steps(harness);
+    };
+    drag(&mut harness, first.center(), first.center() + vec2(50.0, 40.0));
+    assert!((place(&harness).center() - first.center() - vec2(50.0, 40.0)).length() < 1.0);
+    let moved = place(&harness);
+    drag(&mut harness, moved.max - vec2(4.0, 4.0), moved.max + vec2(60.0, 0.0));
+    assert!((place(&harness).width() - moved.width() - 64.0).abs() < 1.0, "{:?}", place(&harness));
+    // Nothing was painted, and a click with the eyedropper takes its color.
+    let open = session(&harness).active().unwrap();
+    assert_eq!(open.history.past_names().len(), 0);
+    command(&mut harness, "Eyedropper");
+    let at = place(&harness).center();
+    drag(&mut harness, at, at);
+    assert_eq!(session(&harness).tools.color.to_string(), "#c81e28");
+    let kept = place(&harness).size();
+    command(&mut harness, "Show references");
+    assert!(!is_seen(&harness));
+    command(&mut harness, "Show references");
+    // The settings are written after a moment.
+    until(&mut harness, |_| {
+        std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("parrot.png"))
+    });
+    drop(harness);
+    let mut harness = window_at(1.0, Some(settings));
+    until(&mut harness, |harness| is_seen(harness) && place(harness).size() == kept);
+    command(&mut harness, "Remove references");
+    assert!(!is_seen(&harness));
+}
+
+#[test]
+fn the_picture_is_shown_as_saved_until_anything_is_done() {
+    let mut harness = window();
+    stroke(&mut harness, vec2(80.0, 40.0));
+    command(&mut harness, "Show as saved");
+    assert!(session(&harness).shows_saved);
+    command(&mut harness, "Zoom in");
+    assert!(session(&harness).shows_saved, "a view of it is moved");
+    stroke(&mut harness, vec2(-80.0, 40.0));
+    let now = session(&harness);
+    assert!(!now.shows_saved);
+    assert_eq!(now.active().unwrap().history.past_names().len(), 2, "and the stroke is painted");
+}
+
+#[test]
+fn a_proof_is_shown_with_the_profile_of_a_file_and_kept_for_the_next_time() {
+    let home = tempfile::tempdir().unwrap();
+    let (settings, letter) = (home.path().join("settings.json"), home.path().join("a.icc"));
+    std::fs::write(&letter, "Dear reader").unwrap();
+    let mut harness = window_at(1.0, Some(settings.clone()));
+    command(&mut harness, "Show proof");
+    choose(&mut harness, &letter);
+    until(&mut harness, |harness| {
+        harness.query_by_label_contains("it is not an ICC profile").is_some()
+    });
+    assert!(!session(&harness).shows_proof);
+    let profile = home.path().join("press.icc");
+    std::fs::write(&profile, rilievo_io::srgb_profile::own_srgb()).unwrap();
+    command(&mut harness, "Show proof");
+    choose(&mut harness, &profile);
+    until(&mut harness, |harness| session(harness).shows_proof);
+    command(&mut harness, "Mark colors out of gamut");
+    stroke(&mut harness, vec2(60.0, 30.0));
+    assert!(session(&harness).marks_gamut && session(&harness).shows_proof);
+    command(&mut harness, "Show proof");
+    assert!(!session(&harness).shows_proof);
+    until(&mut harness, |_| {
+        std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("press.icc"))
+    });
+    drop(harness);
+    let mut harness = window_at(1.0, Some(settings));
+    command(&mut harness, "Show proof");
+    until(&mut harness, |harness| session(harness).shows_proof);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The picture on the graphics card: blocks below any driver's texture limit; only changed parts
 //! are uploaded. Floor 7.
 
+use crate::io::proof::ProofTable;
 use crate::math::{Affine2, Rect, Size, srgb, vec2};
 use crate::raster::{TILE, TileAt, TileGrid};
 use eframe::egui::{
@@ -8,6 +9,7 @@ use eframe::egui::{
     TextureOptions, TextureWrapMode, pos2,
 };
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Side of a block, px: eight tiles. A driver's limit is at least 2048; a smaller block is cheaper
 /// to shrink again.
@@ -42,8 +44,43 @@ pub struct TextureBlocks {
     size: Option<Size>,
     textures: BTreeMap<(i32, i32), TextureHandle>,
     magnification: Magnification,
-    /// In grays.
-    shows_values: bool,
+    colors: ShownColors,
+}
+
+/// In which colors a picture is seen.
+#[derive(Clone, Debug, Default)]
+pub enum ShownColors {
+    /// Its own.
+    #[default]
+    Own,
+    /// The grays of its luminance.
+    Values,
+    /// As a press or another screen shows it; what that cannot show is gray, if it is marked.
+    Proof { table: Arc<ProofTable>, is_marked: bool },
+}
+
+/// What marks colors that a proof cannot show.
+const MARK: [u8; 3] = [128; 3];
+
+impl ShownColors {
+    fn is(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Own, Self::Own) | (Self::Values, Self::Values) => true,
+            (Self::Proof { table: a, is_marked: b }, Self::Proof { table, is_marked }) => {
+                Arc::ptr_eq(a, table) && b == is_marked
+            }
+            _ => false,
+        }
+    }
+
+    /// A premultiplied texel as it is seen.
+    fn of(&self, texel: [u8; 4]) -> [u8; 4] {
+        match self {
+            Self::Own => texel,
+            Self::Values => value_of(texel),
+            Self::Proof { table, is_marked } => table.show(texel, is_marked.then_some(MARK)),
+        }
+    }
 }
 
 impl TextureBlocks {
@@ -82,13 +119,13 @@ impl TextureBlocks {
             match self.textures.get_mut(&block) {
                 Some(texture) => {
                     let at = [(area.x0 - whole.x0) as usize, (area.y0 - whole.y0) as usize];
-                    let image = image(grid, area, size, self.shows_values);
+                    let image = image(grid, area, size, &self.colors);
                     texture.set_partial(at, image, options);
                 }
                 None if !whole.intersect(size.rect()).is_empty() => {
                     let texture = ctx.load_texture(
                         format!("canvas {block:?}"),
-                        image(grid, whole, size, self.shows_values),
+                        image(grid, whole, size, &self.colors),
                         options,
                     );
                     self.textures.insert(block, texture);
@@ -106,18 +143,19 @@ impl TextureBlocks {
         for (&block, texture) in &mut self.textures {
             let whole = block_rect(block);
             let tile = Rect::new(whole.x0, whole.y0, whole.x0 + 1, whole.y0 + 1);
-            texture.set_partial([0, 0], image(grid, tile, size, self.shows_values), options);
+            texture.set_partial([0, 0], image(grid, tile, size, &self.colors), options);
         }
     }
 
-    /// In grays of the luminance, or in colors. What is on the graphics card is sent again.
-    pub fn show_values(&mut self, on: bool, grid: &TileGrid) {
-        if std::mem::replace(&mut self.shows_values, on) == on {
+    /// Shows it in other colors. What is on the graphics card is sent again.
+    pub fn show_in(&mut self, colors: &ShownColors, grid: &TileGrid) {
+        if self.colors.is(colors) {
             return;
         }
+        self.colors = colors.clone();
         let (Some(size), options) = (self.size, self.options()) else { return };
         for (&block, texture) in &mut self.textures {
-            texture.set(image(grid, block_rect(block), size, on), options);
+            texture.set(image(grid, block_rect(block), size, colors), options);
         }
     }
 
@@ -178,7 +216,7 @@ fn block_rect((col, row): (i32, i32)) -> Rect {
 /// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right
 /// and lower edge its last pixels are repeated once, so that interpolation mixes nothing else into
 /// the rim.
-fn image(grid: &TileGrid, rect: Rect, canvas: Size, shows_values: bool) -> ColorImage {
+fn image(grid: &TileGrid, rect: Rect, canvas: Size, colors: &ShownColors) -> ColorImage {
     let (width, height) = (rect.width(), rect.height());
     let mut pixels = vec![Color32::TRANSPARENT; width * height];
     for at in TileAt::covering(rect) {
@@ -189,7 +227,7 @@ fn image(grid: &TileGrid, rect: Rect, canvas: Size, shows_values: bool) -> Color
             let to = (y - rect.y0) as usize * width + (area.x0 - rect.x0) as usize;
             let texels = tile.bytes()[from..from + area.width() * 4].as_chunks::<4>().0;
             for (pixel, &texel) in pixels[to..].iter_mut().zip(texels) {
-                let [r, g, b, a] = if shows_values { value_of(texel) } else { texel };
+                let [r, g, b, a] = colors.of(texel);
                 *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
             }
         }
@@ -241,7 +279,7 @@ mod tests {
         let canvas = Size::new(3, 2);
         let bytes: Vec<u8> = (0..6u8).flat_map(|i| [i * 40, 9, 9, 255]).collect();
         let grid = TileGrid::from_straight_rgba(&bytes, 3, 2, 0, 0);
-        let image = image(&grid, Rect::new(0, 0, 5, 4), canvas, false);
+        let image = image(&grid, Rect::new(0, 0, 5, 4), canvas, &ShownColors::Own);
         let reds: Vec<u8> = image.pixels.iter().map(|pixel| pixel.r()).collect();
         assert_eq!(
             reds,

@@ -28,7 +28,9 @@ impl Canvas {
         area: egui::Rect,
     ) {
         let Some(open) = session.active() else { return };
-        let drawn = open.drawn_document();
+        let saved = open.saved_document();
+        let is_as_saved = session.shows_saved && saved.size == open.shown_document().size;
+        let drawn = if is_as_saved { saved.clone() } else { open.drawn_document() };
         if self.key != Some(open.key)
             || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size)
         {

@@ -121,6 +121,10 @@ impl PointerState {
             self.pen.read_event(&event, ui.ctx().pixels_per_point(), now_secs);
             self.reports.extend(std::iter::from_fn(|| self.pen.next()));
         }
+    }
+
+    /// All views of the window have read the events of a frame.
+    pub fn end_frame(&mut self) {
         self.pen.end_frame();
     }
 
@@ -224,7 +228,6 @@ impl PointerState {
                 _ => {}
             }
         }
-        self.pen.end_frame();
         listening.flush();
     }
 

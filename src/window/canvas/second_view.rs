@@ -1,16 +1,22 @@
 //! A second view of the document in front, in a window of its own: the whole picture beside details,
-//! or a detail on another screen. It is looked at, not painted in. Floor 7.
+//! or a detail on another screen. Both are painted in; each has its own zoom. Floor 7.
 
-use super::Canvas;
+use super::ants::Ants;
+use super::parts::PartMarks;
+use super::pointer::PointerState;
+use super::{Canvas, guides, keys_of_tools, marks, to_screen, visible_rect};
 use crate::keymap::Keymap;
 use crate::keys;
 use crate::math::{Affine2, Vec2, vec2};
-use crate::requests::UiRequests;
-use crate::session::{CanvasView, Session};
+use crate::pen::SharedTablet;
+use crate::preferences::Preferences;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::ViewAction;
+use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::theme;
 use eframe::egui::{
-    CentralPanel, Context, Id, Key, PointerButton, Pos2, Rect, Sense, Ui, ViewportBuilder,
-    ViewportId,
+    CentralPanel, Context, Id, Painter, Response, Role, Sense, Ui, ViewportBuilder, ViewportId,
+    WidgetInfo,
 };
 
 /// The size that its window begins with, points.
@@ -24,6 +30,9 @@ pub struct SecondView {
     view: Option<(usize, CanvasView)>,
     /// The size of the view when it was last shown, points.
     area_pt: Vec2,
+    hand: PointerState,
+    ants: Ants,
+    parts: PartMarks,
 }
 
 impl SecondView {
@@ -32,12 +41,22 @@ impl SecondView {
         (self.is_open, self.view) = (!self.is_open, None);
     }
 
+    /// The tablet that its pointer may belong to.
+    pub fn draw_on(&mut self, tablet: SharedTablet) {
+        self.hand.draw_on(tablet);
+    }
+
+    /// Works as the user prefers.
+    pub fn prefer(&mut self, preferences: &Preferences) {
+        self.hand.prefer(preferences);
+    }
+
     /// Shows it, where the system has windows, as one of its own, in which the keys of `keymap` count,
-    /// too.
+    /// too. Without a keymap it is looked at, and nothing else: a dialog is open.
     pub fn show(
         &mut self,
         ctx: &Context,
-        canvas: &Canvas,
+        canvas: &mut Canvas,
         session: &Session,
         keymap: Option<&Keymap>,
         requests: &mut UiRequests,
@@ -51,58 +70,122 @@ impl SecondView {
             .with_inner_size(SIZE_PT);
         let id = ViewportId::from_hash_of("second view");
         ctx.show_viewport_immediate(id, builder, |ui, _| {
-            let close = |ui: &Ui| {
-                ui.input(|i| i.viewport().close_requested() || i.key_pressed(Key::Escape))
-            };
-            CentralPanel::no_frame().show(ui, |ui| self.draw(ui, canvas, session));
-            let is_alone = ui.ctx().viewport_id() == id;
-            if is_alone && close(ui) {
+            let mut own = UiRequests::default();
+            CentralPanel::no_frame().show(ui, |ui| self.draw(ui, canvas, session, &mut own));
+            let is_apart = ui.ctx().viewport_id() == id;
+            if is_apart && ui.input(|i| i.viewport().close_requested()) {
                 self.is_open = false;
-            } else if let Some(keymap) = keymap.filter(|_| is_alone) {
-                keys::listen(ui.ctx(), session, keymap, requests);
             }
+            if let Some(keymap) = keymap.filter(|_| is_apart) {
+                keys::listen(ui.ctx(), session, keymap, &mut own);
+                keys_of_tools(ui, session, &mut own.actions);
+            }
+            self.follow(ui, session, own, keymap.is_some(), requests);
         });
     }
 
-    fn draw(&mut self, ui: &mut Ui, canvas: &Canvas, session: &Session) {
+    fn draw(
+        &mut self,
+        ui: &mut Ui,
+        canvas: &mut Canvas,
+        session: &Session,
+        requests: &mut UiRequests,
+    ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.interact(rect, Id::unique("second view"), Sense::click_and_drag());
-        response.widget_info(|| {
-            eframe::egui::WidgetInfo::labeled(eframe::egui::Role::Image, true, "Second view")
-        });
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Second view"));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, theme::surround(ui.visuals()));
-        let Some(open) = session.active() else { return };
-        let size = open.shown_document().size;
-        let area_pt = vec2(rect.width(), rect.height());
-        let fitting = CanvasView::fitting(size, area_pt);
-        // A view of everything stays so when the window gets another size.
-        let was_fitting = CanvasView::fitting(size, self.area_pt);
-        let known = self.view.filter(|(key, view)| *key == open.key && *view != was_fitting);
-        let view = known.map_or(fitting, |(_, view)| view);
-        let view = drag_view(ui, rect, &response, view).unwrap_or(view);
-        let view = if response.double_clicked() { fitting } else { view };
-        (self.view, self.area_pt) = (Some((open.key, view)), area_pt);
+        let Some(open) = session.active() else { return self.hand.overhear(ui) };
+        let view = self.view_of(open, vec2(rect.width(), rect.height()));
         let middle = rect.center();
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
-        canvas.draw_elsewhere(&painter, to_window * view.screen_from_canvas(), size);
+        let screen_from_canvas = to_window * view.screen_from_canvas();
+        canvas.draw_elsewhere(ui.ctx(), session, &painter, screen_from_canvas);
+        self.draw_aids(&painter, &response, session, (view, screen_from_canvas), canvas);
+        canvas.draw_loupe(ui, self.hand.picking(), session, screen_from_canvas.inverse(), false);
+        self.hand.listen(ui, &response, session, &view, middle, &mut requests.actions);
+    }
+
+    /// The view of a document: all of it at first, and as long as nobody moves it.
+    fn view_of(&mut self, open: &OpenDocument, area_pt: Vec2) -> CanvasView {
+        let size = open.shown_document().size;
+        let was_fitting = CanvasView::fitting(size, self.area_pt);
+        let known = self.view.filter(|(key, view)| *key == open.key && *view != was_fitting);
+        let view = known.map_or_else(|| CanvasView::fitting(size, area_pt), |(_, view)| view);
+        (self.view, self.area_pt) = (Some((open.key, view)), area_pt);
+        view
+    }
+
+    /// What helps the hand, over the picture. Tools mark places of the unwrapped surface while that
+    /// is shown, which have none here.
+    fn draw_aids(
+        &mut self,
+        painter: &Painter,
+        response: &Response,
+        session: &Session,
+        (view, screen_from_canvas): (CanvasView, Affine2),
+        canvas: &mut Canvas,
+    ) {
+        let visible = visible_rect(&view, response.rect);
+        guides::draw(painter, session, &to_screen(screen_from_canvas), visible, view.zoom);
+        self.ants.draw(painter, session, screen_from_canvas, visible);
+        if !is_flat(session) {
+            return;
+        }
+        let pointer = response.hover_pos().filter(|_| !self.hand.is_looking());
+        let inverse = screen_from_canvas.inverse();
+        let under = pointer.map(|p| inverse.transform_point2(vec2(p.x, p.y)));
+        let tool = self.hand.tool(session);
+        marks::draw(painter, session, screen_from_canvas, under, tool);
+        self.parts.draw(painter, session, screen_from_canvas, under, tool);
+        if response.hovered() || self.hand.is_looking() {
+            canvas.under = under.filter(|p| visible.contains(p.x as i32, p.y as i32));
+            painter.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
+        }
+    }
+
+    /// Moves the view as asked for in its window, and passes on what is meant for the document.
+    fn follow(
+        &mut self,
+        ui: &Ui,
+        session: &Session,
+        own: UiRequests,
+        is_free: bool,
+        requests: &mut UiRequests,
+    ) {
+        let is_painted_in = is_flat(session) && is_free || session.is_drawing();
+        for action in own.actions {
+            match action {
+                Action::View(action) if self.is_moved(session, &action) => {}
+                action if is_painted_in || matches!(action, Action::View(_)) => {
+                    requests.act(action)
+                }
+                _ => {}
+            }
+        }
+        for request in own.window {
+            match request {
+                WindowRequest::Scale(scale) if scale > 0.0 => {
+                    let zoom = scale / ui.ctx().pixels_per_point();
+                    self.is_moved(session, &ViewAction::ZoomTo { zoom });
+                }
+                WindowRequest::Scale(_) => self.view = None,
+                request => requests.request(request),
+            }
+        }
+    }
+
+    /// Moves the view, if an action is one that does.
+    fn is_moved(&mut self, session: &Session, action: &ViewAction) -> bool {
+        let Some((open, (key, view))) = session.active().zip(self.view) else { return false };
+        let next = action.view_after(view, open.shown_document().size);
+        self.view = next.map(|next| (key, next)).or(self.view);
+        next.is_some()
     }
 }
 
-/// The view after this frame's drags and wheel.
-fn drag_view(
-    ui: &Ui,
-    rect: Rect,
-    response: &eframe::egui::Response,
-    view: CanvasView,
-) -> Option<CanvasView> {
-    let about = |pos: Pos2| vec2(pos.x - rect.center().x, pos.y - rect.center().y);
-    if response.dragged_by(PointerButton::Primary) || response.dragged_by(PointerButton::Middle) {
-        let by = response.drag_delta();
-        return Some(view.panned(vec2(by.x, by.y)));
-    }
-    let at = response.hover_pos()?;
-    let (wheel, pinch) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta()));
-    let factor = (wheel * 0.005).exp() * pinch;
-    (factor.is_finite() && factor != 1.0).then(|| view.zoomed(factor, about(at)))
+/// Whether tools work on the picture, not on the surface unwrapped.
+fn is_flat(session: &Session) -> bool {
+    session.active().is_some_and(|open| open.unwrap_settings().is_none())
 }

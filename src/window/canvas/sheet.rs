@@ -1,7 +1,7 @@
 //! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the
 //! full one, and a smaller one during drags. Floor 7.
 
-use super::blocks::{Magnification, TextureBlocks};
+use super::blocks::{Magnification, ShownColors, TextureBlocks};
 use crate::io::platform::Instant;
 use crate::math::{Affine2, Size, vec2};
 use crate::raster::{Tile, TileAt, TileGrid};
@@ -89,9 +89,9 @@ impl TileSheet {
         self.blocks.magnify(magnification, &self.grid);
     }
 
-    /// In grays of its luminance, or in its colors.
-    pub fn show_values(&mut self, on: bool) {
-        self.blocks.show_values(on, &self.grid);
+    /// Shows it in other colors.
+    pub fn show_in(&mut self, colors: &ShownColors) {
+        self.blocks.show_in(colors, &self.grid);
     }
 
     /// Draws it where the canvas lies, as large as the canvas.

@@ -5,6 +5,7 @@ use super::row::{
     LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, key, row,
     submenu,
 };
+use crate::file_purpose::FilePurpose;
 use crate::math::Vec2;
 use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
@@ -26,6 +27,13 @@ fn overlay(session: &Session, requests: &mut UiRequests, name: &str) {
 
 fn is_over(session: &Session, name: &str) -> bool {
     session.overlay.as_deref() == Some(name)
+}
+
+/// Whether the document's file holds another picture of the same size.
+fn has_saved_picture(session: &Session) -> bool {
+    session
+        .active()
+        .is_some_and(|open| open.is_dirty() && open.saved_document().size == open.document().size)
 }
 
 fn is_unwrapped(session: &Session) -> bool {
@@ -108,6 +116,14 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| view(requests, ViewAction::Values { on: !session.shows_values }),
     )
     .ticked(|session, _| session.shows_values),
+    row(
+        "Show as saved",
+        &[],
+        "The picture as its file holds it, to compare; again, or any edit, shows it as it is",
+        has_saved_picture,
+        |session, requests| view(requests, ViewAction::Saved { on: !session.shows_saved }),
+    )
+    .ticked(|session, _| session.shows_saved),
     LINE,
     submenu("Show the surface", SURFACE),
     row(
@@ -121,6 +137,8 @@ pub const COMMANDS: &[MenuCommand] = &[
         },
     )
     .ticked(|session, _| is_unwrapped(session)),
+    submenu("Proof colors", PROOF),
+    submenu("References", REFERENCES),
     submenu("Guides and grid", super::guides::COMMANDS),
     LINE,
     submenu("Panels", PANELS),
@@ -255,6 +273,45 @@ const SURFACE: &[MenuCommand] = &[
     ),
 ];
 
+const PROOF: &[MenuCommand] = &[
+    row(
+        "Show proof",
+        &[],
+        "The picture as a press or another screen shows it, by its ICC profile; the document does not change",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ToggleProof),
+    )
+    .ticked(|session, _| session.shows_proof),
+    row(
+        "Mark colors out of gamut",
+        &[],
+        "What the press or the screen cannot show is gray in the proof",
+        has_document,
+        |session, requests| view(requests, ViewAction::Gamut { on: !session.marks_gamut }),
+    )
+    .ticked(|session, _| session.marks_gamut),
+    row("Proof profile…", &[], "Another ICC profile for the proof", has_document, |_, requests| {
+        requests.request(WindowRequest::Choose(FilePurpose::ColorProfile))
+    }),
+];
+
+const REFERENCES: &[MenuCommand] = &[
+    row(
+        "Pin a reference…",
+        &[],
+        "A picture over the canvas, to look at and to take colors from; it is not part of the document",
+        always,
+        |_, requests| requests.request(WindowRequest::Choose(FilePurpose::Reference)),
+    ),
+    row("Show references", &[], "Shows or hides what is pinned", always, |_, requests| {
+        requests.request(WindowRequest::ToggleReferences)
+    })
+    .ticked(|_, layout| !layout.hides_references),
+    row("Remove references", &[], "Removes all that are pinned", always, |_, requests| {
+        requests.request(WindowRequest::ClearReferences)
+    }),
+];
+
 const PANELS: &[MenuCommand] = &[
     row("Panels on the other side", &[], "To the left of the canvas, or to the right", always, |_, requests| {
         requests.request(WindowRequest::OtherSide)
@@ -274,7 +331,7 @@ const PANELS: &[MenuCommand] = &[
     row(
         "Second view",
         &[],
-        "The picture once more in a window of its own, to look at, with a zoom of its own; again closes it",
+        "The picture once more in a window of its own, with a zoom of its own; again closes it",
         has_document,
         |_, requests| requests.request(WindowRequest::SecondView),
     ),

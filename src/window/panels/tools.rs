@@ -10,7 +10,7 @@ use crate::tools::ToolKind;
 use crate::widgets::swatch_at;
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{
-    Align, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder, Vec2, pos2, vec2,
+    Align, Frame, Layout, Panel, Rect, ScrollArea, Shape, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
 /// The tools in groups, which lines divide: painting, selecting, layers, the shape, the view.
@@ -32,6 +32,8 @@ const PAIRED_PT: f32 = 24.0;
 /// Between two buttons, and between two groups.
 const GAP_PT: f32 = 1.0;
 const GROUP_GAP_PT: f32 = 6.0;
+/// The height of the strip that shows that there are more tools, points.
+const ARROW_STRIP_PT: f32 = 12.0;
 /// The height of the colors beneath the tools, points.
 const COLORS_PT: f32 = 54.0;
 
@@ -48,7 +50,7 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRe
     let side = side_pt(ui.available_height(), columns).max(SMALLEST_PT);
     let row_pt = columns as f32 * side + (columns - 1) as f32 * GAP_PT;
     let beside_pt = (0.5 * (ui.available_width() - row_pt)).max(0.0);
-    area.show(ui, |ui| {
+    let shown = area.show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::splat(GAP_PT);
         for (i, group) in GROUPS.into_iter().enumerate() {
             if i > 0 {
@@ -63,6 +65,32 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRe
             }
         }
     });
+    let above = shown.state.offset.y;
+    let below = shown.content_size.y - above - shown.inner_rect.height();
+    mark_left_out(ui, shown.inner_rect, [above, below]);
+}
+
+/// Arrows at the ends beyond which there are more tools.
+///
+/// * `left_out`: how much is out of sight above and below, points.
+fn mark_left_out(ui: &Ui, area: Rect, [above, below]: [f32; 2]) {
+    let (middle, arrow) = (area.center().x, vec2(6.0, 4.0));
+    let ends = [(above, area.top(), -1.0), (below, area.bottom(), 1.0)];
+    for (_, end, way) in ends.into_iter().filter(|(left_out, ..)| *left_out > 1.0) {
+        let strip = Rect::from_two_pos(
+            pos2(area.left(), end),
+            pos2(area.right(), end - way * ARROW_STRIP_PT),
+        );
+        ui.painter().rect_filled(strip, 0.0, ui.visuals().panel_fill);
+        let base = end - way * (0.5 * (ARROW_STRIP_PT + arrow.y));
+        let corners = vec![
+            pos2(middle - arrow.x, base),
+            pos2(middle + arrow.x, base),
+            pos2(middle, base + way * arrow.y),
+        ];
+        let color = ui.visuals().strong_text_color();
+        ui.painter().add(Shape::convex_polygon(corners, color, Stroke::NONE));
+    }
 }
 
 /// A line between two groups.

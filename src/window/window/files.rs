@@ -246,6 +246,11 @@ impl MainWindow {
                 self.read_layer(file, PictureUse::Placed(PinPosition::Middle));
             }
             FilePurpose::ImportUnwrapped => self.import_unwrapped(file),
+            FilePurpose::ColorProfile => self.proof_with(file),
+            FilePurpose::Reference => {
+                self.settings.layout.hides_references = false;
+                self.settings.references.pin(file);
+            }
             FilePurpose::Brush => {
                 self.apply(&Action::File(FileAction::ImportBrush { file }));
             }
@@ -270,8 +275,7 @@ impl MainWindow {
         }
     }
 
-    /// A file was chosen to be written. Where it is there the dialog asked about it, unless it gets
-    /// another name here. Gives the document in front maps, as another dialog asked.
+    /// Gives the document in front maps, as another dialog asked.
     pub(super) fn take_maps(
         &mut self,
         (source, import): (SurfaceSource, ImportedSurface),
@@ -282,6 +286,8 @@ impl MainWindow {
         self.tell_notes();
     }
 
+    /// A file was chosen to be written. Where it is there the dialog asked about it, unless it gets
+    /// another name here.
     fn write_chosen_file(&mut self, purpose: FilePurpose, file: PathBuf) {
         let named = purpose.final_name(file.clone(), self.export.extension);
         let was_asked = named == file && platform::is_file(&named);

@@ -93,6 +93,11 @@ impl MainWindow {
                 ctx.request_repaint();
             }
             WindowRequest::SecondView => self.second_view.toggle(),
+            WindowRequest::ToggleProof => self.toggle_proof(),
+            WindowRequest::ToggleReferences => {
+                self.settings.layout.hides_references = !self.settings.layout.hides_references;
+            }
+            WindowRequest::ClearReferences => self.settings.references.clear(),
             WindowRequest::TogglePanels => {
                 self.settings.layout.is_hidden = !self.settings.layout.is_hidden;
                 // The tab key that requested it also moved the focus to the next button.
