@@ -80,6 +80,21 @@ pub struct PanelLayout {
 }
 
 impl PanelLayout {
+    /// Moves the panels into a window of their own, or back.
+    pub fn toggle_apart(&mut self) {
+        let is_apart = self.side == PanelSide::Floating;
+        self.side = if is_apart { PanelSide::Right } else { PanelSide::Floating };
+    }
+
+    /// Moves a panel into a window of its own, or back.
+    pub fn toggle_floating(&mut self, panel: PanelKind) {
+        let count = self.floating.len();
+        self.floating.retain(|other| *other != panel);
+        if self.floating.len() == count {
+            self.floating.push(panel);
+        }
+    }
+
     /// Brings a panel into sight where it is; one in a window of its own is in sight.
     pub fn show(&mut self, panel: PanelKind) {
         self.is_hidden = false;

@@ -65,7 +65,7 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRe
             }
         }
     });
-    let above = shown.state.offset.y;
+    let above = shown.state.clamped_offset().y;
     let below = shown.content_size.y - above - shown.inner_rect.height();
     mark_left_out(ui, shown.inner_rect, [above, below]);
 }

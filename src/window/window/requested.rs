@@ -6,7 +6,6 @@ use crate::dialogs::{
     Dialog, canvas, edge, import, looks, materials, new, paint_change, palette, preferences,
 };
 use crate::file_purpose::FilePurpose;
-use crate::panel_layout::PanelSide;
 use crate::requests::WindowRequest;
 use eframe::egui::{self, ViewportCommand};
 
@@ -106,22 +105,8 @@ impl MainWindow {
             WindowRequest::OtherSide => {
                 self.settings.layout.side = self.settings.layout.side.other()
             }
-            WindowRequest::PanelsApart => {
-                let side = &mut self.settings.layout.side;
-                *side = if *side == PanelSide::Floating {
-                    PanelSide::Right
-                } else {
-                    PanelSide::Floating
-                };
-            }
-            WindowRequest::Float(front) => {
-                let apart = &mut self.settings.layout.floating;
-                if apart.contains(&front) {
-                    apart.retain(|other| *other != front)
-                } else {
-                    apart.push(front)
-                }
-            }
+            WindowRequest::PanelsApart => self.settings.layout.toggle_apart(),
+            WindowRequest::Float(panel) => self.settings.layout.toggle_floating(panel),
             WindowRequest::ShowPanel(panel) => self.settings.layout.show(panel),
             WindowRequest::EditBrush => crate::panels::brushes::edit(ctx),
             WindowRequest::NextLook => self.show_next_look(ctx),
