@@ -1,6 +1,7 @@
 //! The files that a preset names and does not hold: its tip and its pattern. Floor 5. They lie where
 //! Krita puts them: in the preset's folder, in `brushes` and `patterns` beside that folder, or in a
-//! bundle in the preset's folder. Nothing else is read.
+//! bundle in the preset's folder, in `bundles` beside it or in the folder of both. Nothing else is
+//! read.
 
 use crate::files::{RecipeFolder, refusal};
 use crate::platform::{files as disk, is_file};
@@ -89,17 +90,12 @@ impl NeighborFiles {
         }
     }
 
-    /// The bundles beside the preset, by name.
+    /// The bundles around the preset, those of each folder by name.
     fn bundles(&self) -> Vec<PathBuf> {
         let here = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
-        let entries = disk::read_dir(here).into_iter().flatten().flatten();
-        let is_bundle = |file: &PathBuf| {
-            let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-            extension == "bundle" && is_file(file)
-        };
-        let mut bundles: Vec<PathBuf> =
-            entries.map(|entry| entry.path()).filter(is_bundle).collect();
-        bundles.sort();
+        let outer = self.outer_folder();
+        let folders = [here, &outer.join("bundles"), &outer];
+        let mut bundles: Vec<PathBuf> = folders.into_iter().flat_map(bundles_in).collect();
         bundles.truncate(Self::MOST_BUNDLES);
         bundles
     }
@@ -124,6 +120,18 @@ impl NeighborFiles {
         }
         failed.map_or(Ok(None), Err)
     }
+}
+
+/// The bundles of a folder, by name.
+fn bundles_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = disk::read_dir(folder).into_iter().flatten().flatten();
+    let is_bundle = |file: &PathBuf| {
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        extension == "bundle" && is_file(file)
+    };
+    let mut bundles: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_bundle).collect();
+    bundles.sort();
+    bundles
 }
 
 impl BrushFiles for NeighborFiles {

@@ -24,6 +24,12 @@ pub fn extensions() -> Vec<&'static str> {
     others.chain([PRESET]).chain(PICTURES).collect()
 }
 
+/// Whether a file holds brushes of another program, by its extension.
+pub fn is_brush_file(file: &Path) -> bool {
+    let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    brush::EXTENSIONS.iter().any(|(known, _)| *known == extension)
+}
+
 /// Reads the brushes of a file: another program's, a preset's own, or a picture as a tip. At least
 /// one.
 pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(BrushPreset, Vec<String>)>> {

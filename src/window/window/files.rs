@@ -38,8 +38,8 @@ impl MainWindow {
         }
     }
 
-    /// Opens files that came together. `use_of`: what becomes of pictures; absent: they open as
-    /// documents.
+    /// Opens files that came together; those of brushes are imported. `use_of`: what becomes of
+    /// pictures; absent: they open as documents.
     pub(super) fn open_files(&mut self, files: Vec<PathBuf>, use_of: Option<PictureUse>) {
         let name = match &files[..] {
             [file] => format!("Opening {}", short(file)),
@@ -47,6 +47,13 @@ impl MainWindow {
         };
         self.jobs.start(name, JobKind::Working, move |_| {
             let (mut known, mut done) = (Vec::new(), Vec::new());
+            let (brushes, files): (Vec<_>, Vec<_>) =
+                files.into_iter().partition(|file| brushes::is_brush_file(file));
+            done.extend(brushes.into_iter().map(|file| {
+                JobResult::then(move |window: &mut Self, _| {
+                    window.apply(&Action::File(FileAction::ImportBrush { file }));
+                })
+            }));
             for file in files {
                 match storage::kind_of(&file) {
                     Ok(kind) => known.push((file, kind)),

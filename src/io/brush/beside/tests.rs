@@ -75,6 +75,15 @@ fn a_bundle_beside_the_preset_is_asked_last() {
     assert_eq!(find(&files, ResourceKind::Tip, "tip.png").unwrap(), "tip");
     let said = files.find(ResourceKind::Tip, "none.png", &Budget::default()).unwrap_err();
     assert!(said.to_string().contains("broken.bundle"), "{said}");
+    // Krita keeps bundles in a folder of their own, or in the folder of all.
+    for place in ["krita/bundles/some.bundle", "krita/some.bundle"] {
+        let moved = outer.path().join(place);
+        fs::create_dir_all(moved.parent().unwrap()).unwrap();
+        fs::copy(&bundle, &moved).unwrap();
+        fs::remove_file(&bundle).ok();
+        assert_eq!(find(&files, ResourceKind::Tip, "in.png").unwrap(), "within", "{place}");
+        fs::rename(&moved, &bundle).unwrap();
+    }
 }
 
 #[test]
