@@ -1,10 +1,9 @@
 //! Reports of crashes: texts that a user may send; nothing sends them. Floor 5.
 
-use crate::platform::{self, files};
+use crate::platform::{self, SystemTime, UNIX_EPOCH, files};
 use crate::{Error, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// So many reports are kept.
 const KEPT: usize = 10;

@@ -63,7 +63,7 @@ pub enum ShownColors {
 const MARK: [u8; 3] = [128; 3];
 
 impl ShownColors {
-    fn is(&self, other: &Self) -> bool {
+    fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Own, Self::Own) | (Self::Values, Self::Values) => true,
             (Self::Proof { table: a, is_marked: b }, Self::Proof { table, is_marked }) => {
@@ -149,7 +149,7 @@ impl TextureBlocks {
 
     /// Shows it in other colors. What is on the graphics card is sent again.
     pub fn show_in(&mut self, colors: &ShownColors, grid: &TileGrid) {
-        if self.colors.is(colors) {
+        if self.colors.is_same(colors) {
             return;
         }
         self.colors = colors.clone();

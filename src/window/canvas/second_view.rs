@@ -157,7 +157,7 @@ impl SecondView {
         let is_painted_in = is_flat(session) && is_free || session.is_drawing();
         for action in own.actions {
             match action {
-                Action::View(action) if self.is_moved(session, &action) => {}
+                Action::View(action) if self.try_move(session, &action) => {}
                 action if is_painted_in || matches!(action, Action::View(_)) => {
                     requests.act(action)
                 }
@@ -168,7 +168,7 @@ impl SecondView {
             match request {
                 WindowRequest::Scale(scale) if scale > 0.0 => {
                     let zoom = scale / ui.ctx().pixels_per_point();
-                    self.is_moved(session, &ViewAction::ZoomTo { zoom });
+                    self.try_move(session, &ViewAction::ZoomTo { zoom });
                 }
                 WindowRequest::Scale(_) => self.view = None,
                 request => requests.request(request),
@@ -177,7 +177,7 @@ impl SecondView {
     }
 
     /// Moves the view, if an action is one that does.
-    fn is_moved(&mut self, session: &Session, action: &ViewAction) -> bool {
+    fn try_move(&mut self, session: &Session, action: &ViewAction) -> bool {
         let Some((open, (key, view))) = session.active().zip(self.view) else { return false };
         let next = action.view_after(view, open.shown_document().size);
         self.view = next.map(|next| (key, next)).or(self.view);
