@@ -103,6 +103,8 @@ pub enum WindowRequest {
     SecondView,
     /// Shows the picture as it will be printed, or in its own colors.
     ToggleProof,
+    /// Shows what is in the clipboard over the canvas.
+    PasteReference,
     /// Shows or hides the references.
     ToggleReferences,
     /// Removes all references.

@@ -274,6 +274,11 @@ pub fn palettes() -> Option<PathBuf> {
     data_folder("palettes")
 }
 
+/// The folder of references that were pasted: `rilievo/references` there.
+pub fn references() -> Option<PathBuf> {
+    data_folder("references")
+}
+
 fn data_folder(name: &str) -> Option<PathBuf> {
     Some(platform::data_folder()?.join("rilievo").join(name))
 }

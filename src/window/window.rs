@@ -7,6 +7,7 @@ mod files;
 mod interface;
 mod layout;
 mod leaving;
+mod pinning;
 mod proof;
 mod requested;
 mod steps;
@@ -53,6 +54,8 @@ pub struct MainWindow {
     canvas: Canvas,
     second_view: SecondView,
     references: References,
+    /// Where pasted references are kept.
+    reference_folder: Option<PathBuf>,
     thumbnails: Thumbnails,
     swatches: Swatches,
     samples: SamplePictures,
@@ -126,6 +129,7 @@ impl MainWindow {
             canvas: Canvas::new(ctx),
             second_view: SecondView::default(),
             references: References::default(),
+            reference_folder: None,
             thumbnails: Thumbnails::new(ctx),
             swatches: Swatches::default(),
             samples: SamplePictures::default(),
@@ -177,6 +181,9 @@ impl MainWindow {
         }
         if let Some(folder) = settings::palettes() {
             window.keep_palettes_in(folder);
+        }
+        if let Some(folder) = settings::references() {
+            window.keep_references_in(folder);
         }
         window.begin(files);
         window

@@ -68,3 +68,18 @@ fn a_picture_of_another_program_becomes_a_document_or_an_image_layer_where_that_
     assert_eq!(document(&harness).size, Size::new(60, 40));
     assert_eq!(covered(&harness), Rect::new(0, 0, 60, 40));
 }
+
+#[test]
+fn a_picture_is_pasted_as_a_reference_and_stays_beside_the_document() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().join("references");
+    let mut harness = window();
+    harness.state_mut().as_mut().unwrap().keep_references_in(folder.clone());
+    command(&mut harness, "Paste as reference");
+    until(&mut harness, |harness| harness.query_by_label_contains("Reference pasted-").is_some());
+    let files: Vec<_> = std::fs::read_dir(&folder).unwrap().flatten().collect();
+    assert_eq!(files.len(), 1);
+    assert_eq!(image::image_dimensions(files[0].path()).unwrap(), (60, 40));
+    let past = session(&harness).active().unwrap().history.past_names().len();
+    assert_eq!((past, layers(&harness).len()), (0, 1), "the document has nothing of it");
+}

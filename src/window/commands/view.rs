@@ -303,6 +303,13 @@ const REFERENCES: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::Choose(FilePurpose::Reference)),
     ),
+    row(
+        "Paste as reference",
+        &[],
+        "What is in the clipboard, over the canvas; it is not part of the document",
+        always,
+        |_, requests| requests.request(WindowRequest::PasteReference),
+    ),
     row("Show references", &[], "Shows or hides what is pinned", always, |_, requests| {
         requests.request(WindowRequest::ToggleReferences)
     })

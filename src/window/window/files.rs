@@ -254,10 +254,7 @@ impl MainWindow {
             }
             FilePurpose::ImportUnwrapped => self.import_unwrapped(file),
             FilePurpose::ColorProfile => self.proof_with(file),
-            FilePurpose::Reference => {
-                self.settings.layout.hides_references = false;
-                self.settings.references.pin(file);
-            }
+            FilePurpose::Reference => self.pin_reference(file),
             FilePurpose::Brush => {
                 self.apply(&Action::File(FileAction::ImportBrush { file }));
             }

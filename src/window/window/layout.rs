@@ -10,7 +10,6 @@ use crate::panels;
 use crate::panels::start::StartPictures;
 use crate::requests::UiRequests;
 use crate::theme::ACCENT;
-use crate::tools::ToolKind;
 use crate::widgets::{tab, tab_width_pt};
 use eframe::egui::{
     self, CentralPanel, Frame, Id, Margin, Panel, Ui, ViewportBuilder, ViewportId, WindowLevel,
@@ -85,23 +84,6 @@ impl MainWindow {
             self.messages.show(ui.ctx(), area);
             show_hovered(ui, area, self.session.active().is_some());
         });
-    }
-
-    /// The pictures over the canvas, while a document is open that they are looked at for.
-    fn show_references(
-        &mut self,
-        ctx: &egui::Context,
-        area: egui::Rect,
-        requests: &mut UiRequests,
-    ) {
-        if self.settings.layout.hides_references || self.session.active().is_none() {
-            return;
-        }
-        let keys = ctx.input(|input| input.modifiers);
-        let is_picking = self.settings.preferences.pick_keys.are_held(keys)
-            || self.session.tool == ToolKind::Eyedropper;
-        let pins = &mut self.settings.references;
-        self.references.show(ctx, area, pins, is_picking, requests);
     }
 
     /// The panels that are together.

@@ -93,6 +93,7 @@ impl MainWindow {
             }
             WindowRequest::SecondView => self.second_view.toggle(),
             WindowRequest::ToggleProof => self.toggle_proof(),
+            WindowRequest::PasteReference => self.paste_reference(),
             WindowRequest::ToggleReferences => {
                 self.settings.layout.hides_references = !self.settings.layout.hides_references;
             }
