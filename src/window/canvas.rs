@@ -20,8 +20,10 @@ mod rulers;
 mod second_view;
 mod sheet;
 mod text_carets;
+mod tool_keys;
 mod unwrapped;
 mod wobble;
+mod words;
 
 pub use overlay::load_texture;
 pub use parts::ball;
@@ -36,7 +38,6 @@ use crate::document::Document;
 use crate::io::proof::ProofTable;
 use crate::math::srgb::Color;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
-use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::tools::ToolKind;
@@ -203,7 +204,7 @@ impl Canvas {
         };
         let layout = open.cached_layout();
         if open.unwrap_settings().is_some() && layout.is_none() {
-            return show_sentence(ui, rect, "Unwrapping the surface…");
+            return words::show_sentence(ui, rect, "Unwrapping the surface…");
         }
         let size = open.shown_size();
         if self.has_to_fit(open, &view, area_before_pt) {
@@ -234,7 +235,7 @@ impl Canvas {
         painter.add(egui::Shape::closed_line(outline.to_vec(), line));
 
         if session.shows_saved {
-            show_badge(ui, rect, "As saved");
+            words::show_badge(ui, rect, words::AS_SAVED);
         }
         self.hand.listen(ui, &response, session, &view, middle, actions);
         let pointer = response.hover_pos().filter(|_| !self.hand.is_looking());
@@ -254,7 +255,7 @@ impl Canvas {
                 self.draw_aids(ui, &painter, session, &aids, is_unseen)
             }
         }
-        keys_of_tools(ui, session, actions);
+        tool_keys::listen(ui, session, actions);
         if tool == ToolKind::Anchors && layout.is_none() {
             self.insets.draw(ui.ctx(), session, &painter);
             self.trouble = self.trouble.take().or(self.insets.trouble.take());
@@ -458,28 +459,6 @@ fn checker_shape(texture: egui::TextureId, canvas: [egui::Pos2; 4]) -> egui::Sha
     quad(texture, uv, Color32::WHITE)
 }
 
-/// The keys that are meant for what a tool has begun.
-fn keys_of_tools(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    path_handles::keys(ui, session, actions);
-    lasso_keys(ui, session, actions);
-    crop::keys(ui, session, actions);
-}
-
-/// Enter closes a lasso of clicks, Escape cancels it.
-fn lasso_keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
-    if session.tools.lasso.is_empty()
-        || session.is_drawing()
-        || ui.ctx().egui_wants_keyboard_input()
-    {
-        return;
-    }
-    if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
-        actions.push(Action::Selection(SelectionAction::CloseLasso {}));
-    } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        actions.push(Action::Selection(SelectionAction::DropLasso {}));
-    }
-}
-
 /// The visible canvas pixels.
 fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
     let inverse = view.canvas_from_screen();
@@ -502,29 +481,4 @@ fn to_screen(screen_from_canvas: Affine2) -> impl Fn(Vec2) -> egui::Pos2 {
         let p = screen_from_canvas.transform_point2(p);
         pos2(p.x, p.y)
     }
-}
-
-/// Words over the picture, for what it is if it is not the document.
-fn show_badge(ui: &Ui, area: egui::Rect, text: &str) {
-    const INSET_PT: f32 = 8.0;
-    let font = egui::TextStyle::Button.resolve(ui.style());
-    let color = ui.visuals().strong_text_color();
-    let words = ui.painter().layout_no_wrap(text.to_owned(), font, color);
-    let size = words.size() + egui::Vec2::splat(2.0 * INSET_PT);
-    let place = egui::Align2::CENTER_TOP.align_size_within_rect(size, area.shrink(INSET_PT));
-    let painter = ui.painter_at(area);
-    painter.rect_filled(place, 4.0, ui.visuals().panel_fill);
-    painter.galley(place.min + egui::Vec2::splat(INSET_PT), words, color);
-}
-
-/// A sentence in place of a picture.
-fn show_sentence(ui: &Ui, area: egui::Rect, text: &str) {
-    let font = egui::TextStyle::Heading.resolve(ui.style());
-    ui.painter().text(
-        area.center(),
-        egui::Align2::CENTER_CENTER,
-        text,
-        font,
-        ui.visuals().weak_text_color(),
-    );
 }

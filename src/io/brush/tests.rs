@@ -266,6 +266,20 @@ fn a_damaged_tip_is_left_out_and_the_others_stay() {
     assert_eq!(left[0].notes, ["1 damaged brushes of the collection were left out"]);
 }
 
+/// Changes a few bytes, and leaves one at least.
+pub(super) fn damage(bytes: &mut Vec<u8>, chance: &impl Fn(u32) -> u32) {
+    for change in 0..1 + chance(0) % 4 {
+        let at = chance(10 + change) as usize % bytes.len();
+        match chance(20 + change) % 4 {
+            0 => bytes[at] = chance(30 + change) as u8,
+            1 => bytes[at] = [0, 255, 127, 128][chance(40 + change) as usize % 4],
+            2 => bytes.truncate(at.max(1)),
+            _ if bytes.len() > 1 => drop(bytes.remove(at)),
+            _ => {}
+        }
+    }
+}
+
 #[test]
 fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
     let files = [
@@ -284,18 +298,7 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
             let chance =
                 |what: u32| hash::mix(hash::mix(seed as u32 * 7919 + round) ^ hash::mix(what));
             let mut bytes = whole.clone();
-            for change in 0..1 + chance(0) % 4 {
-                let at = chance(10 + change) as usize % bytes.len();
-                match chance(20 + change) % 4 {
-                    0 => bytes[at] = chance(30 + change) as u8,
-                    1 => bytes[at] = [0, 255, 127, 128][chance(40 + change) as usize % 4],
-                    2 => bytes.truncate(at.max(1)),
-                    _ => drop(bytes.remove(at)),
-                }
-                if bytes.is_empty() {
-                    bytes.push(0);
-                }
-            }
+            damage(&mut bytes, &chance);
             for ImportedBrush { name, brush, .. } in
                 read(Path::new(file), &bytes, &NoBrushFiles, &small).into_iter().flatten()
             {

@@ -52,6 +52,10 @@ fn report_panic(
 }
 
 fn remember(panic: &PanicHookInfo) {
+    // What finds no memory is no bug, and has none left for a list of calls.
+    if panic.payload().is::<OutOfMemory>() {
+        return;
+    }
     let place =
         panic.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));
     let what = format!("{}{place}", panic.payload_as_str().unwrap_or("unknown"));

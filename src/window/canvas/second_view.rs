@@ -4,7 +4,7 @@
 use super::ants::Ants;
 use super::parts::PartMarks;
 use super::pointer::PointerState;
-use super::{Canvas, guides, keys_of_tools, marks, to_screen, visible_rect};
+use super::{Canvas, guides, marks, to_screen, tool_keys, visible_rect, words};
 use crate::keymap::Keymap;
 use crate::keys;
 use crate::math::{Affine2, Vec2, vec2};
@@ -78,7 +78,7 @@ impl SecondView {
             }
             if let Some(keymap) = keymap.filter(|_| is_apart) {
                 keys::listen(ui.ctx(), session, keymap, &mut own);
-                keys_of_tools(ui, session, &mut own.actions);
+                tool_keys::listen(ui, session, &mut own.actions);
             }
             self.follow(ui, session, own, keymap.is_some(), requests);
         });
@@ -102,6 +102,9 @@ impl SecondView {
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();
         canvas.draw_elsewhere(ui.ctx(), session, &painter, screen_from_canvas);
+        if session.shows_saved {
+            words::show_badge(ui, rect, words::AS_SAVED);
+        }
         self.draw_aids(&painter, &response, session, (view, screen_from_canvas), canvas);
         canvas.draw_loupe(ui, self.hand.picking(), session, screen_from_canvas.inverse(), false);
         self.hand.listen(ui, &response, session, &view, middle, &mut requests.actions);

@@ -1,6 +1,7 @@
 //! Bundles built here, and the same ones damaged.
 
 use super::super::kpp::tests::{gray_gbr, kpp, pat, png};
+use super::super::tests::damage;
 use super::*;
 use crate::math::hash;
 use crate::paint::Tip;
@@ -88,20 +89,6 @@ fn entries_beyond_the_budget_are_notes() {
     let brushes = read(Path::new("set.bundle"), &bundle(), &small).unwrap();
     let note = &brushes[1].notes[0];
     assert!(note.contains("“tip.gbr” cannot be used") && note.contains("too large"), "{note}");
-}
-
-/// The same bytes with a few changes.
-fn damage(bytes: &mut Vec<u8>, chance: &impl Fn(u32) -> u32) {
-    for change in 0..1 + chance(0) % 4 {
-        let at = chance(10 + change) as usize % bytes.len();
-        match chance(20 + change) % 4 {
-            0 => bytes[at] = chance(30 + change) as u8,
-            1 => bytes[at] = [0, 255, 127, 128][chance(40 + change) as usize % 4],
-            2 => bytes.truncate(at.max(1)),
-            _ if bytes.len() > 1 => drop(bytes.remove(at)),
-            _ => {}
-        }
-    }
 }
 
 #[test]
