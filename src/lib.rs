@@ -110,12 +110,12 @@ pub mod paint {
     #[doc(inline)]
     pub use rilievo_engine::paint::{
         ActiveRetouching, ActiveStrokes, Adjust, Attachment, Backdrop, Brush, BrushMode,
-        ColorJitter, Curve, Cycle, DabInputs, DistanceMetric, Drive, Dynamics, Falloff, Figure,
-        FigureKind, Fill, Gradient, GradientStop, ImageFilter, Input, LivePath, Offset, PathCap,
-        PathGeometry, PathJoin, PathNode, PathRule, Pickup, PictureOrigin, PictureSource,
-        PlacedImage, Placement, Property, Rate, Sample, Selection, Spread, StabilizedPen,
-        Stabilizer, Stroke, StrokeAttachment, StrokeFrame, StrokeSelection, StylusFilter, Subpath,
-        Text, TextAlign, TextRun, TextStyle, Tip,
+        ColorJitter, Curve, Cycle, DabInputs, DistanceMetric, Drive, DualBrush, DualMode,
+        DualSettings, Dynamics, Falloff, Figure, FigureKind, Fill, Gradient, GradientStop,
+        ImageFilter, Input, LivePath, Offset, PathCap, PathGeometry, PathJoin, PathNode, PathRule,
+        Pickup, PictureOrigin, PictureSource, PlacedImage, Placement, Property, Rate, Sample,
+        Selection, Spread, StabilizedPen, Stabilizer, Stroke, StrokeAttachment, StrokeFrame,
+        StrokeSelection, StylusFilter, Subpath, Text, TextAlign, TextRun, TextStyle, Tip,
         grain::{BrushGrain, GrainSource, GrainSpace},
         tip::{Bristles, Hose, Noise},
     };

@@ -10,6 +10,7 @@ pub mod color_palette;
 mod curve;
 mod dab;
 mod dab_walker;
+pub mod dual_brush;
 pub mod dynamics;
 pub mod effect;
 pub mod fill;
@@ -55,6 +56,7 @@ pub use brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
 };
 pub use color_palette::{ColorPalette, NamedColor};
+pub use dual_brush::{DualBrush, DualMode, DualSettings};
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;

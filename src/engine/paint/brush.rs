@@ -4,6 +4,7 @@
 use super::brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
 };
+use super::dual_brush::{DualBrush, DualSettings};
 use super::dynamics::{Dynamics, Input, Property};
 use super::grain::{BrushGrain, GrainSource};
 use super::image::PictureSource;
@@ -11,6 +12,7 @@ use super::tip::{Bristles, Hose, Noise};
 use crate::math::{Mat2, Range, UNIT, Vec2, range::clamp_to_range};
 use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
+use std::sync::Arc;
 
 /// The settings of a brush. Lengths are canvas px, ratios plain numbers.
 #[derive(Clone, PartialEq)]
@@ -73,6 +75,9 @@ pub struct Brush {
     pub tip: Tip,
     /// A texture that takes paint away.
     pub grain: Option<BrushGrain>,
+    /// A second tip, whose stroke meets that of the first. Only painting brushes that pick up no
+    /// paint use it: a stroke has to be whole before it is laid down.
+    pub dual: Option<Arc<DualBrush>>,
     /// How the hand is smoothed. The samples of a stroke are smooth already: rendering it does not
     /// use this.
     pub stabilizer: Stabilizer,
@@ -265,6 +270,28 @@ pub enum Tip {
 impl Tip {
     /// What the ratio of its axes may be.
     pub const RATIO: Range = 0.01..=1.0;
+
+    /// The pictures that it uses.
+    pub fn pictures(&self) -> &[PictureSource] {
+        match self {
+            Tip::Picture(source) => std::slice::from_ref(source),
+            Tip::Hose(hose) => hose.pictures(),
+            _ => &[],
+        }
+    }
+
+    /// The same tip with its pictures replaced, in that order.
+    pub fn with_pictures<E>(
+        &self,
+        replace: impl FnMut(&PictureSource) -> Result<PictureSource, E>,
+    ) -> Result<Self, E> {
+        let pictures = self.pictures().iter().map(replace).collect::<Result<Vec<_>, E>>()?;
+        Ok(match (self, pictures.as_slice()) {
+            (Tip::Picture(_), [source]) => Tip::Picture(source.clone()),
+            (Tip::Hose(hose), _) => Tip::Hose(hose.with_pictures(pictures)),
+            _ => self.clone(),
+        })
+    }
 }
 
 impl Brush {
@@ -282,18 +309,14 @@ impl Brush {
     /// near the pen.
     pub const NEAR: f32 = 3.0;
 
-    /// The pictures that it uses: its tip's, then its grain's.
+    /// The pictures that it uses: its tip's, then its grain's, then its second tip's.
     pub fn pictures(&self) -> impl Iterator<Item = &PictureSource> {
-        let tip = match &self.tip {
-            Tip::Picture(source) => std::slice::from_ref(source),
-            Tip::Hose(hose) => hose.pictures(),
-            _ => &[],
-        };
         let grain = self.grain.as_ref().and_then(|grain| match &grain.source {
             GrainSource::Picture(source) => Some(source),
             GrainSource::Pattern { .. } => None,
         });
-        tip.iter().chain(grain)
+        let second = self.dual.iter().flat_map(|dual| dual.tip.pictures());
+        self.tip.pictures().iter().chain(grain).chain(second)
     }
 
     /// The same brush with its pictures replaced, in that order.
@@ -302,17 +325,13 @@ impl Brush {
         mut replace: impl FnMut(&PictureSource) -> Result<PictureSource, E>,
     ) -> Result<Self, E> {
         let mut next = self.clone();
-        match &self.tip {
-            Tip::Picture(source) => next.tip = Tip::Picture(replace(source)?),
-            Tip::Hose(hose) => {
-                let pictures =
-                    hose.pictures().iter().map(&mut replace).collect::<Result<_, E>>()?;
-                next.tip = Tip::Hose(hose.with_pictures(pictures));
-            }
-            _ => {}
-        }
+        next.tip = self.tip.with_pictures(&mut replace)?;
         if let Some(BrushGrain { source: GrainSource::Picture(source), .. }) = &mut next.grain {
             *source = replace(source)?;
+        }
+        if let Some(dual) = &self.dual {
+            let tip = dual.tip.with_pictures(&mut replace)?;
+            next.dual = Some(Arc::new(DualBrush { tip, ..(**dual).clone() }));
         }
         Ok(next)
     }
@@ -347,6 +366,7 @@ impl Default for Brush {
             pickup: Pickup::default(),
             tip: Tip::Round,
             grain: None,
+            dual: None,
             stabilizer: Stabilizer::None,
             stabilizer_on: DistanceMetric::default(),
             stylus: StylusFilter::default(),
@@ -375,7 +395,17 @@ impl Brush {
             .any(|p| self.dynamics.is_driven(p));
         let follows =
             [Input::Random, Input::Chance].into_iter().any(|input| self.dynamics.has_input(input));
-        strays.iter().any(|&v| v > 0.0) || adds || follows || matches!(self.tip, Tip::Hose(_))
+        strays.iter().any(|&v| v > 0.0)
+            || adds
+            || follows
+            || matches!(self.tip, Tip::Hose(_))
+            || self.dual.as_ref().is_some_and(|dual| dual.is_random())
+    }
+
+    /// Its second tip, as a brush whose strokes are coverage, and how both meet.
+    pub(super) fn second(&self) -> Option<(Brush, DualSettings)> {
+        let dual = self.dual.as_ref().filter(|_| !self.is_wet())?;
+        Some((dual.second_brush(self), dual.settings))
     }
 
     /// It works on existing paint, dab by dab.

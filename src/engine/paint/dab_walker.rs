@@ -109,6 +109,12 @@ impl DabWalker {
         }
     }
 
+    /// The walker of a second tip along the same path: a hand that shakes moves both alike.
+    pub fn beside(&self, second: &Brush) -> Self {
+        let DabRules { operator, color, scene, .. } = &self.rules;
+        Self { tremor: self.tremor, ..Self::new(second, *operator, *color, scene) }
+    }
+
     /// Takes the next sample, and adds the dabs that are now final.
     pub fn push(&mut self, sample: &Sample, dabs: &mut Vec<Dab>) {
         let Sample { at, pressure, tilt, time_secs } = *sample;
@@ -199,7 +205,16 @@ pub fn most_dabs(brush: &Brush, way_px: f32, secs: f32) -> usize {
     ((way_px / rules::MIN_STEP_PX + timed) as usize).saturating_add(1).min(walk::MAX_STEPS as usize)
 }
 
-/// All dabs of a stroke.
+/// All dabs of a stroke; `walker`: as it begins.
+pub fn all_dabs(mut walker: DabWalker, samples: &[Sample]) -> Vec<Dab> {
+    let mut dabs = Vec::new();
+    samples.iter().for_each(|sample| walker.push(sample, &mut dabs));
+    dabs.extend(walker.tail());
+    dabs
+}
+
+/// Those of a brush.
+#[cfg(test)]
 pub fn dabs(
     brush: &Brush,
     operator: Operator,
@@ -207,11 +222,7 @@ pub fn dabs(
     samples: &[Sample],
     scene: &Scene,
 ) -> Vec<Dab> {
-    let mut walker = DabWalker::new(brush, operator, color, scene);
-    let mut dabs = Vec::new();
-    samples.iter().for_each(|sample| walker.push(sample, &mut dabs));
-    dabs.extend(walker.tail());
-    dabs
+    all_dabs(DabWalker::new(brush, operator, color, scene), samples)
 }
 
 #[cfg(test)]

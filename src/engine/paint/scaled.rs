@@ -75,6 +75,8 @@ impl Brush {
             pickup,
             tip: self.tip.clone(),
             grain: self.grain.as_ref().map(|grain| grain.scaled(factor)),
+            // Of ratios alone.
+            dual: self.dual.clone(),
             stabilizer: stabilizer.scaled(factor),
             stabilizer_on,
             stylus: stylus.scaled(factor),

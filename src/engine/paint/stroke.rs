@@ -166,7 +166,10 @@ impl Stroke {
         let way_px: f32 = ways.filter(|way| way.is_finite()).sum();
         let secs = self.samples.last().map_or(0.0, |last| last.time_secs)
             - self.samples.first().map_or(0.0, |s| s.time_secs);
-        dab_walker::most_dabs(&self.brush, way_px, secs)
+        let second = self.brush.second();
+        dab_walker::most_dabs(&self.brush, way_px, secs).saturating_add(
+            second.map_or(0, |(second, _)| dab_walker::most_dabs(&second, way_px, secs)),
+        )
     }
 
     /// Whether its dabs on a canvas are cached.
@@ -212,28 +215,17 @@ impl Stroke {
                 tile => tile,
             },
         };
-        let mut stroke_tile = stroke_dabs.stroke_tile(stroke_dabs.grain(scene, at));
+        let mut stroke_tile = stroke_dabs.paint_tile(scene, at, scratch);
         match scene.as_far_side() {
             None => {
-                for dab in stroke_dabs.on_tile(at) {
-                    stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, &mut stroke_tile, scratch);
-                }
                 stroke_tile.limit_to(&self.part(scene), at);
                 if let Some(selected) = selected {
                     stroke_tile.select(&selected);
                 }
             }
             Some(far) => {
-                // Which dabs are near is known for the canvas only.
-                let front = scene.front();
-                for dab in stroke_dabs.on_tile(at) {
-                    let near =
-                        far.blocks_under(at, &stroke_dabs.place(*dab, &front).support().blocks(at));
-                    let Some(blocks) = near else { continue };
-                    let placed = stroke_dabs.place(*dab, scene).on_blocks(blocks);
-                    stroke_dabs.add(&placed, at, &mut stroke_tile, scratch);
-                }
-                stroke_tile.limit_far_side(&self.part(&front), selected.as_deref(), far, at);
+                let part = self.part(&scene.front());
+                stroke_tile.limit_far_side(&part, selected.as_deref(), far, at);
             }
         }
         stroke_tile.blend_over(pixels, at, self.manner());

@@ -6,6 +6,7 @@ mod rows;
 pub use rows::raise;
 
 use super::brush::Brush;
+use super::dual_brush::DualSettings;
 use super::grain::GrainTile;
 use crate::math::srgb::Color;
 use crate::raster::tile::TILE_AREA;
@@ -15,7 +16,8 @@ use crate::raster::{
 use crate::surface::contours::{FarSide, place_of};
 use crate::surface::objects::CanvasPart;
 use rows::{
-    add_alpha, add_colors, add_covered, add_stamped, keep, lay_colors, lay_coverage, take_out_row,
+    add_alpha, add_colors, add_covered, add_stamped, combine_colors, combine_coverage, keep,
+    lay_colors, lay_coverage, take_out_row,
 };
 use std::sync::Arc;
 
@@ -205,6 +207,22 @@ impl StrokeTile {
                 .zip(dark)
                 .zip(shares)
                 .for_each(|((a, b), share)| *a = *b + (*a - *b) * share);
+        }
+    }
+
+    /// Meets the coverage of a second tip; nothing more can be painted. `second`: of one color,
+    /// without grain.
+    pub fn combine(&mut self, second: &StrokeTile, settings: &DualSettings) {
+        self.join();
+        let Paint::OneColor(second) = &second.light.paint else { return };
+        let (mode, opacity) = (settings.mode, settings.opacity.max(0.0).min(1.0));
+        match &mut self.light.paint {
+            Paint::OneColor(first) => combine_coverage(mode, &second[..], opacity, &mut first[..]),
+            Paint::Colors(tile) => {
+                for (row, second) in tile.rows_mut().iter_mut().zip(second.as_chunks::<TILE>().0) {
+                    combine_colors(mode, second, opacity, row);
+                }
+            }
         }
     }
 

@@ -11,9 +11,9 @@ use crate::paint::grain::{BrushGrain, GrainSpace};
 use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
-    Adjust, Brush, BrushMode, ColorAdjustment, ColorJitter, DrawingHand, FormDrawing, FormPattern,
-    Gradient, LayerEffect, LivePath, PlacedImage, Placement, Sample, Stabilizer, Stroke,
-    StrokeSelection, Tip,
+    Adjust, Brush, BrushMode, ColorAdjustment, ColorJitter, DrawingHand, DualBrush, DualSettings,
+    Dynamics, FormDrawing, FormPattern, Gradient, LayerEffect, LivePath, PlacedImage, Placement,
+    Sample, Stabilizer, Stroke, StrokeSelection, Tip,
 };
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
@@ -31,6 +31,8 @@ pub const A_NODE: usize = 16;
 const A_STROKE: usize = 60;
 /// Without its curves and pictures.
 const A_BRUSH: usize = 480;
+/// The same of a dual brush's second tip.
+const A_SECOND_TIP: usize = 120;
 
 /// The most values that the lists of an adjustment take.
 pub fn adjustment_values(adjustment: &ColorAdjustment) -> usize {
@@ -50,26 +52,25 @@ pub fn count_values(strokes: &[Arc<Stroke>]) -> (usize, usize) {
         values += A_STROKE;
         // A brush like the one before is not written again.
         if !before.is_some_and(|before| before.brush().is_alike(stroke.brush())) {
-            let points: usize = stroke
-                .brush()
-                .dynamics
-                .drives()
-                .iter()
-                .map(|drive| 20 + 3 * drive.curve.points())
-                .sum();
-            let pictures =
-                if let Tip::Hose(hose) = &stroke.brush().tip { hose.pictures().len() } else { 0 };
-            values += A_BRUSH + points + pictures;
+            values += brush_values(stroke.brush());
         }
         before = Some(stroke);
     }
     (samples, values)
 }
 
+/// The values that a brush takes.
+fn brush_values(brush: &Brush) -> usize {
+    let points = |dynamics: &Dynamics| -> usize {
+        dynamics.drives().iter().map(|drive| 20 + 3 * drive.curve.points()).sum()
+    };
+    let second = brush.dual.as_ref().map_or(0, |dual| A_SECOND_TIP + points(&dual.dynamics));
+    A_BRUSH + points(&brush.dynamics) + second + brush.pictures().count()
+}
+
 /// The values that a drawing by the form takes.
 pub fn form_drawing_values(drawing: &FormDrawing) -> usize {
-    let drives = drawing.brush.dynamics.drives().iter();
-    A_STROKE + A_BRUSH + drives.map(|drive| 20 + 3 * drive.curve.points()).sum::<usize>()
+    A_STROKE + brush_values(&drawing.brush)
 }
 
 /// Whether a file can hold a drawing by the form.
@@ -182,7 +183,16 @@ pub fn brush(brush: &Brush) -> Fit {
         )?;
     }
     tip(&brush.tip)?;
-    brush.grain.as_ref().map_or(Ok(()), grain)
+    brush.grain.as_ref().map_or(Ok(()), grain)?;
+    brush.dual.as_ref().map_or(Ok(()), |dual| second_tip(dual))
+}
+
+fn second_tip(dual: &DualBrush) -> Fit {
+    DualSettings::SETTINGS.iter().try_for_each(|setting| {
+        let what = format!("“{}” of the dual brush", setting.label);
+        check_range(&what, (setting.get)(&dual.settings), &setting.range)
+    })?;
+    tip(&dual.tip)
 }
 
 fn mode(mode: BrushMode) -> Fit {

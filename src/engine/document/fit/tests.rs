@@ -1,7 +1,7 @@
 use super::*;
 use crate::document::{Group, Live, PartKind, Parts, StrokeList};
 use crate::math::{Vec2, Vec3, srgb::Color, vec2};
-use crate::paint::{Brush, Gradient, GradientStop, Sample, Stroke};
+use crate::paint::{Brush, DualBrush, DualSettings, Gradient, GradientStop, Sample, Stroke};
 use crate::raster::{Plane, Tile, TileAt, TileGrid};
 use crate::shading::{Model, Shading};
 use crate::shape::{Ball, Touch};
@@ -157,6 +157,18 @@ fn only_strokes_that_are_new_are_looked_at() {
             .unwrap_err()
             .contains("stroke 2")
     );
+    let dual = |spacing: f32| {
+        let settings = DualSettings { spacing, ..DualSettings::DEFAULT };
+        Brush {
+            dual: Some(Arc::new(DualBrush { settings, ..Default::default() })),
+            ..Brush::default()
+        }
+    };
+    assert!(add(dual(0.5)).fits(Some(&old)).is_ok());
+    for spacing in [f32::NAN, 0.0, 1e9] {
+        let said = add(dual(spacing)).fits(Some(&old)).unwrap_err();
+        assert!(said.contains("“Spacing” of the dual brush"), "{said}");
+    }
 }
 
 #[test]

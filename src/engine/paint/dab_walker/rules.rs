@@ -38,9 +38,9 @@ const PEN: [Input; 5] =
 #[derive(Clone)]
 pub(super) struct DabRules {
     pub brush: Brush,
-    operator: Operator,
-    color: Color,
-    scene: Scene,
+    pub operator: Operator,
+    pub color: Color,
+    pub scene: Scene,
     /// The corner of the pixel in which the stroke begins: its positions are relative to it.
     pub origin: Option<Vec2>,
     /// Canvas from the frame that the stroke was drawn in.

@@ -19,9 +19,9 @@ pub struct BrushCoverage {
 }
 
 impl BrushCoverage {
-    /// Of a round brush; other tips count as what their size says.
+    /// Of a round brush; other tips and dual brushes count as what their size says.
     pub fn of(brush: &Brush) -> Self {
-        if brush.tip != Tip::Round {
+        if brush.tip != Tip::Round || brush.dual.is_some() {
             return Self { width: 1.0, area: 1.0 };
         }
         let profile = RoundProfile::new(brush.hardness, brush.softness);

@@ -8,6 +8,7 @@ use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
 use crate::paint::dab_walker::{Dab, DabWalker};
+use crate::paint::dual_brush::DualSettings;
 use crate::paint::grain::GrainTile;
 use crate::paint::scene::Scene;
 use crate::paint::selection::StrokeSelection;
@@ -31,7 +32,7 @@ pub enum Backdrop {
 ///
 /// Their pixels do not depend on how the samples are batched: they equal those of the finished
 /// strokes painted at once. They take 16 KiB for every tile that a stroke touches (64 if its dabs
-/// vary in color), and 64 more if there are strokes below.
+/// vary in color), 16 for one that a second tip touches, and 64 more if there are strokes below.
 pub struct ActiveStrokes {
     scene: Scene,
     backdrop: Backdrop,
@@ -46,27 +47,51 @@ struct ActiveStroke {
     color: Color,
     samples: Vec<Sample>,
     selection: Option<StrokeSelection>,
+    first: ActiveTip,
+    /// Of a dual brush.
+    second: Option<(DualSettings, ActiveTip)>,
+    bounds: Rect,
+}
+
+/// The dabs of one tip of an active stroke.
+struct ActiveTip {
     walker: DabWalker,
     /// The settled dabs.
     stroke_dabs: StrokeDabs,
     /// Where the last tail was shown.
     tail: Vec<TileAt>,
-    bounds: Rect,
 }
 
 /// A tile under active strokes.
 struct ActiveTile {
     /// The strokes below, once they were painted.
     beneath: Option<PlanarTile>,
-    /// The settled dabs of each active stroke.
-    stroke_tiles: Vec<Option<StrokeTile>>,
-    /// What their grains leave of each pixel.
-    grains: Vec<Option<Arc<GrainTile>>>,
+    /// Of each active stroke.
+    strokes: Vec<StrokeOnTile>,
+    /// Whether the first tip of a stroke may have touched it: a second tip alone shows nothing.
+    is_reached: bool,
     /// What was shown last, if there was paint of theirs.
     shown: Option<Option<Arc<Tile>>>,
 }
 
-/// What a batch of samples adds to one stroke.
+/// What an active stroke has on a tile, of each tip.
+#[derive(Default)]
+struct StrokeOnTile {
+    first: TipOnTile,
+    second: TipOnTile,
+}
+
+/// What one tip has painted on a tile.
+#[derive(Default)]
+struct TipOnTile {
+    /// Its settled dabs.
+    stroke_tile: Option<StrokeTile>,
+    /// What its grain leaves of each pixel.
+    grain: Option<Arc<GrainTile>>,
+}
+
+/// What a batch of samples adds to one tip of a stroke.
+#[derive(Default)]
 struct NewDabs<'s> {
     dabs: Vec<PlacedDab<'s>>,
     /// The number of them that no later sample changes.
@@ -75,26 +100,15 @@ struct NewDabs<'s> {
     tiles: BTreeMap<TileAt, Vec<usize>>,
 }
 
-impl ActiveStroke {
-    fn new(stroke: &Stroke, scene: &Scene) -> Self {
-        let Stroke { brush, operator, color, selection, .. } = stroke;
-        Self {
-            brush: brush.clone(),
-            operator: *operator,
-            color: *color,
-            samples: Vec::new(),
-            selection: selection.clone(),
-            walker: DabWalker::new(brush, *operator, *color, scene),
-            stroke_dabs: StrokeDabs::empty(brush, scene),
-            tail: Vec::new(),
-            bounds: Rect::EMPTY,
-        }
-    }
+/// The same for both tips.
+struct NewDabsOfBoth<'s> {
+    first: NewDabs<'s>,
+    second: NewDabs<'s>,
+}
 
+impl ActiveTip {
     /// Places the dabs that the samples settle, and the tail behind them.
     fn take<'s>(&mut self, samples: &[Sample], scene: &'s Scene) -> NewDabs<'s> {
-        self.samples.extend_from_slice(samples);
-        self.stroke_dabs.begin(&self.brush, &self.samples);
         let mut dabs = Vec::new();
         samples.iter().for_each(|sample| self.walker.push(sample, &mut dabs));
         let settled = dabs.len();
@@ -113,7 +127,6 @@ impl ActiveStroke {
         for (i, (placed, tiles)) in placed.into_iter().enumerate() {
             for &at in &tiles {
                 fresh.tiles.entry(at).or_default().push(i);
-                self.bounds = self.bounds.union(at.rect());
             }
             match i < settled {
                 true => self.stroke_dabs.push(dabs[i], &tiles),
@@ -124,13 +137,13 @@ impl ActiveStroke {
         fresh
     }
 
-    /// The stroke tile to be shown: with the tail. Settled dabs are added to `stroke_tile` for
+    /// The stroke tile to be shown: with the tail. Settled dabs are added to the tip's own for
     /// good. `None` where there is no paint.
     fn compose_shown(
         &self,
         fresh: &NewDabs,
         at: TileAt,
-        (stroke_tile, grain): (&mut Option<StrokeTile>, &mut Option<Arc<GrainTile>>),
+        TipOnTile { stroke_tile, grain }: &mut TipOnTile,
         scratch: &mut DabScratch,
     ) -> Option<StrokeTile> {
         let here = fresh.tiles.get(&at).map_or(&[][..], Vec::as_slice);
@@ -153,6 +166,69 @@ impl ActiveStroke {
         let mut shown = stroke_tile.clone().unwrap_or_else(empty);
         add(tail, &mut shown);
         Some(shown).filter(|shown| !shown.is_clear())
+    }
+
+    /// All dabs, as if the stroke ended here.
+    fn finish(mut self, scene: &Scene) -> StrokeDabs {
+        self.stroke_dabs.lay(&self.walker.tail(), scene);
+        self.stroke_dabs
+    }
+}
+
+impl ActiveStroke {
+    fn new(stroke: &Stroke, scene: &Scene) -> Self {
+        let Stroke { brush, operator, color, selection, .. } = stroke;
+        let walker = DabWalker::new(brush, *operator, *color, scene);
+        let second = brush.second().map(|(second, settings)| {
+            let walker = walker.beside(&second);
+            let stroke_dabs = StrokeDabs::empty_of_second(&second, scene);
+            (settings, ActiveTip { walker, stroke_dabs, tail: Vec::new() })
+        });
+        let stroke_dabs = StrokeDabs::empty(brush, scene);
+        Self {
+            brush: brush.clone(),
+            operator: *operator,
+            color: *color,
+            samples: Vec::new(),
+            selection: selection.clone(),
+            first: ActiveTip { walker, stroke_dabs, tail: Vec::new() },
+            second,
+            bounds: Rect::EMPTY,
+        }
+    }
+
+    /// Places the dabs that the samples settle, and the tails behind them.
+    fn take<'s>(&mut self, samples: &[Sample], scene: &'s Scene) -> NewDabsOfBoth<'s> {
+        self.samples.extend_from_slice(samples);
+        self.first.stroke_dabs.begin(&self.brush, &self.samples);
+        let first = self.first.take(samples, scene);
+        self.bounds = first.tiles.keys().fold(self.bounds, |all, at| all.union(at.rect()));
+        let second = self.second.as_mut().map(|(_, second)| second.take(samples, scene));
+        NewDabsOfBoth { first, second: second.unwrap_or_default() }
+    }
+
+    /// Where the last tails were shown.
+    fn tails(&self) -> impl Iterator<Item = TileAt> {
+        let second = self.second.iter().flat_map(|(_, second)| &second.tail);
+        self.first.tail.iter().chain(second).copied()
+    }
+
+    /// The stroke tile to be shown: with the tails, both tips together. `None` where there is no
+    /// paint.
+    fn compose_shown(
+        &self,
+        fresh: &NewDabsOfBoth,
+        at: TileAt,
+        StrokeOnTile { first, second }: &mut StrokeOnTile,
+        scratch: &mut DabScratch,
+    ) -> Option<StrokeTile> {
+        let shown = self.first.compose_shown(&fresh.first, at, first, scratch);
+        let Some((settings, tip)) = &self.second else { return shown };
+        // Settled dabs count where the first tip may come later.
+        let met = tip.compose_shown(&fresh.second, at, second, scratch);
+        let mut shown = shown?;
+        shown.combine(&met.unwrap_or_else(StrokeTile::one_color), settings);
+        Some(shown)
     }
 
     fn part(&self, scene: &Scene) -> CanvasPart {
@@ -178,11 +254,15 @@ impl ActiveStroke {
     }
 
     /// The finished stroke, its dabs known already.
-    fn finish(mut self, scene: &Scene) -> Stroke {
-        self.stroke_dabs.lay(&self.walker.tail(), scene);
+    fn finish(self, scene: &Scene) -> Stroke {
+        let Self { brush, operator, color, samples, selection, first, second, .. } = self;
+        let stroke_dabs = first.finish(scene);
+        let stroke_dabs = match second {
+            Some((settings, second)) => stroke_dabs.with_second(settings, second.finish(scene)),
+            None => stroke_dabs,
+        };
         let mut found = StrokeCache::default();
-        found.keep(&Arc::new(self.stroke_dabs));
-        let Self { brush, operator, color, samples, selection, .. } = self;
+        found.keep(&Arc::new(stroke_dabs));
         Stroke {
             brush,
             operator,
@@ -206,22 +286,24 @@ impl ActiveStrokes {
     /// a stroke layer all that they may touch.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         let Self { scene, backdrop, strokes, tiles } = self;
-        let mut changed: Vec<TileAt> =
-            strokes.iter().flat_map(|stroke| stroke.tail.iter().copied()).collect();
+        let mut changed: Vec<TileAt> = strokes.iter().flat_map(ActiveStroke::tails).collect();
         let none = Vec::new();
         let samples = samples.iter().chain(std::iter::repeat(&none));
-        let fresh: Vec<NewDabs> = strokes
+        let fresh: Vec<NewDabsOfBoth> = strokes
             .iter_mut()
             .zip(samples)
             .map(|(stroke, samples)| stroke.take(samples, scene))
             .collect();
-        changed.extend(fresh.iter().flat_map(|fresh| fresh.tiles.keys()));
+        let touched = |NewDabsOfBoth { first, second }: &NewDabsOfBoth| -> Vec<TileAt> {
+            first.tiles.keys().chain(second.tiles.keys()).copied().collect()
+        };
+        changed.extend(fresh.iter().flat_map(touched));
         changed.sort_unstable();
         changed.dedup();
         let dry = || ActiveTile {
             beneath: None,
-            stroke_tiles: strokes.iter().map(|_| None).collect(),
-            grains: strokes.iter().map(|_| None).collect(),
+            strokes: strokes.iter().map(|_| StrokeOnTile::default()).collect(),
+            is_reached: false,
             shown: None,
         };
         let mut active_tiles: Vec<_> =
@@ -230,9 +312,9 @@ impl ActiveStrokes {
         // have paint where its tile has none.
         let shows_all = matches!(backdrop, Backdrop::Strokes(_));
         let paint = |scratch: &mut DabScratch, (at, tile): &mut (TileAt, ActiveTile)| {
-            let cached = tile.stroke_tiles.iter_mut().zip(&mut tile.grains);
+            tile.is_reached |= fresh.iter().any(|fresh| fresh.first.tiles.contains_key(at));
             let mut shown = Vec::with_capacity(strokes.len());
-            for ((stroke, fresh), cached) in strokes.iter().zip(&fresh).zip(cached) {
+            for ((stroke, fresh), cached) in strokes.iter().zip(&fresh).zip(&mut tile.strokes) {
                 let selected = stroke.selection.as_ref().map(|selection| selection.tile(*at));
                 if matches!(selected, Some(None)) {
                     continue;
@@ -244,7 +326,8 @@ impl ActiveStrokes {
             }
             let before = tile.shown.take();
             let is_painted = !shown.is_empty();
-            if !shows_all && !is_painted && before.is_none() {
+            let may_show = is_painted || (shows_all && tile.is_reached);
+            if !may_show && before.is_none() {
                 return None;
             }
             let mut pixels = backdrop.pixels(scene, *at, &mut tile.beneath);

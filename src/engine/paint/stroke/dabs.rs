@@ -5,7 +5,8 @@ use super::Stroke;
 use crate::math::Rect;
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
-use crate::paint::dab_walker::{self, Dab};
+use crate::paint::dab_walker::{self, Dab, DabWalker};
+use crate::paint::dual_brush::DualSettings;
 use crate::paint::grain::{GrainTile, StrokeGrain};
 use crate::paint::prepared_tip::PreparedTip;
 use crate::paint::sample::Sample;
@@ -25,9 +26,17 @@ pub(in crate::paint) struct StrokeDabs {
     tip: PreparedTip,
     /// Set once the start of the stroke is known.
     grain: Option<StrokeGrain>,
-    varies_in_color: bool,
+    has_colors: bool,
     dabs: Vec<Dab>,
     tiles: HashMap<TileAt, Vec<Range<u32>>>,
+    /// Of a dual brush, whose first tip alone says which tiles are touched.
+    second: Option<Box<SecondDabs>>,
+}
+
+/// The dabs of a second tip, and how their coverage meets that of the first tip's.
+struct SecondDabs {
+    settings: DualSettings,
+    dabs: StrokeDabs,
 }
 
 /// Dabs this near in the stroke's order share a run even if those between them miss the tile.
@@ -39,26 +48,46 @@ pub(in crate::paint) const TOGETHER: usize = 32;
 const MAX_RUNS: usize = 1024;
 
 impl StrokeDabs {
-    /// No dabs yet.
+    /// No dabs yet, and no second tip.
     pub fn empty(brush: &Brush, scene: &Scene) -> Self {
-        Self {
-            scene: scene.clone(),
-            tip: PreparedTip::of(brush),
-            grain: None,
-            varies_in_color: tint::has_varied_color(brush),
-            dabs: Vec::new(),
-            tiles: HashMap::new(),
-        }
+        let tip = PreparedTip::of(brush);
+        let has_colors = tint::has_varied_color(brush) || tip.has_own_colors();
+        let (dabs, tiles) = (Vec::new(), HashMap::new());
+        Self { scene: scene.clone(), tip, grain: None, has_colors, dabs, tiles, second: None }
+    }
+
+    /// The same for a second tip, which only covers.
+    pub fn empty_of_second(brush: &Brush, scene: &Scene) -> Self {
+        Self { has_colors: false, ..Self::empty(brush, scene) }
     }
 
     pub fn of(stroke: &Stroke, scene: &Scene) -> Self {
-        let mut stroke_dabs = Self::empty(&stroke.brush, scene);
-        stroke_dabs.begin(&stroke.brush, &stroke.samples);
-        let dabs =
-            dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
-        stroke_dabs.dabs.reserve_exact(dabs.len());
-        dabs.chunks(TOGETHER).for_each(|dabs| stroke_dabs.lay(dabs, scene));
-        stroke_dabs
+        let Stroke { brush, operator, color, samples, .. } = stroke;
+        let walker = DabWalker::new(brush, *operator, *color, scene);
+        let second = brush.second().map(|(second, settings)| {
+            let mut dabs = Self::empty_of_second(&second, scene);
+            dabs.lay_all(&second, walker.beside(&second), samples);
+            (settings, dabs)
+        });
+        let mut stroke_dabs = Self::empty(brush, scene);
+        stroke_dabs.lay_all(brush, walker, samples);
+        match second {
+            Some((settings, second)) => stroke_dabs.with_second(settings, second),
+            None => stroke_dabs,
+        }
+    }
+
+    /// All dabs of a stroke. `walker`: as it begins.
+    fn lay_all(&mut self, brush: &Brush, walker: DabWalker, samples: &[Sample]) {
+        self.begin(brush, samples);
+        let (dabs, scene) = (dab_walker::all_dabs(walker, samples), self.scene.clone());
+        self.dabs.reserve_exact(dabs.len());
+        dabs.chunks(TOGETHER).for_each(|dabs| self.lay(dabs, &scene));
+    }
+
+    /// The same with a second tip's dabs along the same samples.
+    pub fn with_second(self, settings: DualSettings, dabs: StrokeDabs) -> Self {
+        Self { second: Some(Box::new(SecondDabs { settings, dabs })), ..self }
     }
 
     /// Adds successive dabs.
@@ -73,15 +102,21 @@ impl StrokeDabs {
     pub fn bytes(&self) -> u64 {
         let runs: usize = self.tiles.values().map(Vec::capacity).sum();
         let tiles = self.tiles.capacity() * size_of::<(TileAt, Vec<Range<u32>>)>();
-        (self.dabs.capacity() * size_of::<Dab>()
+        let own = self.dabs.capacity() * size_of::<Dab>()
             + runs * size_of::<Range<u32>>()
             + tiles
-            + size_of::<Self>()) as u64
+            + size_of::<Self>();
+        own as u64 + self.second.as_ref().map_or(0, |second| second.dabs.bytes())
+    }
+
+    /// The number of dabs of both tips.
+    pub fn count(&self) -> usize {
+        self.dabs.len() + self.second.as_ref().map_or(0, |second| second.dabs.count())
     }
 
     /// The tiles it touches, without its dabs.
     pub fn support(&self) -> TileReach {
-        TileReach::new(self.scene.clone(), self.dabs.len(), self.tiles.keys().copied())
+        TileReach::new(self.scene.clone(), self.count(), self.tiles.keys().copied())
     }
 
     /// Anchors the grain, if any, at the start of the stroke; later samples do not change it.
@@ -120,12 +155,6 @@ impl StrokeDabs {
         self.scene.is_same(scene)
     }
 
-    /// The number of dabs.
-    #[cfg(test)]
-    pub fn dabs(&self) -> usize {
-        self.dabs.len()
-    }
-
     /// The tiles that they may touch, in no order; some may be beyond the canvas.
     pub fn tiles(&self) -> impl Iterator<Item = TileAt> {
         self.tiles.keys().copied()
@@ -148,8 +177,7 @@ impl StrokeDabs {
 
     /// An empty stroke tile for the stroke's dabs. `grain`: the tile's.
     pub fn stroke_tile(&self, grain: Option<Arc<GrainTile>>) -> StrokeTile {
-        let has_colors = self.varies_in_color || self.tip.has_own_colors();
-        let tile = if has_colors { StrokeTile::colors() } else { StrokeTile::one_color() };
+        let tile = if self.has_colors { StrokeTile::colors() } else { StrokeTile::one_color() };
         match grain {
             Some(grain) => tile.under(grain),
             None => tile,
@@ -165,6 +193,36 @@ impl StrokeDabs {
         scratch: &mut DabScratch,
     ) {
         self.tip.add(dab, at, stroke_tile, scratch);
+    }
+
+    /// The whole stroke on a tile, or on what represents one on a far side: that of the first tip,
+    /// met by that of the second.
+    pub fn paint_tile(&self, scene: &Scene, at: TileAt, scratch: &mut DabScratch) -> StrokeTile {
+        let mut first = self.accumulate(scene, at, scratch);
+        if let Some(second) = self.second.as_ref().filter(|_| !first.is_clear()) {
+            first.combine(&second.dabs.accumulate(scene, at, scratch), &second.settings);
+        }
+        first
+    }
+
+    /// The dabs of this tip.
+    fn accumulate(&self, scene: &Scene, at: TileAt, scratch: &mut DabScratch) -> StrokeTile {
+        let mut stroke_tile = self.stroke_tile(self.grain(scene, at));
+        let Some(far) = scene.as_far_side() else {
+            for dab in self.on_tile(at) {
+                self.add(&self.place(*dab, scene), at, &mut stroke_tile, scratch);
+            }
+            return stroke_tile;
+        };
+        // Which dabs are near is known for the canvas only.
+        let front = scene.front();
+        for dab in self.on_tile(at) {
+            let near = far.blocks_under(at, &self.place(*dab, &front).support().blocks(at));
+            let Some(blocks) = near else { continue };
+            let placed = self.place(*dab, scene).on_blocks(blocks);
+            self.add(&placed, at, &mut stroke_tile, scratch);
+        }
+        stroke_tile
     }
 }
 

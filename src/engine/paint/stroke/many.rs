@@ -148,7 +148,7 @@ mod tests {
     use crate::math::{Size, hash, srgb::Color, vec2, vec3};
     use crate::paint::grain::BrushGrain;
     use crate::paint::stroke::render_tile;
-    use crate::paint::{Brush, Sample};
+    use crate::paint::{Brush, DualBrush, DualSettings, Sample};
     use crate::raster::{BlendMode, Plane};
     use crate::surface::{Maps, Operator, Surface};
     use std::collections::BTreeMap;
@@ -165,11 +165,15 @@ mod tests {
         Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
     }
 
-    /// Strokes across the canvas and beyond it that paint, erase, mix and have grain in turn.
+    /// Strokes across the canvas and beyond it that paint, have two tips, erase, mix and have grain in
+    /// turn.
     fn strokes(n: u32) -> Vec<Arc<Stroke>> {
         let plain = Brush { size: 12.0, hardness: 0.4, flow: 0.6, ..Brush::default() };
+        let second = DualSettings { size: 0.5, spacing: 0.8, ..DualSettings::DEFAULT };
+        let second = DualBrush { settings: second, ..DualBrush::default() };
         let brushes = [
             plain.clone(),
+            Brush { dual: Some(Arc::new(second)), ..plain.clone() },
             Brush { erases: true, ..plain.clone() },
             Brush { blend: BlendMode::Multiply, opacity: 0.7, ..plain.clone() },
             Brush { grain: Some(BrushGrain::default()), ..plain },
@@ -182,7 +186,7 @@ mod tests {
             let operator = Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.0 };
             let operator = if i.is_multiple_of(2) { Operator::None } else { operator };
             let samples = (0..6).map(|j| Sample::at(at(j))).collect();
-            Arc::new(Stroke::new(brushes[i as usize % 4].clone(), operator, color, samples))
+            Arc::new(Stroke::new(brushes[i as usize % 5].clone(), operator, color, samples))
         };
         (0..n).map(stroke).collect()
     }
@@ -214,7 +218,7 @@ mod tests {
     fn no_stroke_has_more_dabs_than_are_allowed_for() {
         let scene = waves();
         for stroke in strokes(8) {
-            let (most, is) = (stroke.most_dabs(&scene), stroke.stroke_dabs(&scene).dabs());
+            let (most, is) = (stroke.most_dabs(&scene), stroke.stroke_dabs(&scene).count());
             assert!(is > 10 && is <= most, "{is} of {most}");
         }
     }

@@ -1,6 +1,7 @@
 //! Strokes compared with a scalar reference that evaluates the definition pixel by pixel over the
 //! whole canvas.
 
+mod dual;
 mod stamps;
 
 use super::*;

@@ -2,6 +2,7 @@
 //! Floor 3.
 
 use super::{CoveredRow, DabPaint};
+use crate::paint::dual_brush::DualMode;
 use crate::raster::TILE;
 use crate::raster::planar::PixelRow;
 
@@ -71,6 +72,29 @@ crate::widest! {
             let source = [0, 1, 2].map(|c| flow * f32::from(s[c]));
             let f = flow * f32::from(s[3]);
             [r[i], g[i], b[i], a[i]] = mix_pixel([r[i], g[i], b[i], a[i]], (f, f), source, ceiling);
+        }
+    }
+
+    /// Two tips' coverage of each pixel becomes the stroke's. `opacity`: of the second.
+    pub(super) fn combine_coverage(mode: DualMode, second: &[f32], opacity: f32, first: &mut [f32]) {
+        for (a, b) in first.iter_mut().zip(second) {
+            *a = mode.combine(a.max(0.0).min(1.0), opacity * b);
+        }
+    }
+
+    /// The same where the first has colors, which stay: premultiplied, they are scaled.
+    pub(super) fn combine_colors(mode: DualMode, second: &[f32; TILE], opacity: f32, row: &mut PixelRow) {
+        let PixelRow { rgb, a } = row;
+        let mut shares = [0.0; TILE];
+        for ((share, a), b) in shares.iter_mut().zip(&mut *a).zip(second) {
+            let both = mode.combine(a.max(0.0).min(1.0), opacity * b);
+            *share = if *a > 0.0 { both / *a } else { 0.0 };
+            *a = both;
+        }
+        for plane in rgb {
+            for (v, share) in plane.iter_mut().zip(&shares) {
+                *v *= share;
+            }
         }
     }
 

@@ -3,7 +3,10 @@ use crate::math::{Size, Vec2, hash, vec2, vec3};
 use crate::paint::Selection;
 use crate::paint::grain::{BrushGrain, GrainSpace};
 use crate::paint::stroke::render_tile;
-use crate::paint::{ColorJitter, Curve, Dynamics, Input, Property, Tip};
+use crate::paint::tip::Noise;
+use crate::paint::{
+    ColorJitter, Curve, DualBrush, DualMode, DualSettings, Dynamics, Input, Property, Tip,
+};
 use crate::raster::{BlendMode, CoverageGrid, Plane};
 use crate::surface::{Maps, Surface};
 use proptest::prelude::*;
@@ -39,6 +42,23 @@ fn brushes() -> Vec<Brush> {
         ..BrushGrain::default()
     };
     let plain = Brush { size: 34.0, dynamics, ..Brush::default() };
+    // A second tip that touches tiles that the first never does, and a small one that strays.
+    let wide = DualSettings { size: 3.0, spacing: 0.4, ..DualSettings::DEFAULT };
+    let wide =
+        DualBrush { settings: wide, tip: Tip::Square { ratio: 0.6 }, ..DualBrush::default() };
+    let small = DualSettings {
+        size: 0.4,
+        spacing: 0.7,
+        scatter: 0.8,
+        flow: 0.7,
+        mode: DualMode::Subtract,
+        ..DualSettings::DEFAULT
+    };
+    let small = DualBrush {
+        settings: small,
+        tip: Tip::Noise(Noise::default()),
+        dynamics: Dynamics::none().with(Property::Flow, Input::Pressure, Curve::Share(0.7)),
+    };
     vec![
         plain.clone(),
         Brush {
@@ -48,6 +68,13 @@ fn brushes() -> Vec<Brush> {
         },
         Brush { blend: BlendMode::Multiply, opacity: 0.6, ..plain.clone() },
         Brush { erases: true, ..plain.clone() },
+        Brush { dual: Some(Arc::new(wide)), ..plain.clone() },
+        Brush {
+            jitter: ColorJitter { hue_degrees: 90.0, ..ColorJitter::default() },
+            dual: Some(Arc::new(small.clone())),
+            ..plain.clone()
+        },
+        Brush { grain: Some(grain.clone()), dual: Some(Arc::new(small)), ..plain.clone() },
         Brush { grain: Some(grain), tip: Tip::Square { ratio: 0.4 }, ..plain },
     ]
 }
