@@ -31,6 +31,7 @@
 mod adjustments;
 mod brush;
 mod brush_options;
+mod dynamics;
 mod effects;
 mod form_drawings;
 mod guides;

@@ -1,16 +1,12 @@
 //! The settings of a brush. Read and written.
 //! Floor 5. Not here: strokes and presets (`strokes`).
 
-use super::brush_options;
-use super::tips;
 use super::value::RecipeValue;
+use super::{brush_options, dynamics, tips};
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
-use crate::math::{TURNS, UNIT, Vec2, vec2};
-use crate::paint::dynamics::{MAX_POINTS, MOST_ADDED};
-use crate::paint::{
-    Brush, BrushMode, ColorJitter, Curve, Dynamics, Input, Property, Stabilizer, StrokeFrame,
-};
+use crate::math::{TURNS, UNIT};
+use crate::paint::{Brush, BrushMode, ColorJitter, Stabilizer, StrokeFrame};
 use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
 use serde_json::{Value, json};
@@ -39,7 +35,7 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
             .map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
         dynamics: fields
             .get("dynamics")
-            .map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics.clone()))?,
+            .map_or(Ok(base.dynamics.clone()), |node| dynamics::read(&node, &base.dynamics))?,
         seed: fields.get("seed").map_or(Ok(base.seed), |node| seed(&node))?,
         ..base
     };
@@ -146,65 +142,6 @@ fn seed(node: &JsonNode) -> Result<u32> {
     node.integer(0..=i64::from(u32::MAX)).map(|seed| seed as u32)
 }
 
-/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]], "tilt": { "add": [[0, 0], [1, 2]] } }
-/// }`: what each property follows, and how. A number p is the line from 1 − p to 1.
-fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
-    let mut fields = node.fields()?;
-    let mut dynamics = base;
-    for (property, name) in Property::ALL {
-        let Some(node) = fields.get(name) else { continue };
-        let mut inputs = node.fields()?;
-        for (input, name) in Input::ALL {
-            if let Some(node) = inputs.get(name) {
-                for curve in curves(&node)?.into_iter().flatten() {
-                    dynamics = dynamics.with(property, input, curve);
-                }
-            }
-        }
-        inputs.finish()?;
-    }
-    fields.finish()?;
-    Ok(dynamics)
-}
-
-/// One curve; or `{ "add": …, "times": … }`: what is added first, and the curve that multiplies.
-fn curves(node: &JsonNode) -> Result<[Option<Curve>; 2]> {
-    if !node.value().is_object() {
-        return Ok([Some(curve(node)?), None]);
-    }
-    let mut fields = node.fields()?;
-    let added = fields.get("add").map(|node| {
-        let refused = || {
-            node.refusal(
-                "is not a curve; the first numbers of its points must be between 0 and 1 and must \
-                 not fall",
-            )
-        };
-        Curve::additive(points(&node, -MOST_ADDED..=MOST_ADDED)?).ok_or_else(refused)
-    });
-    let times = fields.get("times").map(|node| curve(&node));
-    fields.finish()?;
-    Ok([added.transpose()?, times.transpose()?])
-}
-
-fn curve(node: &JsonNode) -> Result<Curve> {
-    if node.value().is_number() {
-        return node.number(UNIT).map(Curve::Share);
-    }
-    let curve = Curve::through(points(node, UNIT)?);
-    curve.ok_or_else(|| {
-        node.refusal("is not a curve; the first numbers of its points must not fall")
-    })
-}
-
-fn points(node: &JsonNode, range: std::ops::RangeInclusive<f32>) -> Result<Vec<Vec2>> {
-    let points = node.list(MAX_POINTS)?;
-    points
-        .iter()
-        .map(|point| point.numbers(2, 2, range.clone()).map(|p| vec2(p[0], p[1])))
-        .collect()
-}
-
 pub fn write_brush(brush: &Brush) -> JsonObject {
     let plain = Brush::default();
     let mut out = JsonObject::default();
@@ -233,6 +170,7 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
     out.object("mark", write_mode(brush.mode));
     tips::write_tip(&mut out, &brush.tip);
     tips::write_grain(&mut out, brush.grain.as_ref());
+    tips::write_dual(&mut out, brush.dual.as_deref());
     match brush.stabilizer {
         Stabilizer::None => {}
         Stabilizer::Average { weight } => {
@@ -244,51 +182,17 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
         Stabilizer::Lag { secs } => out.set("stabilizer", json!({ "lag": object::number(secs) })),
     }
     brush_options::write(&mut out, brush);
-    out.object("dynamics", write_dynamics(&brush.dynamics));
+    out.object("dynamics", dynamics::write(&brush.dynamics, &plain.dynamics));
     if brush.seed != plain.seed {
         out.set("seed", brush.seed.into());
     }
     out
 }
 
-/// The differences from the plain brush: a row that only the plain brush has is written as 0.
-fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
-    let plain = Dynamics::default();
-    let mut out = JsonObject::default();
-    for (property, property_name) in Property::ALL {
-        let mut inputs = JsonObject::default();
-        for (input, name) in Input::ALL {
-            let own = dynamics.curve(property, input);
-            let times =
-                (own != plain.curve(property, input)).then(|| own.map_or(0.into(), write_curve));
-            match (dynamics.added_curve(property, input).map(write_curve), times) {
-                (None, None) => {}
-                (None, Some(times)) => inputs.set(name, times),
-                (Some(added), times) => {
-                    let mut both = JsonObject::default();
-                    both.set("add", added);
-                    both.set_some("times", times, |times| times);
-                    inputs.set(name, both.into_value());
-                }
-            }
-        }
-        out.object(property_name, inputs);
-    }
-    out
-}
-
-fn write_curve(curve: &Curve) -> Value {
-    match curve {
-        Curve::Share(p) => object::number(*p),
-        Curve::Points(points) | Curve::Added(points) => {
-            points.iter().map(|p| object::point(*p)).collect()
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::paint::{Input, Property};
     use std::path::Path;
 
     fn read(value: &Value) -> Result<Brush> {

@@ -1,14 +1,17 @@
-//! A brush's tip and its grain. Read and written.
+//! A brush's tip, its grain and its second tip. Read and written.
 //! Floor 5. Not here: the numbers of a brush (`brush`).
 
+use super::dynamics;
+use super::light::{of_object, settings, write_settings};
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{TURNS, UNIT};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
 use crate::paint::pattern::Pattern;
 use crate::paint::tip::{Bristles, Hose, HoseRank, Noise, RankSelect};
-use crate::paint::{Brush, PictureSource, Tip};
+use crate::paint::{Brush, DualBrush, DualMode, DualSettings, PictureSource, Tip};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// Reads the picture that a field names.
 pub type PictureReader<'a> = dyn FnMut(&JsonNode) -> Result<PictureSource> + 'a;
@@ -35,7 +38,7 @@ const KINDS: [(TipKind, &str); 7] = [
     (TipKind::Hose, "hose"),
 ];
 
-/// The fields `tip` and `grain`; where they are absent the brush keeps what it has.
+/// The fields `tip`, `grain` and `dual`; where they are absent the brush keeps what it has.
 pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut PictureReader) -> Result<()> {
     if let Some(node) = fields.get("tip") {
         brush.tip = tip(&node, picture)?;
@@ -43,7 +46,25 @@ pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut PictureReader)
     if let Some(node) = fields.get("grain") {
         brush.grain = Some(grain(&node, picture)?);
     }
+    if let Some(node) = fields.get("dual") {
+        brush.dual = Some(Arc::new(dual(&node, picture)?));
+    }
     Ok(())
+}
+
+/// `{ "mode": "subtract", "size": 0.8, "spacing": 0.2, "tip": { … }, "dynamics": { … } }`.
+fn dual(node: &JsonNode, picture: &mut PictureReader) -> Result<DualBrush> {
+    of_object(node, |fields| {
+        let plain = DualBrush::default();
+        let numbers = settings(fields, DualSettings::SETTINGS, plain.settings)?;
+        let mode = fields.one_of("mode", &DualMode::ALL, numbers.mode)?;
+        let tip = fields.get("tip").map_or(Ok(plain.tip), |node| tip(&node, picture))?;
+        let dynamics = match fields.get("dynamics") {
+            Some(node) => dynamics::read(&node, &plain.dynamics)?,
+            None => plain.dynamics,
+        };
+        Ok(DualBrush { settings: DualSettings { mode, ..numbers }, tip, dynamics })
+    })
 }
 
 /// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files":
@@ -219,6 +240,18 @@ pub fn write_grain(out: &mut JsonObject, grain: Option<&BrushGrain>) {
     out.object("grain", written);
 }
 
+pub fn write_dual(out: &mut JsonObject, dual: Option<&DualBrush>) {
+    let Some(DualBrush { settings, tip, dynamics }) = dual else { return };
+    let plain = DualBrush::default();
+    let mut written = JsonObject::default();
+    // Always said, so that a brush that differs in nothing else is not lost.
+    written.set("mode", settings.mode.name().into());
+    write_settings(&mut written, DualSettings::SETTINGS, settings, &plain.settings);
+    write_tip(&mut written, tip);
+    written.object("dynamics", dynamics::write(dynamics, &plain.dynamics));
+    out.object("dual", written);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -255,11 +288,18 @@ mod tests {
                                "lies": "surface", "gamma": 2 } }),
             json!({ "grain": { "file": "canvas.png", "size": 200 } }),
             json!({ "grain": { "kind": "paper", "size": 9, "lies": "unwrapped" } }),
+            json!({ "dual": { "mode": "multiply" } }),
+            json!({ "dual": { "mode": "soft-hard-mix", "size": 3, "hardness": 1, "softness": 0.25,
+                              "opacity": 0.75, "flow": 0.5, "spacing": 0.5, "scatter": 2, "rotation": -40,
+                              "tip": { "file": "chalk.png" },
+                              "dynamics": { "flow": { "pressure": [[0, 1], [1, 0.5]] },
+                                            "rotation": { "random": 1 } } } }),
         ] {
             let brush = read_brush(&text).unwrap();
             let mut out = JsonObject::default();
             write_tip(&mut out, &brush.tip);
             write_grain(&mut out, brush.grain.as_ref());
+            write_dual(&mut out, brush.dual.as_deref());
             assert_eq!(out.into_value(), text);
         }
     }
@@ -283,5 +323,14 @@ mod tests {
             "grain.levels: must have the lower level first",
         );
         says(json!({ "grain": { "lies": "floor" } }), "must be one of canvas, surface");
+        says(json!({ "dual": { "size": 0 } }), "r.json: dual.size: is 0; it must be between 0.01");
+        says(json!({ "dual": { "spacing": "wide" } }), "dual.spacing: is");
+        says(json!({ "dual": { "mode": "divide" } }), "dual.mode: is “divide”; it must be one of");
+        says(json!({ "dual": { "tip": { "kind": "hose", "files": [] } } }), "dual.tip.files");
+        says(json!({ "dual": { "dual": {} } }), "dual.dual: is unknown");
+        says(
+            json!({ "dual": { "dynamics": { "size": { "tilt": [[1, 0], [0, 1]] } } } }),
+            "is not a",
+        );
     }
 }

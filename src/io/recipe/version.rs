@@ -11,8 +11,8 @@ use crate::surface::Operator;
 /// first.
 pub const VERSION: i64 = 2;
 
-/// Whether a layer is on the unwrapped surface, sees itself, or is a text or a path, which the first version
-/// does not know.
+/// Whether a layer is on the unwrapped surface, sees itself, is a text or a path, or was painted with a
+/// dual brush, which the first version does not know.
 pub fn has_unwrapped(document: &Document) -> bool {
     let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
     let is_new = |layer: &Layer| match &layer.content {
@@ -29,6 +29,7 @@ pub fn has_unwrapped(document: &Document) -> bool {
             is_print(stroke.operator())
                 || [brush.spacing_on, brush.stabilizer_on].contains(&DistanceMetric::Surface)
                 || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
+                || brush.dual.is_some()
         }),
         Content::Shading(live) => {
             let shading = live.params();
