@@ -201,7 +201,7 @@ impl AbrReader<'_> {
         Ok(())
     }
 
-    /// The brushes by their names in the collection, in its order; tips without a name come last.
+    /// The brushes by their names in the collection, in its order; tips that no brush uses come last.
     fn call(&mut self, said: &DescriptorObject) {
         let tips = std::mem::take(&mut self.brushes);
         let mut is_called = vec![false; tips.len()];
@@ -209,19 +209,17 @@ impl AbrReader<'_> {
             file: self.file,
             patterns: &self.patterns,
             tips: &mut self.tips,
+            sampled: &tips,
+            keys: &self.keys,
         };
         for said in presets::read(said) {
-            let at = said
-                .sample
-                .as_ref()
-                .map(|key| self.keys.iter().find(|(known, _)| known == key).map(|(_, i)| *i));
-            match at {
+            for i in said.samples().filter_map(|key| pictures.place(key)) {
+                is_called[i] = true;
+            }
+            match said.sample.as_ref().map(|key| pictures.place(key)) {
                 // Its tip is damaged or missing.
                 Some(None) => {}
-                Some(Some(i)) => {
-                    is_called[i] = true;
-                    self.brushes.push(said.brush(tips.get(i), &mut pictures));
-                }
+                Some(Some(i)) => self.brushes.push(said.brush(tips.get(i), &mut pictures)),
                 None => self.brushes.push(said.brush(None, &mut pictures)),
             }
         }

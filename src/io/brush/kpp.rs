@@ -8,8 +8,12 @@
 //! | `pictures` | where tips and patterns come from |
 //! | `tip` | the tip: generated, or of a `tip_file` |
 //! | `texture` | the texture as grain |
-//! | `sensors` | what the options follow |
+//! | `options` | the options that follow sensors |
+//! | `sensors` | what an option follows |
+//! | `masked_brush` | the second tip as a dual brush |
 
+mod masked_brush;
+mod options;
 mod pictures;
 mod sensors;
 mod settings;
@@ -23,13 +27,13 @@ pub use pictures::KppPictures;
 
 use super::{BrushFiles, ImportedBrush, text_of};
 use crate::Budget;
-use crate::paint::dynamics::{Dynamics, Property};
-use crate::paint::{Brush, BrushMode, Pickup};
+use crate::paint::{Brush, BrushMode, Dynamics, Pickup};
 use crate::project::krita_blend;
 use crate::raster::BlendMode;
 use crate::{Error, Result};
 use settings::KppPreset;
 use std::path::Path;
+use tip::TipUse;
 
 pub fn read(
     file: &Path,
@@ -42,7 +46,8 @@ pub fn read(
 
 /// The same for one preset of several, whose pictures count together.
 pub fn read_preset(file: &Path, bytes: &[u8], pictures: &mut KppPictures) -> Result<ImportedBrush> {
-    let preset = KppPreset::read(file, bytes, pictures.budget())?;
+    let mut preset = KppPreset::read(file, bytes, pictures.budget())?;
+    let masked = preset.split_masked();
     let mut notes = Vec::new();
     let mode = match preset.engine.as_str() {
         "paintbrush" | "colorsmudge" => BrushMode::Paint,
@@ -65,16 +70,11 @@ pub fn read_preset(file: &Path, bytes: &[u8], pictures: &mut KppPictures) -> Res
         pickup: pickup(&preset),
         ..Brush::default()
     };
-    let brush = tip::read(&preset, brush, pictures, &mut notes);
-    let brush = read_drives(&preset, brush, &mut notes);
+    let (brush, missing) = tip::read(&preset, brush, TipUse::First, pictures, &mut notes);
+    notes.extend(missing.map(|reason| format!("its tip {reason}; it is round here")));
+    let brush = options::read(&preset, brush, &mut notes);
     let brush = texture::read(&preset, brush, pictures, &mut notes);
-    if preset.is_true("MaskingBrush/Enabled") {
-        let mode = match preset.text("MaskingBrush/MaskingCompositeOp") {
-            "" => "multiply".to_owned(),
-            mode => text_of(mode.replace('_', " ").as_bytes()),
-        };
-        notes.push(format!("its masked brush, a second tip by “{mode}”, has no counterpart"));
-    }
+    let brush = masked_brush::read(&preset, &masked, brush, pictures, &mut notes);
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let name = [text_of(preset.name.as_bytes()), stem].into_iter().find(|name| !name.is_empty());
     Ok(ImportedBrush { name: name.unwrap_or_else(|| "Brush".to_owned()), brush, notes })
@@ -108,49 +108,4 @@ fn pickup(preset: &KppPreset) -> Pickup {
         if preset.is_true("PressureColorRate") { preset.unit("ColorRateValue", 0.5) } else { 0.0 };
     let length = preset.unit("SmudgeRateValue", 1.0);
     Pickup { amount: 1.0 - color, length, ..Pickup::default() }
-}
-
-/// The options that follow a sensor, by the words that Krita keeps them under.
-const OPTIONS: [(&str, Property); 6] = [
-    ("Size", Property::Size),
-    ("Opacity", Property::Opacity),
-    ("Flow", Property::Flow),
-    ("Softness", Property::Hardness),
-    ("Rotation", Property::Rotation),
-    ("Spacing", Property::Spacing),
-];
-/// Options that later presets cannot switch off, and do not say to be on.
-const ALWAYS: [&str; 2] = ["Opacity", "Flow"];
-
-fn read_drives(preset: &KppPreset, brush: Brush, notes: &mut Vec<String>) -> Brush {
-    let mut brush = brush;
-    // Dabs that build up have their opacity each, not the stroke.
-    let is_built_up = preset.number("PaintOpAction") == Some(1.0);
-    if is_built_up {
-        brush.flow *= std::mem::replace(&mut brush.opacity, 1.0);
-    }
-    let follow = |brush: Brush, option: &str, property: Property, notes: &mut Vec<String>| {
-        let is_on = match preset.text(&format!("Pressure{option}")) {
-            "true" => true,
-            "" => ALWAYS.contains(&option),
-            _ => false,
-        };
-        if !is_on {
-            return brush;
-        }
-        let found = sensors::of_option(preset, option, &brush, notes);
-        let add = |brush, (input, curve)| sensors::with_factor(brush, property, input, curve);
-        found.into_iter().fold(brush, add)
-    };
-    for (option, property) in OPTIONS {
-        let each = is_built_up && property == Property::Opacity;
-        let property = if each { Property::Flow } else { property };
-        brush = follow(brush, option, property, notes);
-    }
-    if preset.is_true("PressureScatter") {
-        // Theirs is a width, ours a radius.
-        brush.scatter = (0.5 * preset.number("ScatterValue").unwrap_or(1.0)).max(0.0).min(10.0);
-        brush = follow(brush, "Scatter", Property::Scatter, notes);
-    }
-    brush
 }

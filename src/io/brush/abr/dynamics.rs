@@ -16,12 +16,8 @@ use crate::raster::Picture;
 use std::path::Path;
 
 /// Reported when switched on: they have no counterpart here.
-const LEFT_OUT: [(&str, &str); 4] = [
-    ("Wtdg", "wet edges"),
-    ("Nose", "noise"),
-    ("useDualBrush", "dual brush"),
-    ("useBrushPose", "brush pose"),
-];
+const LEFT_OUT: [(&str, &str); 3] =
+    [("Wtdg", "wet edges"), ("Nose", "noise"), ("useBrushPose", "brush pose")];
 /// Points of a curve that is not straight.
 const POINTS: usize = 9;
 /// Texture blends where white keeps the stroke and black takes it away; others are reported.
@@ -78,10 +74,8 @@ pub fn with_dynamics<'a>(
     if preset.is_set("useColorDynamics") {
         carried.color();
     }
-    let nested = preset.object("dualBrush").is_some_and(|dual| dual.is_set("useDualBrush"));
-    let is_on = |key: &str| preset.is_set(key) || (key == "useDualBrush" && nested);
     let left_out: Vec<&str> =
-        LEFT_OUT.iter().filter(|(key, _)| is_on(key)).map(|(_, word)| *word).collect();
+        LEFT_OUT.iter().filter(|(key, _)| preset.is_set(key)).map(|(_, word)| *word).collect();
     if !left_out.is_empty() {
         carried.notes.push(format!("{} not imported from Photoshop", left_out.join(", ")));
     }

@@ -7,6 +7,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::rc::Rc;
 
 /// Bytes that a preset's text may have. Those of Krita 5 hold their tips and patterns: the largest
 /// seen has four million.
@@ -20,7 +21,8 @@ pub struct KppPreset {
     pub name: String,
     pub engine: String,
     settings: BTreeMap<String, String>,
-    held: Vec<HeldFile>,
+    /// Shared with its masked brush.
+    held: Rc<Vec<HeldFile>>,
 }
 
 /// A file within the preset, as base64.
@@ -29,6 +31,9 @@ struct HeldFile {
     name: String,
     text: String,
 }
+
+/// What the settings of a masked brush's second tip begin with.
+const MASKED: &str = "MaskingBrush/Preset/";
 
 /// Where text belongs.
 enum XmlPlace {
@@ -60,6 +65,22 @@ impl KppPreset {
     /// A share of 1.
     pub fn unit(&self, name: &str, plain: f32) -> f32 {
         self.number(name).unwrap_or(plain).max(0.0).min(1.0)
+    }
+
+    /// Splits off the settings of a masked brush's second tip, which are those of a pixel brush.
+    pub fn split_masked(&mut self) -> KppPreset {
+        let is_masked = |name: &str| name.starts_with(MASKED);
+        let all = std::mem::take(&mut self.settings);
+        let (masked, own): (BTreeMap<_, _>, BTreeMap<_, _>) =
+            all.into_iter().partition(|(name, _)| is_masked(name));
+        self.settings = own;
+        let strip = |(name, text): (String, String)| (name[MASKED.len()..].to_owned(), text);
+        KppPreset {
+            name: String::new(),
+            engine: "paintbrush".to_owned(),
+            settings: masked.into_iter().map(strip).collect(),
+            held: self.held.clone(),
+        }
     }
 
     /// A file that the preset holds under a name; `None` where it holds none or a damaged one.
@@ -121,7 +142,7 @@ fn parse(file: &Path, text: &str) -> Result<KppPreset> {
     let broken =
         |e: &dyn std::fmt::Display| Error::decode(file, format!("the settings are damaged: {e}"));
     let mut reader = Reader::from_str(text);
-    let mut preset = KppPreset::default();
+    let mut preset = KppReader::default();
     let mut place = XmlPlace::Nowhere;
     loop {
         match reader.read_event().map_err(|e| broken(&e))? {
@@ -131,24 +152,35 @@ fn parse(file: &Path, text: &str) -> Result<KppPreset> {
             Event::End(end) if matches!(end.local_name().as_ref(), "param" | "resource") => {
                 place = XmlPlace::Nowhere;
             }
-            Event::Eof => return Ok(preset),
+            Event::Eof => return Ok(preset.finish()),
             _ => {}
         }
     }
 }
 
-impl KppPreset {
+/// A preset being read.
+#[derive(Default)]
+struct KppReader {
+    preset: KppPreset,
+    held: Vec<HeldFile>,
+}
+
+impl KppReader {
+    fn finish(self) -> KppPreset {
+        KppPreset { held: Rc::new(self.held), ..self.preset }
+    }
+
     /// What an element says; returns where the text within it belongs.
     fn enter(&mut self, start: &BytesStart) -> XmlPlace {
         let text = |name: &str| attribute(start, name).unwrap_or_default();
         match start.local_name().as_ref() {
             "Preset" => {
-                self.name = text("name");
-                self.engine = text("paintopid");
+                self.preset.name = text("name");
+                self.preset.engine = text("paintopid");
             }
             "param" => {
                 if let Some(name) = attribute(start, "name") {
-                    self.settings.insert(name.clone(), String::new());
+                    self.preset.settings.insert(name.clone(), String::new());
                     return XmlPlace::Param(name);
                 }
             }
@@ -167,7 +199,7 @@ impl KppPreset {
     fn append(&mut self, place: &XmlPlace, text: &str) {
         let value = match place {
             XmlPlace::Nowhere => None,
-            XmlPlace::Param(name) => self.settings.get_mut(name),
+            XmlPlace::Param(name) => self.preset.settings.get_mut(name),
             XmlPlace::HeldFile => self.held.last_mut().map(|held| &mut held.text),
         };
         if let Some(value) = value {

@@ -40,23 +40,42 @@ impl TipDefinition<'_> {
     }
 }
 
-/// Tip, size, hardness, spacing, turn.
+/// Which tip is read.
+#[derive(Clone, Copy, PartialEq)]
+pub enum TipUse {
+    /// The brush's own, in the size of its definition.
+    First,
+    /// The second one of a masked brush, which only covers: in this size if there is one, px.
+    Second(Option<f32>),
+}
+
+/// Tip, size, hardness, spacing, turn; and why its tip is not found, if so: then it is round.
 pub fn read(
     preset: &KppPreset,
     brush: Brush,
+    tip: TipUse,
     pictures: &mut KppPictures,
     notes: &mut Vec<String>,
-) -> Brush {
+) -> (Brush, Option<String>) {
     let definition = preset.text("brush_definition");
     let Some(outer) = element(definition, "Brush").map(TipDefinition) else {
-        notes.push("its tip is missing".to_owned());
-        return brush;
+        return (brush, Some("is missing".to_owned()));
     };
     let angle_rad = outer.number("angle").unwrap_or(0.0).rem_euclid(TAU);
     let brush = Brush { rotation: angle_rad.to_degrees(), ..brush };
     match element(definition, "MaskGenerator").map(TipDefinition) {
-        Some(mask) => generated_tip(&outer, &mask, brush, notes),
-        None => file_tip(preset, &outer, brush, pictures, notes),
+        Some(mask) => (generated_tip(&outer, &mask, brush, tip, notes), None),
+        None => file_tip(preset, &outer, brush, tip, pictures, notes),
+    }
+}
+
+impl TipUse {
+    /// How much larger the tip is than its definition says, whose longer side is so long.
+    fn enlargement(self, longer_px: f32) -> f32 {
+        match self {
+            TipUse::Second(Some(size)) if longer_px > 0.0 => size / longer_px,
+            _ => 1.0,
+        }
     }
 }
 
@@ -64,6 +83,7 @@ fn generated_tip(
     outer: &TipDefinition,
     mask: &TipDefinition,
     mut brush: Brush,
+    tip: TipUse,
     notes: &mut Vec<String>,
 ) -> Brush {
     let fade = |name: &str| mask.number(name).unwrap_or(1.0).max(0.0).min(1.0);
@@ -75,7 +95,7 @@ fn generated_tip(
     }
     let radius = mask.number("radius").map(|radius| 2.0 * radius);
     let diameter = mask.number("diameter").or(radius).unwrap_or(40.0);
-    brush.size = clamp_size(diameter * longer);
+    brush.size = clamp_size(diameter * longer * tip.enlargement(diameter * longer));
     brush.hardness = 0.5 * (fade("hfade") + fade("vfade"));
     brush.tip = match mask.text("type").as_deref() {
         Some("rect") => Tip::Square { ratio: ratio.max(*Tip::RATIO.start()) },
@@ -105,34 +125,35 @@ fn spaced(brush: Brush, step_px: f32) -> Brush {
     Brush { spacing, ..brush }
 }
 
-/// A tip that is one of Krita's files, or round with a note.
+/// A tip that is one of Krita's files.
 fn file_tip(
     preset: &KppPreset,
     outer: &TipDefinition,
     brush: Brush,
+    tip: TipUse,
     pictures: &mut KppPictures,
     notes: &mut Vec<String>,
-) -> Brush {
+) -> (Brush, Option<String>) {
     let name = outer.text("filename").unwrap_or_default();
     let file = match pictures.find_tip(preset, &name) {
         Ok(file) => file,
         Err(reason) => {
-            notes.push(format!("its tip {reason}; it is round here"));
             let step_px = outer.step(brush.size, 0.25);
-            return spaced(brush, step_px);
+            return (spaced(brush, step_px), Some(reason));
         }
     };
     notes.extend(file.notes.iter().cloned());
-    let look = TipLook::of(outer, &file, notes);
+    let look = TipLook::of(outer, &file, tip, notes);
     // Presets of the first version count radii.
     let version = outer.text("BrushVersion").unwrap_or_else(|| "1".to_owned());
     let scale =
         outer.number("scale").unwrap_or(1.0).max(0.0) * if version == "1" { 2.0 } else { 1.0 };
-    let own_px = file.own_size();
-    let size = clamp_size(own_px.max_element() * scale);
-    let step_px = outer.step(extent(preset, &brush, own_px * scale), 0.25);
+    let own_px = file.own_size() * scale;
+    let own_px = own_px * tip.enlargement(own_px.max_element());
+    let size = clamp_size(own_px.max_element());
+    let step_px = outer.step(extent(preset, &brush, own_px), 0.25);
     let tip = look.tip(file, &name, pictures);
-    spaced(Brush { size, tip, ..brush }, step_px)
+    (spaced(Brush { size, tip, ..brush }, step_px), None)
 }
 
 /// A brush of a tip's file in its own size: its dark parts cover, or it keeps its colors.
@@ -173,10 +194,12 @@ enum TipLook {
     Stamp,
     /// Their alpha covers; their light would change the color, or choose one of a gradient.
     Alpha,
+    /// They cover, light ones most: a stamp that becomes coverage.
+    Light,
 }
 
 impl TipLook {
-    fn of(outer: &TipDefinition, file: &TipFile, notes: &mut Vec<String>) -> Self {
+    fn of(outer: &TipDefinition, file: &TipFile, tip: TipUse, notes: &mut Vec<String>) -> Self {
         const STAMP: i32 = 1;
         const LIGHTNESS: i32 = 2;
         const GRADIENT: i32 = 3;
@@ -189,6 +212,7 @@ impl TipLook {
         };
         let mask = || TipLook::Mask(TipLevels::of(outer));
         let lost = match outer.number("brushApplication").map_or(older, |v| v as i32) {
+            STAMP if is_colored && tip != TipUse::First => return TipLook::Light,
             STAMP if is_colored => return TipLook::Stamp,
             LIGHTNESS if is_colored => "its tip also lightens and darkens the color there",
             GRADIENT if is_colored => "its tip takes the colors of a gradient there",
@@ -221,6 +245,10 @@ impl TipLook {
             _ if tip.is_coverage => return tip.picture.clone(),
             TipLook::Stamp => return tip.picture.clone(),
             TipLook::Alpha => texels.iter().map(|&[.., a]| cover(a)).collect(),
+            TipLook::Light => {
+                let light = |texel: &[u8; 4]| u32::from(gray(texel)) * u32::from(texel[3]);
+                texels.iter().map(|texel| cover(((light(texel) + 127) / 255) as u8)).collect()
+            }
             TipLook::Mask(levels) => {
                 let table = levels.table(tip);
                 let one = |texel: &[u8; 4]| {

@@ -1,6 +1,7 @@
 //! Brushes of Photoshop, of every version.
 
 use super::*;
+use crate::paint::{DualMode, DualSettings};
 
 /// A tip of a collection from its bounds on: 8 or 16 bits, plain or packed.
 fn tip(width: u32, height: u32, bits: u16, packed: bool, values: &[u8]) -> Vec<u8> {
@@ -74,7 +75,8 @@ fn photoshop_tips_of_every_version_are_read() {
     }
 }
 
-/// The same; a description calls its second tip “Reed”, and there is a computed brush as well.
+/// The same; a description calls its second tip “Reed”, and there is a computed brush as well, whose
+/// dual brush is that tip.
 pub fn named_abr() -> Vec<u8> {
     let text = |t: &str| {
         let letters: Vec<u8> = t.encode_utf16().chain([0]).flat_map(u16::to_be_bytes).collect();
@@ -89,14 +91,14 @@ pub fn named_abr() -> Vec<u8> {
         [text(""), words(&[0]), b"null".to_vec(), words(&[values.len() as u32]), values.concat()]
             .concat()
     };
-    let preset = |name: &str, brush: &[Vec<u8>]| {
+    let preset = |name: &str, brush: &[Vec<u8>], more: &[Vec<u8>]| {
         let fields = [
             named("Nm  ", "TEXT", text(name)),
             named("Brsh", "Objc", object(brush)),
             named("useScatter", "bool", vec![1]),
             percent("Scat", 120.0),
         ];
-        [b"Objc".to_vec(), object(&fields)].concat()
+        [b"Objc".to_vec(), object(&[&fields[..], more].concat())].concat()
     };
     let sampled = [
         percent("Dmtr", 30.0),
@@ -104,7 +106,21 @@ pub fn named_abr() -> Vec<u8> {
         named("sampledData", "TEXT", text("second")),
     ];
     let computed = [percent("Dmtr", 12.0), percent("Hrdn", 50.0), percent("Rndn", 100.0)];
-    let list = [words(&[2]), preset("Reed", &sampled), preset("Dot", &computed)].concat();
+    let key = |key: &str| {
+        let length = if key.len() == 4 { 0 } else { key.len() as u32 };
+        [words(&[length]), key.into()].concat()
+    };
+    let second = [percent("Dmtr", 3.0), named("sampledData", "TEXT", text("second"))];
+    let dual = [
+        named("useDualBrush", "bool", vec![1]),
+        named("Brsh", "Objc", object(&second)),
+        named("BlnM", "enum", [key("BlnM"), key("linearBurn")].concat()),
+        percent("Spcn", 70.0),
+        named("useScatter", "bool", vec![0]),
+    ];
+    let dual = [named("dualBrush", "Objc", object(&dual))];
+    let list =
+        [words(&[2]), preset("Reed", &sampled, &[]), preset("Dot", &computed, &dual)].concat();
     let description = [words(&[16]), object(&[named("Brsh", "VlLs", list)])].concat();
     let mut bytes = new_abr(1);
     // The second tip's key, a length and its letters, follows the length of its record.
@@ -128,4 +144,10 @@ fn later_photoshop_brushes_have_their_names_sizes_and_spacings() {
     );
     // Scattered up to 120 %, which is a radius of 60.
     assert_eq!(read[0].brush.scatter, 0.6);
+    let dual = read[1].brush.dual.as_ref().expect("a second tip");
+    let DualSettings { size, spacing, scatter, mode, .. } = dual.settings;
+    assert_eq!((size, spacing, scatter, mode), (0.25, 0.7, 0.0, DualMode::LinearBurn));
+    let Tip::Picture(source) = &dual.tip else { panic!("a sampled tip") };
+    assert_eq!(texels(source)[2], [255; 4], "the second tip's");
+    assert!(read[0].brush.dual.is_none());
 }

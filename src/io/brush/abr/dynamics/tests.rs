@@ -104,12 +104,8 @@ fn only_what_is_used_and_lost_is_told() {
         ("H   ", Number(50.0)),
         ("Wtdg", Flag(true)),
         ("Nose", Flag(false)),
-        ("dualBrush", Object(DescriptorObject::of(vec![("useDualBrush", Flag(true))]))),
     ]);
-    assert_eq!(
-        notes,
-        ["nothing here follows fading", "wet edges, dual brush not imported from Photoshop"]
-    );
+    assert_eq!(notes, ["nothing here follows fading", "wet edges not imported from Photoshop"]);
     assert_eq!(brush.jitter, ColorJitter { hue_degrees: 90.0, saturation: 0.0, value: 0.0 });
 }
 
