@@ -1,6 +1,7 @@
-//! Sheets of many small pictures: every brush as each operator bends it, what drives a brush, ramps,
-//! blend modes of 16 bits, adjustments, filters, effects, balls, regions of the surface and
-//! stabilizers. Cells of a sheet are 64 px wide, in the order of the tables that they are made from.
+//! Sheets of many small pictures: every brush as each operator bends it, what drives a brush, dual
+//! brushes, ramps, blend modes of 16 bits, adjustments, filters, effects, balls, regions of the
+//! surface and stabilizers. Cells of a sheet are 64 px wide, in the order of the tables that they are
+//! made from.
 
 use super::cases::{Case, ROUNDED, as_image, read};
 use super::compare::Place;
@@ -10,7 +11,8 @@ use rilievo::document::{Highlights, flatten_to_floats};
 use rilievo::files::recipe;
 use rilievo::math::{Vec2, vec2};
 use rilievo::paint::{
-    ActiveRetouching, Brush, BrushMode, Input, Property, Sample, StabilizedPen, Stabilizer, Stroke,
+    ActiveRetouching, Brush, BrushMode, DualMode, Input, Property, Sample, StabilizedPen,
+    Stabilizer, Stroke,
 };
 use rilievo::raster::CoverageGrid;
 use rilievo::surface::{RegionKind, SurfaceRegion};
@@ -32,6 +34,7 @@ pub fn all() -> Vec<Case> {
         all.extend(cells(sheet, recipe::preset_names().map(|key| brush(key, &operator))));
     }
     all.extend(cells("drives", drives()));
+    all.extend(cells("dual-brushes", dual_brushes()));
     all.extend(cells("ramps", ramps()));
     all.extend(cells("blend-16-bit", BlendMode::ALL.iter().map(|(_, mode)| blend(mode))));
     all.extend(cells("adjustments", adjustments()));
@@ -168,6 +171,37 @@ fn drives() -> Vec<(String, Make)> {
             cell(format!("size by {name}"), json!({ "dynamics": drives, "cycle": cycle }))
         });
     by_pressure.chain(by_input).collect()
+}
+
+/// Both tips of a dual brush meeting by each mode; then a second tip that is a picture, one of a
+/// brush in many colors, and one of a brush with grain.
+fn dual_brushes() -> Vec<(String, Make)> {
+    let cell = |name: String, dual: Value, changes: Value| {
+        let mut brush = json!({ "size": 22, "hardness": 0.4, "spacing": 0.15, "flow": 0.3, "dual": dual, "seed": 5 });
+        let changes = changes.as_object().cloned().unwrap_or_default();
+        changes.into_iter().for_each(|(key, value)| brush[key] = value);
+        let stroke = json!({ "color": "#a04828", "samples": pen(), "brush": brush,
+            "operator": { "kind": "normal", "alpha": 0.12, "beta": 1 } });
+        let strokes = json!({ "kind": "strokes", "strokes": [stroke] });
+        (name, layers(Some(Shape::Ball), json!([paper(), strokes])))
+    };
+    let dots = |mode: &str| json!({ "mode": mode, "size": 0.35, "spacing": 1.2, "hardness": 0.5, "scatter": 0.6, "flow": 0.8 });
+    let by_mode =
+        DualMode::ALL.iter().map(|(_, mode)| cell((*mode).to_owned(), dots(mode), json!({})));
+    let leaves = json!({ "mode": "multiply", "size": 0.8, "spacing": 0.5, "tip": { "file": "leaf.png" },
+        "dynamics": { "rotation": { "direction": 1 } } });
+    let colors = json!({ "jitter": { "hue": 90, "value": 0.2 } });
+    by_mode
+        .chain([
+            cell("a picture".to_owned(), leaves, json!({})),
+            cell("in colors".to_owned(), dots("subtract"), colors),
+            cell(
+                "grain".to_owned(),
+                dots("subtract"),
+                json!({ "grain": { "kind": "lines", "size": 4 } }),
+            ),
+        ])
+        .collect()
 }
 
 /// Ramps of several stops, bent by each operator, with each filter.

@@ -4,7 +4,7 @@ use super::{Story, press, session, steps, window};
 use eframe::egui::accesskit::Role;
 use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
-use rilievo::paint::{Input, Property, Stabilizer, Tip};
+use rilievo::paint::{DualMode, Input, Property, Stabilizer, Tip};
 
 fn editor() -> Story {
     let mut harness = window();
@@ -44,6 +44,23 @@ fn a_preset_goes_to_hand_and_its_parts_can_be_changed() {
     tap(&mut harness, "Grain");
     pick(&mut harness, "Pattern", "None");
     assert!(session(&harness).tools.brush.grain.is_none());
+}
+
+#[test]
+fn a_second_tip_is_chosen_and_taken_away() {
+    let mut harness = editor();
+    tap(&mut harness, "Dual brush");
+    pick(&mut harness, "Second tip", "Specks");
+    let dual = |harness: &Story| session(harness).tools.brush.dual.clone();
+    assert!(matches!(dual(&harness).unwrap().tip, Tip::Noise(_)));
+    pick(&mut harness, "Meets by", "Linear burn");
+    tap(&mut harness, "Tip of a brush…");
+    tap(&mut harness, "Calligraphy");
+    let taken = dual(&harness).unwrap();
+    assert_eq!(taken.settings.mode, DualMode::LinearBurn, "the rest stays");
+    assert!(!matches!(taken.tip, Tip::Noise(_)));
+    pick(&mut harness, "Second tip", "None");
+    assert!(dual(&harness).is_none());
 }
 
 #[test]

@@ -8,10 +8,13 @@ use crate::io::platform::files;
 use crate::io::recipe::{BrushPreset, PresetGroup, load_preset};
 use crate::io::{Budget, Overwrite, Terms, files::read_file, picture};
 use crate::math::srgb::Color;
-use crate::paint::{Adjust, Brush, PictureSource, Tip};
+use crate::paint::{Adjust, Brush, DualBrush, DualMode, PictureSource, Tip};
+use crate::raster::Picture;
 use crate::surface::Operator;
 use crate::{Error, Result};
+use std::convert::Infallible;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The extension of presets of this program.
 const PRESET: &str = "json";
@@ -78,6 +81,36 @@ pub fn import(session: &mut Session, file: &Path) -> Result<()> {
     }
     session.brush_files.push(file.into());
     Ok(())
+}
+
+/// Gives the current brush the tip of an available one as its second, or takes that away. What a
+/// dual brush has set stays; else the second tip is as large as its brush, and follows the same.
+pub fn set_second_tip(session: &mut Session, key: &str) {
+    let brush = &session.tools.brush;
+    if key.is_empty() {
+        session.tools.brush.dual = None;
+        return;
+    }
+    let Some(preset) = session.presets.iter().find(|preset| preset.key == key) else { return };
+    let like = DualBrush::of_brush(&preset.brush, brush, DualMode::default());
+    let first = Brush { dual: None, ..brush.clone() };
+    // Values name pictures, so that two must not share a name.
+    let is_taken = |name: &str, picture: &Picture| {
+        first.pictures().any(|own| own.file == name && own.picture != *picture)
+    };
+    let rename = |source: &PictureSource| {
+        let mut name = source.file.clone();
+        while is_taken(&name, &source.picture) {
+            name = format!("second-{name}");
+        }
+        if name == source.file {
+            return Ok(source.clone());
+        }
+        Ok::<_, Infallible>(PictureSource::new(name, source.picture.clone(), source.adjust))
+    };
+    let Ok(tip) = like.tip.with_pictures(rename);
+    let kept = brush.dual.as_deref().cloned().unwrap_or(like);
+    session.tools.brush.dual = Some(Arc::new(DualBrush { tip, ..kept }));
 }
 
 /// Adds the current brush to the list under a name.
@@ -326,5 +359,47 @@ mod tests {
         Action::Hand(HandAction::Brush { brush: unknown }).apply(&mut session).unwrap();
         assert!(session.notes[0].contains("tip.file: is “else.png”"), "{:?}", session.notes);
         assert_eq!(session.tools.brush.scatter, 2.0);
+    }
+    #[test]
+    fn the_tip_of_another_brush_becomes_the_second_one_and_is_taken_away_again() {
+        use crate::io::recipe::brush_to_json;
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = Session::default();
+        for (name, pixels) in [("a", [255, 90]), ("b", [10, 200])] {
+            let file = folder.path().join(name).join("pen.gbr");
+            std::fs::create_dir(file.parent().unwrap()).unwrap();
+            let header = gbr();
+            std::fs::write(&file, [&header[..header.len() - 2], &pixels[..]].concat()).unwrap();
+            import(&mut session, &file).unwrap();
+        }
+        let act = |session: &mut Session, action: HandAction| {
+            Action::Hand(action).apply(session).unwrap();
+        };
+        act(&mut session, HandAction::Preset { name: "pen".into() });
+        act(&mut session, HandAction::SecondTip { name: "pen-2".into() });
+        let names = |session: &Session| -> Vec<String> {
+            session.tools.brush.pictures().map(|source| source.file.clone()).collect()
+        };
+        assert_eq!(
+            names(&session),
+            ["pen.png", "second-pen.png"],
+            "they differ, so do their names"
+        );
+        let with_both = session.tools.brush.clone();
+        act(&mut session, HandAction::Brush { brush: brush_to_json(&with_both) });
+        assert!(session.tools.brush == with_both, "{:?}", session.notes);
+        // What was set stays with another tip.
+        let set = serde_json::json!({ "dual": { "mode": "subtract", "spacing": 0.7 } });
+        act(&mut session, HandAction::Brush { brush: set });
+        act(&mut session, HandAction::SecondTip { name: "charcoal".into() });
+        let dual = session.tools.brush.dual.clone().unwrap();
+        assert_eq!((dual.settings.mode, dual.settings.spacing), (DualMode::Subtract, 0.7));
+        assert!(
+            dual.tip == session.presets.iter().find(|p| p.key == "charcoal").unwrap().brush.tip
+        );
+        act(&mut session, HandAction::SecondTip { name: "nobody".into() });
+        assert!(session.tools.brush.dual.is_some());
+        act(&mut session, HandAction::SecondTip { name: String::new() });
+        assert!(session.tools.brush.dual.is_none());
     }
 }

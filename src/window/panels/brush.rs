@@ -1,15 +1,15 @@
 //! The editor of the current brush: tip, spread, grain, stabilizer and dynamics. Floor 7. Not here:
-//! the list of brushes (`brushes`), the curve widget (`curve`).
+//! the second tip (`dual_brush`), the list of brushes (`brushes`), the curve widget (`curve`).
 
-use super::curve;
+use super::brush_tip::{self, TipChoice};
+use super::{curve, dual_brush};
 use crate::io::recipe::brush_to_json;
 use crate::math::NumberSetting;
 use crate::paint::brush_options::{Bearing, DistanceMetric, Falloff, Spread};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
 use crate::paint::pattern::Pattern;
 use crate::paint::settings::SETTINGS;
-use crate::paint::tip::{Bristles, Noise};
-use crate::paint::{Brush, Curve, Drive, Dynamics, Input, Property, Stabilizer, Tip};
+use crate::paint::{Brush, Curve, Drive, Dynamics, Input, Property, Stabilizer};
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
@@ -21,84 +21,26 @@ use eframe::egui::{self, Ui};
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.tools.brush;
     let mut changed = None;
-    let mut part = |ui: &mut Ui, label: &str, show: fn(&mut Ui, &Brush) -> Option<Brush>| {
+    let mut part = |ui: &mut Ui, label: &str, show: &mut dyn FnMut(&mut Ui) -> Option<Brush>| {
         let header = egui::CollapsingHeader::new(label).id_salt(("brush", label));
-        changed = header.show(ui, |ui| show(ui, brush)).body_returned.flatten().or(changed.take());
+        changed = header.show(ui, show).body_returned.flatten().or(changed.take());
     };
-    part(ui, "Tip", tip);
-    part(ui, "Spread and color", spread);
-    part(ui, "Grain", grain);
-    part(ui, "Stroke", stroke);
-    part(ui, "Mixing and stylus", mixing_and_stylus);
-    part(ui, "Dynamics", dynamics);
+    part(ui, "Tip", &mut |ui| tip(ui, brush));
+    part(ui, "Spread and color", &mut |ui| spread(ui, brush));
+    part(ui, "Grain", &mut |ui| grain(ui, brush));
+    part(ui, "Dual brush", &mut |ui| dual_brush::show(ui, session, requests));
+    part(ui, "Stroke", &mut |ui| stroke(ui, brush));
+    part(ui, "Mixing and stylus", &mut |ui| mixing_and_stylus(ui, brush));
+    part(ui, "Dynamics", &mut |ui| dynamics(ui, brush));
     if let Some(brush) = changed {
         requests.act(Action::Hand(HandAction::Brush { brush: brush_to_json(&brush) }));
     }
 }
 
-/// The kinds of tips. A picture is chosen by importing it.
-#[derive(Clone, Copy, PartialEq)]
-enum TipChoice {
-    Round,
-    Ellipse,
-    Square,
-    Bristles,
-    Noise,
-    Pictures,
-}
-
-const KINDS: [(TipChoice, &str); 5] = [
-    (TipChoice::Round, "round"),
-    (TipChoice::Ellipse, "ellipse"),
-    (TipChoice::Square, "square"),
-    (TipChoice::Bristles, "bristles"),
-    (TipChoice::Noise, "specks"),
-];
-
 fn tip(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
-    let kind = match brush.tip {
-        Tip::Round => TipChoice::Round,
-        Tip::Ellipse { .. } => TipChoice::Ellipse,
-        Tip::Square { .. } => TipChoice::Square,
-        Tip::Bristles(_) => TipChoice::Bristles,
-        Tip::Noise(_) => TipChoice::Noise,
-        Tip::Picture(_) | Tip::Hose(_) => TipChoice::Pictures,
-    };
-    let chosen = choice_row(ui, "Shape", kind, &KINDS).map(|kind| match kind {
-        TipChoice::Round | TipChoice::Pictures => Tip::Round,
-        TipChoice::Ellipse => Tip::Ellipse { ratio: 0.5 },
-        TipChoice::Square => Tip::Square { ratio: 1.0 },
-        TipChoice::Bristles => Tip::Bristles(Bristles::default()),
-        TipChoice::Noise => Tip::Noise(Noise::default()),
-    });
-    let ratios =
-        || NumberField::new("Ratio", 0.01..=1.0, "Ratio of the shorter side to the longer one");
-    let whole = |v: f32| v.round().max(1.0) as u32;
-    let numbers = match &brush.tip {
-        Tip::Round => None,
-        Tip::Ellipse { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Ellipse { ratio: c.to }),
-        Tip::Square { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Square { ratio: c.to }),
-        Tip::Bristles(bristles) => {
-            let number =
-                NumberField::new("Hairs", 1.0..=400.0, "How many hairs the brush has").decimals(0);
-            let count = number.row(ui, bristles.count as f32).map(|c| whole(c.to));
-            count.map(|count| Tip::Bristles(Bristles { count, ..*bristles }))
-        }
-        Tip::Noise(noise) => {
-            let cells =
-                NumberField::new("Specks", 1.0..=100.0, "Number along the diameter").decimals(0);
-            let cells =
-                cells.row(ui, noise.cells as f32).map(|c| Noise { cells: whole(c.to), ..*noise });
-            let density = NumberField::new("Density", 0.0..=1.0, "How much of the tip they cover");
-            let density = density.row(ui, noise.density).map(|c| Noise { density: c.to, ..*noise });
-            cells.or(density).map(Tip::Noise)
-        }
-        Tip::Picture(_) | Tip::Hose(_) => {
-            ui.weak("Pictures. Import… adds others.");
-            None
-        }
-    };
-    chosen.or(numbers).map(|tip| Brush { tip, ..brush.clone() })
+    let chosen = choice_row(ui, "Shape", TipChoice::of(&brush.tip), &TipChoice::LABELS);
+    let tip = chosen.map(TipChoice::tip).or(brush_tip::numbers(ui, &brush.tip))?;
+    Some(Brush { tip, ..brush.clone() })
 }
 
 fn spread(ui: &mut Ui, brush: &Brush) -> Option<Brush> {

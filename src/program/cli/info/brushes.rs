@@ -6,7 +6,7 @@ use crate::cli::with_advice;
 use crate::io::Budget;
 use crate::io::brush::{self, BrushFormat, ImportedBrush, NeighborFiles};
 use crate::paint::grain::{BrushGrain, GrainSource};
-use crate::paint::{Brush, PictureSource, Tip};
+use crate::paint::{Brush, DualSettings, PictureSource, Tip};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -33,6 +33,7 @@ impl BrushReport {
         let one = |ImportedBrush { name, brush, notes }: &ImportedBrush| {
             json!({
                 "name": name, "tip": tip(&brush.tip), "size": brush.size, "spacing": brush.spacing, "notes": notes,
+                "dual": brush.dual.as_ref().map(|dual| json!({ "tip": tip(&dual.tip), "mode": dual.settings.mode.name() })),
                 "pictures": brush.pictures().map(|p| [p.picture.size.width, p.picture.size.height]).collect::<Vec<_>>(),
             })
         };
@@ -61,11 +62,7 @@ impl BrushReport {
 fn looks(brush: &Brush) -> String {
     let drives = brush.dynamics.drives().len();
     let size = |source: &PictureSource| format!(" of {} px", source.picture.size);
-    let pictures: &[PictureSource] = match &brush.tip {
-        Tip::Picture(source) => std::slice::from_ref(source),
-        Tip::Hose(hose) => hose.pictures(),
-        _ => &[],
-    };
+    let pictures = brush.tip.pictures();
     let first = pictures.first().map(size).unwrap_or_default();
     let several = match pictures.len() {
         0 | 1 => String::new(),
@@ -77,8 +74,16 @@ fn looks(brush: &Brush) -> String {
         }
         _ => String::new(),
     };
+    let second = match &brush.dual {
+        Some(dual) => {
+            let DualSettings { size, mode, .. } = dual.settings;
+            let (second, mode) = (tip(&dual.tip), mode.label().to_lowercase());
+            format!(", with a second tip by “{mode}”: {second}, {:.0} % as large", 100.0 * size)
+        }
+        None => String::new(),
+    };
     format!(
-        "{}{first}{several}, {:.4} px across, a dab every {:.0} % of it, {}{grain}",
+        "{}{first}{several}, {:.4} px across, a dab every {:.0} % of it, {}{grain}{second}",
         tip(&brush.tip),
         (brush.size * 10.0).round() / 10.0,
         brush.spacing * 100.0,

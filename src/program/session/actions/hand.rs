@@ -10,8 +10,8 @@ use crate::paint::settings::BrushNumber;
 use crate::paint::{
     BrushMode, Fill, LiquifySettings, LiquifyTool, Property, RampColors, RampStyle,
 };
-use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, as_in_recipes, names, record};
+use crate::session::{Session, brushes};
 use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::gizmo::TransformTarget;
@@ -64,6 +64,8 @@ actions! {
         "preset" Preset { name: String }
         /// The whole brush as in recipes; it may name the pictures of the current one.
         "brush" Brush { brush: Value }
+        /// Its second tip becomes the tip of an available brush, by its key; no key takes it away.
+        "second tip" SecondTip { name: String }
         /// Diameter, px.
         "size" Size { to: f32 }
         "hardness" Hardness { to: f32 }
@@ -125,6 +127,7 @@ impl HandAction {
                 Ok(read) => *brush = read,
                 Err(error) => session.notes.push(error.to_string()),
             },
+            HandAction::SecondTip { name } => brushes::set_second_tip(session, name),
             HandAction::Size { to } if session.tool == ToolKind::Sculpt => {
                 session.tools.shape.size = clamp_to_range(*to, &SculptStroke::SIZE);
             }

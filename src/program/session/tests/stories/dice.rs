@@ -240,7 +240,7 @@ impl Roll for String {
         let facts = &dice.facts;
         let known = match (dice.word, dice.field) {
             (_, "part") => facts.parts.iter().map(|part| part.id.clone()).collect(),
-            ("preset" | "drawn with", _) => facts.presets.clone(),
+            ("preset" | "drawn with" | "second tip", _) => facts.presets.clone(),
             (_, "palette") => facts.palettes.clone(),
             ("keep" | "take" | "forget", _) => ["a", "b", "sky"].map(str::to_owned).to_vec(),
             ("overlay", _) => facts.views.clone(),

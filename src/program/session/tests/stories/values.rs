@@ -14,9 +14,9 @@ use crate::paint::adjustment::{
 };
 use crate::paint::effect::{EffectField, EffectPattern};
 use crate::paint::{
-    Adjust, BrushMode, ColorAdjustment, ColorPalette, DrawingHand, EffectKind, EffectLight,
-    GradientStop, LayerEffect, NamedColor, PictureFilter, Placement, Subpath, Text, TextAlign,
-    TextPath, TextStyle,
+    Adjust, BrushMode, ColorAdjustment, ColorPalette, DrawingHand, DualMode, DualSettings,
+    EffectKind, EffectLight, GradientStop, LayerEffect, NamedColor, PictureFilter, Placement,
+    Subpath, Text, TextAlign, TextPath, TextStyle,
 };
 use crate::raster::{Picture, Resampling};
 use crate::session::ExportSize;
@@ -528,6 +528,29 @@ impl Roll for Value {
     }
 }
 
+/// A second tip; at times with a number that it may not have.
+fn dual_brush(dice: &mut Dice) -> Value {
+    let mode = dice.one_of(&DualMode::ALL).1;
+    let mut dual = json!({ "mode": mode });
+    for setting in DualSettings::SETTINGS {
+        if dice.is(40) {
+            let (least, most) = (*setting.range.start(), setting.range.end().min(3.0));
+            dual[setting.name] =
+                json!(f64::from(dice.in_range(least..=most, setting.range.clone())));
+        }
+    }
+    if dice.is(50) {
+        dual["tip"] = json!({ "kind": "square", "ratio": 0.5 });
+    }
+    if dice.is(30) {
+        dual["dynamics"] = json!({ "rotation": { "random": 1 }, "flow": { "pressure": 0.5 } });
+    }
+    if dice.is(3) {
+        dual["size"] = json!(-1);
+    }
+    dual
+}
+
 fn brush(dice: &mut Dice) -> Value {
     let share = |dice: &mut Dice| f64::from(dice.within(0.0, 1.0));
     let number = |dice: &mut Dice, high: f32| f64::from(dice.within(0.0, high));
@@ -545,6 +568,7 @@ fn brush(dice: &mut Dice) -> Value {
         ("softness", json!(share(dice))),
         ("seed", json!(dice.below(1000))),
         ("mark", BrushMode::roll(dice).to_json()),
+        ("dual", dual_brush(dice)),
     ];
     for _ in 0..dice.below(4) {
         let (name, value) = dice.one_of(&more);
