@@ -127,7 +127,7 @@ pub mod shading {
     pub use rilievo_engine::shading::{
         BallStrokes, Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Mood,
         NumberSetting, Painter, Projection, RadianceScaling, Reference, Scaling, Shading, Shadows,
-        Term,
+        SolidGlass, Term,
     };
 }
 

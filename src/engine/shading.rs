@@ -17,6 +17,7 @@ pub mod radiance;
 mod repainted;
 pub mod scaling;
 mod shadow;
+mod solid_glass;
 pub mod sphere;
 pub mod surface_row;
 
@@ -32,4 +33,5 @@ pub use pixel::PixelShading;
 pub use radiance::RadianceScaling;
 pub use scaling::{Reference, Scaling};
 pub use shadow::Shadows;
+pub use solid_glass::SolidGlass;
 pub use sphere::LitSphere;

@@ -23,6 +23,7 @@ use super::{
     pixel::PixelShading,
     scaling::{Reference, Scaling},
     shadow::Shadows,
+    solid_glass::SolidGlass,
     sphere::LitSphere,
 };
 use crate::math::{Range, Size, UNIT, srgb::Color, vec3};
@@ -156,6 +157,8 @@ pub struct Shading {
     pub strokes: BallStrokes,
     /// Refractive index, `> 0`.
     pub index: f32,
+    /// How refracted light goes through the body behind the surface.
+    pub solid: SolidGlass,
     /// The distance up to which occluders count, px; 0 turns occlusion off.
     pub occlusion_radius_px: f32,
     /// How often a ray that meets the surface itself is sent on before it looks at the environment:
@@ -188,7 +191,17 @@ impl Shading {
 
     /// How many bounces its rays make; 0 without an environment, which they look for.
     fn bounces_made(&self) -> u32 {
-        if self.model.is_bouncing() && self.environment.is_some() { self.bounces } else { 0 }
+        if self.has_bounces() && self.environment.is_some() { self.bounces } else { 0 }
+    }
+
+    /// Whether `bounces` has an effect: the rays of solid glass end when they have left it.
+    pub fn has_bounces(&self) -> bool {
+        self.model.is_bouncing() && !self.is_solid_glass()
+    }
+
+    /// Whether light goes through the body behind the surface and leaves it again.
+    pub fn is_solid_glass(&self) -> bool {
+        self.model == Model::Refraction && self.solid.on
     }
 
     /// Whether its model needs an environment but has none: it paints black.
@@ -245,6 +258,7 @@ impl Shading {
             sphere_concave: None,
             strokes: BallStrokes::DEFAULT,
             index: 1.5,
+            solid: SolidGlass::DEFAULT,
             occlusion_radius_px: 48.0,
             bounces: 0,
             shadows: Shadows { on: is_painter, ..Shadows::DEFAULT },
@@ -261,6 +275,7 @@ impl Shading {
         let fit = |v: f32, least: f32| (v * ratio).round().clamp(least, 1000.0);
         shading.shadows.reach = fit(Shadows::DEFAULT.reach, 8.0);
         shading.painter.contact_size = fit(Painter::DEFAULT.contact_size, 4.0);
+        shading.solid.on = model == Model::Refraction;
         if model == Model::LitSphere {
             shading.strokes.size = fit(BallStrokes::DEFAULT.size, 16.0);
             shading.strokes.chunk = fit(BallStrokes::DEFAULT.chunk, 8.0);

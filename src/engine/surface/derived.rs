@@ -10,6 +10,7 @@ use super::form_lines::{FormLines, LineKey, SharpLines, SmoothNormals, UnlitLine
 use super::hatching::{HatchKey, HatchLines};
 use super::objects::Objects;
 use super::ray::RayMap;
+use super::ray::body::{SolidBody, Thickness};
 use super::region::SurfaceRegion;
 use super::shadow::{ContactShade, HeightMaps, ShadowKey, ShareMap};
 use super::unwrap::{
@@ -72,6 +73,10 @@ caches! {
     smooth_normals: RecentCache<u32, SmoothNormals>,
     /// What rays are marched through.
     ray_maps: RecentCache<(), RayMap>,
+    /// How far the front stands before the middle of the body.
+    thicknesses: RecentCache<(), Thickness>,
+    /// What light goes through, by the bulge of the back, as bits.
+    bodies: RecentCache<u32, SolidBody>,
     /// Coverage of selections by the surface.
     regions: RecentCache<SurfaceRegion, CoverageGrid>,
     /// By amount and blur, as bits.
@@ -158,6 +163,8 @@ mod tests {
         grew("lines", &mut last);
         surface.ray_map();
         grew("rays", &mut last);
+        surface.body(0.5);
+        grew("body", &mut last);
         surface.unwrapping(settings);
         grew("unwrapping", &mut last);
         surface.plane_layout(settings).unwrap();

@@ -5,6 +5,7 @@
 //! A ray is a straight line of the picture, and how near it is changes linearly along it. It goes
 //! pixel by pixel, and jumps over blocks of pixels that it passes in front of.
 
+pub mod body;
 mod line;
 
 #[cfg(test)]
@@ -132,6 +133,20 @@ impl RayMap {
         match self.near {
             None => flat,
             Some(near) => (flat + near.offset_at(at) * step.z) * (nearness / near.focal_px()),
+        }
+    }
+
+    /// How a point that goes along a direction moves in the picture, and how its nearness grows, as
+    /// it sets out; the line is straight in both.
+    #[inline(always)]
+    fn seen_motion(&self, at: Vec2, nearness: f32, r: Vec3) -> (Vec2, f32) {
+        match self.near {
+            None => (vec2(r.x, -r.y), r.z),
+            // q = c + f b with b = P/Z: db/dt = (r + b r_z) / Z, and of f Z̄/Z the change is r_z f
+            // Z̄/Z².
+            Some(near) => {
+                (vec2(r.x, -r.y) + near.offset_at(at) * r.z, r.z * nearness / near.focal_px())
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{COORDINATE, Vec3, srgb::Color};
 use crate::shading::{
     BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, PixelShading,
-    Reference, Scaling, Shadows, Term,
+    Reference, Scaling, Shadows, SolidGlass, Term,
 };
 use serde_json::Value;
 
@@ -111,6 +111,17 @@ impl RecipeValue for BallStrokes {
 
     fn from_json(node: &JsonNode) -> Result<Self> {
         ball_strokes(node)
+    }
+}
+
+/// `true`, `false`, or an object.
+impl RecipeValue for SolidGlass {
+    fn to_json(&self) -> Value {
+        write_solid_glass(self)
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        solid_glass(node)
     }
 }
 
@@ -309,6 +320,28 @@ pub fn write_ball_strokes(strokes: &BallStrokes) -> Value {
         return strokes.on.into();
     }
     out.flag("on", strokes.on, true);
+    out.into_value()
+}
+
+/// Glass that is given is solid unless it says otherwise.
+pub fn solid_glass(node: &JsonNode) -> Result<SolidGlass> {
+    let base = SolidGlass { on: true, ..SolidGlass::DEFAULT };
+    if node.value().is_boolean() {
+        return Ok(SolidGlass { on: node.boolean()?, ..base });
+    }
+    of_object(node, |fields| {
+        let numbers = settings(fields, SolidGlass::SETTINGS, base)?;
+        Ok(SolidGlass { on: fields.boolean("on", base.on)?, ..numbers })
+    })
+}
+
+pub fn write_solid_glass(solid: &SolidGlass) -> Value {
+    let mut out = JsonObject::default();
+    write_settings(&mut out, SolidGlass::SETTINGS, solid, &SolidGlass::DEFAULT);
+    if out.is_empty() {
+        return solid.on.into();
+    }
+    out.flag("on", solid.on, true);
     out.into_value()
 }
 

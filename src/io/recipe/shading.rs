@@ -52,6 +52,10 @@ impl LayerReader<'_> {
                 None => base.strokes,
             },
             index: fields.number("index", base.index, Shading::INDEX)?,
+            solid: match fields.get("solid") {
+                Some(node) => light::solid_glass(&node)?,
+                None => base.solid,
+            },
             occlusion_radius_px: fields.number(
                 "occlusion_radius",
                 base.occlusion_radius_px,
@@ -178,6 +182,9 @@ pub fn write(out: &mut JsonObject, shading: &Shading) {
         out.set("strokes", light::write_ball_strokes(&shading.strokes));
     }
     out.number("index", shading.index, base.index);
+    if shading.solid != base.solid {
+        out.set("solid", light::write_solid_glass(&shading.solid));
+    }
     out.number("occlusion_radius", shading.occlusion_radius_px, base.occlusion_radius_px);
     out.number("bounces", shading.bounces as f32, base.bounces as f32);
     out.object("shadows", light::write_shadows(&shading.shadows, &base.shadows));

@@ -4,7 +4,7 @@
 use crate::document::{Content, Document, Layer, LayerLabel};
 use crate::paint::grain::GrainSpace;
 use crate::paint::{DistanceMetric, PictureOrigin};
-use crate::shading::{BallStrokes, Model, PixelShading};
+use crate::shading::{BallStrokes, Model, PixelShading, SolidGlass};
 use crate::surface::Operator;
 
 /// The newest schema this program reads. A document that needs nothing newer is written as the
@@ -38,6 +38,7 @@ pub fn has_unwrapped(document: &Document) -> bool {
                 || shading.shadows.on
                 || shading.pixel != PixelShading::default()
                 || shading.strokes != BallStrokes::DEFAULT
+                || shading.solid != SolidGlass::DEFAULT
         }
         _ => false,
     };

@@ -21,7 +21,7 @@ use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
 use crate::shading::{
     BallStrokes, Features, Light, Model, Mood, Painter, PixelShading, Projection, RadianceScaling,
-    Scaling, Shading, Shadows, Term,
+    Scaling, Shading, Shadows, SolidGlass, Term,
 };
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
@@ -117,6 +117,7 @@ actions! {
         "painter" Painted { painter: Painter }
         "pixels" Pixeled { pixel: PixelShading }
         "ball strokes" BallMarks { strokes: BallStrokes }
+        "solid glass" Solid { solid: SolidGlass }
         /// Lamps, shadows and painter's light of a mood.
         "mood" InMood { mood: Mood }
         "features" Features { features: Features }
@@ -186,6 +187,7 @@ impl Property {
                 "Material"
             }
             Property::Anisotropy { .. } | Property::RefractiveIndex { .. } => "Material",
+            Property::Solid { .. } => "Solid glass",
             Property::Shadowed { .. } => "Shadows",
             Property::Painted { .. } => "Painter's light",
             Property::Pixeled { .. } => "Pixel shading",
@@ -390,6 +392,7 @@ impl Property {
             Property::Painted { painter } => next.painter = *painter,
             Property::Pixeled { pixel } => next.pixel.clone_from(pixel),
             Property::BallMarks { strokes } => next.strokes = *strokes,
+            Property::Solid { solid } => next.solid = *solid,
             Property::InMood { mood } => next = mood.on(shading),
             Property::Features { features } => next.features = features.clone(),
             Property::Occlusion { to } => {

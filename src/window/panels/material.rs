@@ -9,7 +9,7 @@ use crate::session::actions::LayerAction;
 use crate::session::{Action, PicturePart, Property};
 use crate::shading::{
     BallStrokes, Environment, FeatureScale, Features, Light, LightKind, Model, Projection,
-    RadianceScaling, Scaling, Shading, Term,
+    RadianceScaling, Scaling, Shading, SolidGlass, Term,
 };
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
@@ -100,8 +100,23 @@ fn highlight(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
         Model::Refraction => {
             let field = NumberField::new("Index", 1.0..=3.0, "Glass is 1.5");
             number(ui, field, shading.index, setter, |to| Property::RefractiveIndex { to });
+            solid_glass(ui, shading.solid, setter);
         }
         _ => {}
+    }
+}
+
+/// Whether light leaves glass again, and where.
+fn solid_glass(ui: &mut Ui, solid: SolidGlass, setter: &mut LayerSetter) {
+    let hint = "Light goes through the glass and leaves it at the back, and the front mirrors some; \
+                off, it is bent once";
+    if let Some(on) = check(ui, "Solid", hint, solid.on) {
+        setter.set(Property::Solid { solid: SolidGlass { on, ..solid } }, true);
+    }
+    if solid.on {
+        painter::settings(ui, SolidGlass::SETTINGS, solid, setter, |solid| Property::Solid {
+            solid,
+        });
     }
 }
 
@@ -118,7 +133,7 @@ fn steps_and_rays(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
         let put = |to| Property::Occlusion { to };
         number(ui, field, shading.occlusion_radius_px, setter, put);
     }
-    if shading.model.is_bouncing() {
+    if shading.has_bounces() {
         let hint = "How often rays that meet the surface are reflected again; 0 shows the \
                     environment only";
         let most = *Shading::BOUNCES.end() as f32;

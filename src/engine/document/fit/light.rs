@@ -6,7 +6,7 @@ use crate::math::range::{STOPS, at_most, check_range};
 use crate::math::{COORDINATE, TURNS};
 use crate::shading::{
     BallStrokes, Environment, FeatureScale, Features, Light, LightKind, NumberSetting, Painter,
-    PixelShading, RadianceScaling, Reference, Scaling, Shading, Shadows, Term,
+    PixelShading, RadianceScaling, Reference, Scaling, Shading, Shadows, SolidGlass, Term,
 };
 
 /// The most values that things take in a description.
@@ -34,6 +34,7 @@ pub fn shading(shading: &Shading) -> Fit {
     settings(&shading.painter, Painter::SETTINGS)?;
     settings(&shading.shadows, Shadows::SETTINGS)?;
     settings(&shading.strokes, BallStrokes::SETTINGS)?;
+    settings(&shading.solid, SolidGlass::SETTINGS)?;
     if !Shadows::RAYS.contains(&shading.shadows.rays) {
         let (rays, most) = (shading.shadows.rays, Shadows::RAYS.end());
         return Err(format!("the rays to a lamp are {rays}; there may be 1 to {most}"));

@@ -1,8 +1,9 @@
-//! Mirror and refraction: the environment seen along one ray (RS sec. 5.3.2, MATH 5). Floor 3. One
-//! interface: a refracted ray does not leave its object by a second one. Not here: what a ray meets
-//! on its way (`second_look`).
+//! Mirror and refraction: the environment seen along one ray (RS sec. 5.3.2, MATH 5). Floor 3. A
+//! refracted ray does not leave its object by a second side, unless the glass is solid (`glass`).
+//! Not here: what a ray meets on its way (`second_look`).
 
 mod followed;
+mod glass;
 mod rays;
 
 use super::{Model, Shading, lobes};
@@ -46,12 +47,23 @@ pub fn shade(
     let rays = RayRow::new(surface_row, refractive_index(shading));
     let toward = [rays.ray[0], rays.ray[1]];
     let mut incoming: Light3 = [[0.0; TILE]; 3];
-    match followed {
-        Some(followed) => followed.read(surface_row, &mut incoming),
-        None => drop(rays.see(shading, surface_row, &environment_light, &mut incoming)),
-    }
+    // Light takes the color of solid glass on its way through it.
+    let color = match followed {
+        _ if shading.is_solid_glass() => {
+            glass::see(shading, surface_row, &rays, &environment_light, &mut incoming);
+            [term.weight; 3]
+        }
+        Some(followed) => {
+            followed.read(surface_row, &mut incoming);
+            term.linear()
+        }
+        None => {
+            rays.see(shading, surface_row, &environment_light, &mut incoming);
+            term.linear()
+        }
+    };
     let mut delta = [0.0; TILE];
-    tint(&mut incoming, term.linear(), per_brightest, &mut delta);
+    tint(&mut incoming, color, per_brightest, &mut delta);
     if !term.is_scaled() {
         return lobes::add_incoming(light, &incoming, None);
     }

@@ -137,6 +137,9 @@ impl Shading {
                 environment_light.map(|s| s.brightest_matt());
             }
             SecondLook::on(surface, self.bounces_made());
+            if self.is_solid_glass() {
+                surface.front().map(|front| front.body(self.solid.back));
+            }
             if self.model.has_lamps() {
                 self.shadows.maps(surface, &self.lights);
             }

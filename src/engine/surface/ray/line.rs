@@ -2,7 +2,7 @@
 //! runs along most. Floor 2.
 
 use super::{RayMap, SurfaceRay};
-use crate::math::{Size, Vec2, vec2};
+use crate::math::{Size, Vec2};
 
 /// Rays that move less in the picture, per length, go straight toward the eye or away from it.
 const LEAST_SEEN: f32 = 1e-4;
@@ -25,16 +25,7 @@ pub(super) struct RayLine {
 impl RayLine {
     /// `None` for a ray that does not move in the picture.
     pub fn of(map: &RayMap, ray: &SurfaceRay) -> Option<Self> {
-        let r = ray.direction;
-        let (toward, rise) = match map.near {
-            None => (vec2(r.x, -r.y), r.z),
-            // q = c + f b with b = P/Z: db/dt = (r + b r_z) / Z, and of f Z̄/Z the change is r_z f
-            // Z̄/Z².
-            Some(near) => (
-                vec2(r.x, -r.y) + near.offset_at(ray.at) * r.z,
-                r.z * ray.nearness / near.focal_px(),
-            ),
-        };
+        let (toward, rise) = map.seen_motion(ray.at, ray.nearness, ray.direction);
         let seen = toward.length();
         if seen.is_nan() || seen < LEAST_SEEN {
             return None;

@@ -3,14 +3,15 @@ use crate::math::vec3;
 use crate::surface::Maps;
 use crate::surface::view::Eye;
 
-const SIZE: Size = Size::new(161, 141);
+pub(super) const SIZE: Size = Size::new(161, 141);
 /// A ball: middle, camera space from the middle of the picture plane, px; radius.
-type Ball = (Vec3, f32);
+pub(super) type Ball = (Vec3, f32);
 /// Two side by side.
-const PAIR: [Ball; 2] = [(vec3(-41.0, 3.0, 0.0), 37.0), (vec3(40.0, -2.0, 6.0), 36.0)];
+pub(super) const PAIR: [Ball; 2] = [(vec3(-41.0, 3.0, 0.0), 37.0), (vec3(40.0, -2.0, 6.0), 36.0)];
 /// The pair before an eye.
-const NEAR_PAIR: [Ball; 2] = [(vec3(-50.0, 3.0, -250.0), 46.0), (vec3(49.0, -2.0, -242.0), 45.0)];
-const FOV: f32 = 50.0;
+pub(super) const NEAR_PAIR: [Ball; 2] =
+    [(vec3(-50.0, 3.0, -250.0), 46.0), (vec3(49.0, -2.0, -242.0), 45.0)];
+pub(super) const FOV: f32 = 50.0;
 
 /// How far along a ray the nearest ball is, and its normal there.
 fn cast(balls: &[Ball], from: Vec3, toward: Vec3) -> Option<(f32, Vec3)> {
@@ -39,7 +40,7 @@ fn hit_at(balls: &[Ball], eye: Eye, at: Vec2) -> Option<(Vec3, Vec3)> {
     cast(balls, from, toward).map(|(t, n)| (from + toward * t, n))
 }
 
-fn surface(balls: &[Ball], eye: Eye) -> Surface {
+pub(super) fn surface(balls: &[Ball], eye: Eye) -> Surface {
     let at = |x: usize, y: usize| hit_at(balls, eye, vec2(x as f32 + 0.5, y as f32 + 0.5));
     let heights = (0..SIZE.area()).filter_map(|i| at(i % 161, i / 161)).map(|(p, _)| p.z);
     let (low, high) = heights.fold((f32::MAX, f32::MIN), |(a, b), z| (a.min(z), b.max(z)));
@@ -61,7 +62,7 @@ fn mirror_ray(surface: &Surface, map: &RayMap, x: usize, y: usize) -> SurfaceRay
     SurfaceRay { at, nearness, direction: 2.0 * n.dot(v) * n - v, inward: false }
 }
 
-fn covered_pixels(surface: &Surface) -> impl Iterator<Item = (usize, usize)> {
+pub(super) fn covered_pixels(surface: &Surface) -> impl Iterator<Item = (usize, usize)> {
     let at = (0..SIZE.area()).map(|i| (i % 161, i / 161));
     at.filter(|&(x, y)| surface.coverage(x, y) > 0)
 }

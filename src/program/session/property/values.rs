@@ -13,7 +13,7 @@ use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
 use crate::shading::{
     BallStrokes, Features, Light, Model, Mood, Painter, PixelShading, Projection, Scaling, Shadows,
-    Term,
+    SolidGlass, Term,
 };
 use crate::surface::form_lines::LineSettings;
 use crate::surface::hatching::HatchSettings;
@@ -31,7 +31,7 @@ names!(Mood);
 as_in_recipes!(Operator, Anchor, PlanePiece, Placement, Adjust, GradientStop);
 as_in_recipes!(ColorAdjustment, PictureFilter, Text, LivePath, LayerEffect, EffectLight);
 as_in_recipes!(NoiseRelief, DerivedMask, Light, Term, Scaling, Features, Reference);
-as_in_recipes!(Shadows, Painter, PixelShading, BallStrokes);
+as_in_recipes!(Shadows, Painter, PixelShading, BallStrokes, SolidGlass);
 as_in_recipes!(LineSettings, HatchSettings, DrawingHand);
 
 /// As documents write it.

@@ -65,6 +65,18 @@ impl RayRow {
         [mean(left, right), mean(up, down)]
     }
 
+    /// The light that the rays see of the environment.
+    pub fn see_environment(
+        &self,
+        surface_row: &SurfaceRow,
+        environment_light: &EnvironmentLight,
+        incoming: &mut Light3,
+    ) {
+        let [dx, dy] = self.changes();
+        let covered = surface_row.coverage();
+        environment_light.mean_over_pixel_row(&self.ray, &dx, &dy, covered, incoming);
+    }
+
     /// The light that the rays see, of the environment and over the surface.
     ///
     /// Returns the pixels whose rays meet the surface, as bits.
@@ -75,14 +87,7 @@ impl RayRow {
         environment_light: &EnvironmentLight,
         incoming: &mut Light3,
     ) -> u64 {
-        let [dx, dy] = self.changes();
-        environment_light.mean_over_pixel_row(
-            &self.ray,
-            &dx,
-            &dy,
-            surface_row.coverage(),
-            incoming,
-        );
+        self.see_environment(surface_row, environment_light, incoming);
         let Some(second) = SecondLook::on(surface_row.surface, shading.bounces_made()) else {
             return 0;
         };
@@ -94,14 +99,14 @@ impl RayRow {
 }
 
 /// Where the rays of a pixel that is followed lie in it, px from its middle: even along both axes.
-const PARTS: [Vec2; 4] =
+pub(super) const PARTS: [Vec2; 4] =
     [vec2(-0.125, -0.375), vec2(0.375, -0.125), vec2(0.125, 0.375), vec2(-0.375, 0.125)];
 /// The sides of what each of them stands for, px.
-const PART_PX: f32 = 0.5;
+pub(super) const PART_PX: f32 = 0.5;
 
 impl RayRow {
     /// The ray of a part of a pixel: between its own and those of the neighbors on that side.
-    fn of_part(&self, x: usize, part: Vec2) -> PixelRay {
+    pub fn of_part(&self, x: usize, part: Vec2) -> PixelRay {
         let of = |row: &Directions| vec3(row[0][x], row[1][x], row[2][x]);
         let [left, right, up, down] = &self.sides;
         let across = if part.x < 0.0 { -of(left) } else { of(right) };

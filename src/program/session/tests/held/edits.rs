@@ -62,6 +62,7 @@ pub const PROPERTIES: &[&str] = &[
     r##"{"do":"pixels","pixel":{"bands":3,"dither":#,"colors":["#301020","#d04030"]}}"##,
     r##"{"do":"painter","painter":{"warmth":#,"fill":#,"rim":#,"rim_color":"#405060"}}"##,
     r#"{"do":"ball strokes","strokes":{"size":#,"chunk":#,"follow":#,"seams":#}}"#,
+    r#"{"do":"solid glass","solid":{"back":#}}"#,
     r#"{"do":"lines","lines":{"of":["outlines","wires"],"smooth":#,"detail":#,
         "shortest":#,"gap":#,"lit":#,"wires":#,"light":[#,1,0]}}"#,
     r#"{"do":"hatching","hatching":{"style":"hatch","way":"along","spacing":#,"angle":#,"smooth":#,

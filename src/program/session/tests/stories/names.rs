@@ -85,7 +85,7 @@ fn names_of(property: &Property) -> &'static [&'static str] {
         Surrounded { .. } | Without { .. } | Occlusion { .. } | Bounces { .. } => &["material"],
         ShadingModel { .. } | Lights { .. } | InMood { .. } | Shadowed { .. } => &["material"],
         Ambient { .. } | Diffuse { .. } | Specular { .. } | Painted { .. } => &["material"],
-        Shininess { .. } | Bands { .. } | Exponent { .. } => &["material"],
+        Shininess { .. } | Bands { .. } | Exponent { .. } | Solid { .. } => &["material"],
         Anisotropy { .. } | RefractiveIndex { .. } | BallMarks { .. } | Pixeled { .. } => {
             &["material"]
         }

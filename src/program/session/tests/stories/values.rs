@@ -24,7 +24,7 @@ use crate::session::actions::clipboard::PastedPicture;
 use crate::session::actions::parts::InflationPreset;
 use crate::shading::{
     BallStrokes, FeatureScale, Features, Light, LightKind, NumberSetting, Painter, PixelShading,
-    Reference, Scaling, Shadows, Term,
+    Reference, Scaling, Shadows, SolidGlass, Term,
 };
 use crate::surface::form_lines::{LineKind, LineKinds, LineSettings};
 use crate::surface::hatching::{HatchSettings, HatchStyle, HatchTone, HatchWay};
@@ -349,6 +349,13 @@ impl Roll for Shadows {
         let numbers = settings(dice, Shadows::SETTINGS, Shadows::DEFAULT);
         let rays = 1 + dice.below(8) as u32;
         Shadows { on: dice.is(80), color: dice.value(dice.word, "color"), rays, ..numbers }
+    }
+}
+
+impl Roll for SolidGlass {
+    fn roll(dice: &mut Dice) -> Self {
+        let numbers = settings(dice, SolidGlass::SETTINGS, SolidGlass::DEFAULT);
+        SolidGlass { on: dice.is(80), ..numbers }
     }
 }
 

@@ -82,6 +82,7 @@ const SUITING: &[(&[&str], &[&str])] = &[
             "painter",
             "pixels",
             "ball strokes",
+            "solid glass",
             "mood",
             "model",
             "lights",
