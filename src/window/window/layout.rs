@@ -17,6 +17,10 @@ use eframe::egui::{
 
 /// The height that the layers take at first, if there is room: more than six of them.
 const LAYERS_PT: f32 = 384.0;
+/// The least height of the brushes at first, and the share of the panels that they take in a window
+/// that is taller than wide, as a tablet's: two rows of them.
+const BRUSHES_PT: f32 = 104.0;
+const UPRIGHT_BRUSHES: f32 = 0.4;
 /// The range of the panels' width, points.
 const WIDTHS_PT: std::ops::RangeInclusive<f32> = 230.0..=460.0;
 
@@ -150,8 +154,13 @@ impl MainWindow {
             if has_below {
                 let left_pt = ui.available_height();
                 // Brushes leave room for the layers; properties and lists are longer.
+                let window = ui.ctx().content_rect();
+                let least_pt = match window.height() > window.width() {
+                    true => (UPRIGHT_BRUSHES * left_pt).max(BRUSHES_PT),
+                    false => BRUSHES_PT,
+                };
                 let (front_pt, of) = match front {
-                    PanelKind::Brushes => ((left_pt - LAYERS_PT).max(104.0), "brushes"),
+                    PanelKind::Brushes => ((left_pt - LAYERS_PT).max(least_pt), "brushes"),
                     _ => (0.56 * left_pt, "properties"),
                 };
                 // Each height of the window has divisions of its own.
