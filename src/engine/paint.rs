@@ -10,7 +10,6 @@ pub mod color_palette;
 mod curve;
 mod dab;
 mod dab_walker;
-pub mod dual_brush;
 pub mod dynamics;
 pub mod effect;
 pub mod fill;
@@ -51,12 +50,12 @@ pub mod tip;
 pub use adjust::Adjust;
 pub use adjustment::{ColorAdjustment, LiveAdjustment};
 pub use attachment::{Attachment, StrokeAttachment};
+pub use brush::dual_brush::{DualBrush, DualMode, DualSettings};
 pub use brush::{Brush, BrushMode, ColorJitter, Stabilizer, StrokeFrame, Tip};
 pub use brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
 };
 pub use color_palette::{ColorPalette, NamedColor};
-pub use dual_brush::{DualBrush, DualMode, DualSettings};
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use effect::{EffectKind, EffectLight, EffectPlace, LayerEffect};
 pub use fill::Fill;

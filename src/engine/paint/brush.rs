@@ -1,10 +1,12 @@
-//! A brush: the footprint of one dab and how dabs follow each other. Floor 3. Not here: how pen and
-//! surface drive it (`dynamics`), the dabs themselves (`dab_walker`).
+//! A brush: the footprint of one dab and how dabs follow each other. Floor 3. `dual_brush` is its
+//! second tip. Not here: how pen and surface drive it (`dynamics`), the dabs themselves
+//! (`dab_walker`).
+
+pub mod dual_brush;
 
 use super::brush_options::{
     Cycle, DistanceMetric, Falloff, Offset, Pickup, Rate, Spread, StylusFilter,
 };
-use super::dual_brush::{DualBrush, DualSettings};
 use super::dynamics::{Dynamics, Input, Property};
 use super::grain::{BrushGrain, GrainSource};
 use super::image::PictureSource;
@@ -12,6 +14,7 @@ use super::tip::{Bristles, Hose, Noise};
 use crate::math::{Mat2, Range, UNIT, Vec2, range::clamp_to_range};
 use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
+use dual_brush::{DualBrush, DualSettings};
 use std::sync::Arc;
 
 /// The settings of a brush. Lengths are canvas px, ratios plain numbers.

@@ -6,7 +6,7 @@ mod rows;
 pub use rows::raise;
 
 use super::brush::Brush;
-use super::dual_brush::DualSettings;
+use super::brush::dual_brush::DualSettings;
 use super::grain::GrainTile;
 use crate::math::srgb::Color;
 use crate::raster::tile::TILE_AREA;

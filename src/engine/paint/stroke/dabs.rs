@@ -4,9 +4,9 @@
 use super::Stroke;
 use crate::math::Rect;
 use crate::paint::brush::Brush;
+use crate::paint::brush::dual_brush::DualSettings;
 use crate::paint::dab::{DabScratch, PlacedDab};
 use crate::paint::dab_walker::{self, Dab, DabWalker};
-use crate::paint::dual_brush::DualSettings;
 use crate::paint::grain::{GrainTile, StrokeGrain};
 use crate::paint::prepared_tip::PreparedTip;
 use crate::paint::sample::Sample;

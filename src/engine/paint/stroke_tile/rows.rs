@@ -2,7 +2,7 @@
 //! Floor 3.
 
 use super::{CoveredRow, DabPaint};
-use crate::paint::dual_brush::DualMode;
+use crate::paint::brush::dual_brush::DualMode;
 use crate::raster::TILE;
 use crate::raster::planar::PixelRow;
 

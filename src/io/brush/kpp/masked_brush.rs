@@ -7,11 +7,13 @@
 
 use super::options;
 use super::pictures::KppPictures;
+use super::sensors;
 use super::settings::KppPreset;
 use super::tip::{self, TipUse};
 use crate::brush::text_of;
 use crate::math::range::clamp_to_range;
-use crate::paint::{Brush, DualBrush, DualMode, Dynamics};
+use crate::math::vec2;
+use crate::paint::{Brush, Curve, DualBrush, DualMode, Dynamics, Input, Property};
 use std::sync::Arc;
 
 /// Krita's words for the modes.
@@ -65,12 +67,25 @@ pub fn read(
             let lost = LEFT_OUT.iter().filter(|(option, _)| masked.is_true(option));
             notes.extend(lost.map(|(_, note)| (*note).to_owned()));
             let dual = DualBrush::of_brush(&second, &brush, mode);
-            Brush { dual: Some(Arc::new(dual)), ..brush }
+            Brush { dual: Some(Arc::new(dual)), ..with_opacity_of_dabs(brush) }
         }
         Err(reason) => {
             notes.push(format!("its dual brush is left out: its tip {reason}"));
             brush
         }
+    }
+}
+
+/// A brush whose opacity is that of each dab: Krita's acts before both tips meet, that of a stroke
+/// here after it.
+fn with_opacity_of_dabs(brush: Brush) -> Brush {
+    let opacity = brush.opacity;
+    match Curve::through(vec![vec2(0.0, opacity), vec2(1.0, opacity)]) {
+        Some(level) if opacity < 1.0 => {
+            let brush = Brush { opacity: 1.0, ..brush };
+            sensors::with_factor(brush, Property::Opacity, Input::Pressure, level)
+        }
+        _ => brush,
     }
 }
 

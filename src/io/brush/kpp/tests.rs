@@ -452,8 +452,12 @@ fn a_masked_brush_becomes_a_dual_brush() {
             ("MaskingBrush/Preset/OpacitySensor", "<params id=\"pressure\"/>"),
             ("MaskingBrush/Preset/PressureMirror", "true"),
             ("PressureScatter", "false"),
+            ("OpacityValue", "0.5"),
         ],
     );
+    // It acts before both tips meet.
+    let value = |property| imported.brush.dynamics.value(property, 1.0, &DabInputs::default());
+    assert_eq!((imported.brush.opacity, value(Property::Opacity)), (1.0, 0.5));
     assert_eq!(imported.notes, ["the dabs of its dual brush are not mirrored"]);
     assert_eq!((imported.brush.size, imported.brush.scatter), (40.0, 0.0));
     let dual = imported.brush.dual.as_ref().unwrap();

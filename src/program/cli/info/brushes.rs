@@ -6,7 +6,7 @@ use crate::cli::with_advice;
 use crate::io::Budget;
 use crate::io::brush::{self, BrushFormat, ImportedBrush, NeighborFiles};
 use crate::paint::grain::{BrushGrain, GrainSource};
-use crate::paint::{Brush, DualSettings, PictureSource, Tip};
+use crate::paint::{Brush, DualBrush, DualSettings, PictureSource, Tip};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -33,7 +33,7 @@ impl BrushReport {
         let one = |ImportedBrush { name, brush, notes }: &ImportedBrush| {
             json!({
                 "name": name, "tip": tip(&brush.tip), "size": brush.size, "spacing": brush.spacing, "notes": notes,
-                "dual": brush.dual.as_ref().map(|dual| json!({ "tip": tip(&dual.tip), "mode": dual.settings.mode.name() })),
+                "dual": brush.dual.as_deref().map(second_tip),
                 "pictures": brush.pictures().map(|p| [p.picture.size.width, p.picture.size.height]).collect::<Vec<_>>(),
             })
         };
@@ -57,6 +57,10 @@ impl BrushReport {
         }
         out
     }
+}
+
+fn second_tip(dual: &DualBrush) -> Value {
+    json!({ "tip": tip(&dual.tip), "mode": dual.settings.mode.name() })
 }
 
 fn looks(brush: &Brush) -> String {

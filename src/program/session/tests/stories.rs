@@ -6,6 +6,7 @@
 //! leads to the table where it is missing. A story is played by its seed; one that fails is made
 //! short and printed as a replay.
 
+mod brushes;
 mod dice;
 mod facts;
 mod gestures;

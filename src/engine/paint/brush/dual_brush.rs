@@ -2,11 +2,11 @@
 //! meets that of the first tip's. Floor 3. Not here: tiles of both (`stroke_tile`), how they are
 //! painted (`stroke`).
 
-use super::brush::{Brush, Tip};
-use super::brush_options::{Cycle, Offset, StylusFilter};
-use super::dynamics::{Curve, Dynamics, Property};
+use super::{Brush, Tip};
 use crate::math::number_settings::number_settings;
 use crate::math::{Range, UNIT, hash, vec2};
+use crate::paint::brush_options::{Cycle, Offset, StylusFilter};
+use crate::paint::dynamics::{Curve, Dynamics, Property};
 use crate::raster::blend::spec;
 
 crate::named! {
@@ -38,7 +38,7 @@ crate::named! {
     }
 }
 
-/// Half a step of a byte: the first tip's coverage below it does not show, and is not raised.
+/// Half a step of a byte: what is nearer to none or to full does not differ from that.
 const HALF_STEP: f32 = 0.5 / 255.0;
 
 impl DualMode {
@@ -51,7 +51,8 @@ impl DualMode {
             DualMode::Darken => spec::darken(a, b),
             DualMode::Overlay => spec::overlay(a, b),
             DualMode::ColorDodge => spec::color_dodge(a, b),
-            DualMode::ColorBurn => spec::color_burn(a, b),
+            // What is as good as full stays full, whatever the second tip leaves.
+            DualMode::ColorBurn => spec::color_burn(if a > 1.0 - HALF_STEP { 1.0 } else { a }, b),
             DualMode::LinearDodge => spec::linear_dodge(a, b),
             DualMode::LinearBurn => spec::linear_burn(a, b),
             // Unlike that of colors: where the second tip left nothing nothing shows.
