@@ -177,7 +177,8 @@ fn drives() -> Vec<(String, Make)> {
 /// brush in many colors, and one of a brush with grain.
 fn dual_brushes() -> Vec<(String, Make)> {
     let cell = |name: String, dual: Value, changes: Value| {
-        let mut brush = json!({ "size": 22, "hardness": 0.4, "spacing": 0.15, "flow": 0.3, "dual": dual, "seed": 5 });
+        let mut brush = json!({ "size": 22, "hardness": 0.4, "spacing": 0.15, "flow": 0.3,
+            "dual": dual, "seed": 5 });
         let changes = changes.as_object().cloned().unwrap_or_default();
         changes.into_iter().for_each(|(key, value)| brush[key] = value);
         let stroke = json!({ "color": "#a04828", "samples": pen(), "brush": brush,
