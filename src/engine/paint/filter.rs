@@ -13,11 +13,13 @@
 //! | `surface`, `flow`, `lens` | blurs over the surface, along its lines, and by its depth |
 //! | `noise` | noise and grain |
 //! | `cells` | median, squares, edges, shift |
+//! | `halftone` | dots and lines of ink |
 
 mod blur;
 mod cells;
 mod flow;
 mod glow;
+mod halftone;
 mod lens;
 mod noise;
 mod radial;
@@ -29,6 +31,7 @@ pub use blur::{BoxBlur, GaussianBlur, MotionBlur};
 pub use cells::{EdgeFilter, MedianFilter, Pixelate, WrappedOffset};
 pub use flow::FlowBlur;
 pub use glow::BrightGlow;
+pub use halftone::Halftone;
 pub use lens::LensBlur;
 pub use noise::{FilmGrain, PixelNoise};
 pub use radial::{BlurCenter, SpinBlur, ZoomBlur};
@@ -64,6 +67,7 @@ parameter_kinds! {
     MedianFilter = "median" => ("Median", "Removes specks and keeps edges"),
     BrightGlow = "glow" => ("Glow", "What is bright shines beyond its edge"),
     Pixelate = "pixelate" => ("Pixelate", "Squares of one color"),
+    Halftone = "halftone" => ("Halftone", "Tone as dots or lines of ink, as in print"),
     EdgeFilter = "edges" => ("Edges", "Light lines where colors differ, or dark ones"),
     WrappedOffset = "offset"
         => ("Offset", "Shifted; what leaves on one side enters on the other"),

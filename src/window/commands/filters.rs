@@ -52,6 +52,7 @@ commands! {
     "median", "New median layer", "Median…", "Removes specks and keeps edges";
     "glow", "New glow layer", "Glow…", "What is bright shines beyond its edge";
     "pixelate", "New pixelate layer", "Pixelate…", "Squares of one color";
+    "halftone", "New halftone layer", "Halftone…", "Tone as dots or lines of ink, as in print";
     "edges", "New edges layer", "Edges…", "Light lines where colors differ, or dark ones";
     "offset", "New offset layer", "Offset…",
         "Shifted; what leaves on one side enters on the other";
