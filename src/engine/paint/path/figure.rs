@@ -163,8 +163,7 @@ impl Figure {
         let center = fixed + 0.5 * axis.rotate(across);
         let signs = [vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)];
         let half = 0.5 * across * signs[handle % BOX_HANDLES];
-        let next = Self { from: center - half, to: center + half, ..*self };
-        if is_balloon { next.with_tip(self.tip()) } else { next }
+        Self { from: center - half, to: center + half, ..*self }.with_tail_of(self)
     }
 
     /// The same figure between two points of a drag.
@@ -184,6 +183,21 @@ impl Figure {
     /// The same figure elsewhere.
     pub fn moved(&self, by: Vec2) -> Self {
         Self { from: self.from + by, to: self.to + by, ..*self }
+    }
+
+    /// The same figure elsewhere, but for the tip of a balloon's tail, which stays.
+    pub fn moved_body(&self, by: Vec2) -> Self {
+        self.moved(by).with_tail_of(self)
+    }
+
+    /// The same figure turned; the tip of a balloon's tail stays.
+    pub fn turned(&self, rotation: f32) -> Self {
+        Self { rotation, ..*self }.with_tail_of(self)
+    }
+
+    /// The same figure; a balloon's tail ends where that of another one does.
+    fn with_tail_of(self, other: &Self) -> Self {
+        if self.kind == FigureKind::Balloon { self.with_tip(other.tip()) } else { self }
     }
 
     /// Its lines.

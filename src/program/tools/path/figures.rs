@@ -104,14 +104,15 @@ impl FigureGesture {
         match self.drag {
             FigureDrag::Draw => old.between(self.from, at, keys.shift, keys.alt),
             FigureDrag::Handle(handle) => old.with_handle(handle, at, keys.shift),
-            FigureDrag::Move => old.moved(at - self.from),
+            FigureDrag::Move if keys.shift => old.moved(at - self.from),
+            FigureDrag::Move => old.moved_body(at - self.from),
             FigureDrag::Turn => {
                 let turn = |p: Vec2| (p - old.center()).to_angle().to_degrees();
                 // Counter-clockwise as seen is clockwise in y-down coordinates.
                 let turned = old.rotation + turn(self.from) - turn(at);
                 let step = if keys.shift { 15.0 } else { 0.0 };
                 let turned = if step > 0.0 { (turned / step).round() * step } else { turned };
-                Figure { rotation: (turned + 540.0).rem_euclid(360.0) - 180.0, ..*old }
+                old.turned((turned + 540.0).rem_euclid(360.0) - 180.0)
             }
         }
     }

@@ -122,6 +122,15 @@ fn a_balloon_has_its_tail_to_its_tip_which_stays_while_the_box_changes() {
             dragged.with_handle(handle, dragged.handles()[handle] + vec2(9.0, -4.0), false);
         assert!(larger.handles()[4].distance(vec2(200.0, 150.0)) < 1e-2, "{handle}");
     }
+    // Moved and turned alone, it still points there; its shape in its own frame is another.
+    let away = dragged.moved_body(vec2(-40.0, 12.0));
+    assert!(away.handles()[4].distance(vec2(200.0, 150.0)) < 1e-2);
+    assert_eq!(away.center(), dragged.center() + vec2(-40.0, 12.0));
+    let turned = dragged.turned(-65.0);
+    assert!(turned.rotation == -65.0 && turned.handles()[4].distance(vec2(200.0, 150.0)) < 1e-2);
+    assert_eq!(dragged.moved(vec2(5.0, 5.0)).tail_x, dragged.tail_x);
+    let star = figure(FigureKind::Star);
+    assert_eq!(star.moved_body(vec2(3.0, 4.0)), star.moved(vec2(3.0, 4.0)));
     // Inside there is no tail, and a balloon without a height is no failure.
     let inside = balloon.with_handle(4, balloon.center(), false);
     assert_eq!(inside.subpaths()[0].nodes.len(), 4);
