@@ -21,6 +21,7 @@ pub mod flatten;
 mod floats;
 mod form_sources;
 mod frame_box;
+mod frames;
 pub mod guides;
 mod histogram;
 pub mod history;

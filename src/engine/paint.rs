@@ -68,8 +68,8 @@ pub use gradient::{Gradient, GradientStop};
 pub use image::{PictureOrigin, PictureSource, PlacedImage, Placement};
 pub use liquify::{LiquifySettings, LiquifyStroke, LiquifyTool};
 pub use path::{
-    Figure, FigureKind, FlatLine, LinePlace, LivePath, PathCap, PathGeometry, PathJoin, PathNode,
-    PathRule, Subpath,
+    Figure, FigureKind, FlatLine, LinePlace, LivePath, PanelDrag, PanelSettings, PathCap,
+    PathGeometry, PathJoin, PathNode, PathRule, Subpath,
 };
 pub use ramp_colors::RampColors;
 pub use ramp_style::RampStyle;

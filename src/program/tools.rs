@@ -23,6 +23,7 @@ pub mod liquify;
 pub mod mask;
 pub mod move_content;
 pub mod outline;
+pub mod panels;
 pub mod path;
 mod pen;
 pub mod purpose;
@@ -43,7 +44,7 @@ pub use shape::ShapeSettings;
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
-use crate::paint::{Brush, Fill, LiquifySettings};
+use crate::paint::{Brush, Fill, LiquifySettings, PanelSettings};
 use crate::surface::Operator;
 use crop::CropSettings;
 use gizmo::GizmoMemory;
@@ -126,6 +127,8 @@ pub struct ToolSettings {
     pub gradient: GradientSettings,
     /// The figure tool and the path tool.
     pub path: PathSettings,
+    /// The panel tool.
+    pub panels: PanelSettings,
     /// What of a path is selected.
     pub path_node: SelectedNode,
     /// Whether a stroke that begins on a part of the shape may go on to others.
@@ -162,6 +165,7 @@ impl ToolSettings {
             presses_by_speed: false,
             gradient: GradientSettings::default(),
             path: PathSettings::default(),
+            panels: PanelSettings::default(),
             path_node: SelectedNode::default(),
             color: Color::BLACK,
             second_color: Color::WHITE,
@@ -191,6 +195,7 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Anchors => anchors::press(context, pen),
         ToolKind::Figure => path::figures::press(context, pen),
         ToolKind::Path => path::nodes::press(context, pen),
+        ToolKind::Panels => panels::press(context, pen),
         ToolKind::Move => move_content::press(context, pen),
         ToolKind::Transform => transform::press(context, pen),
         ToolKind::Liquify => liquify::press(context, pen),

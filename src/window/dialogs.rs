@@ -14,6 +14,7 @@ pub mod materials;
 pub mod new;
 pub mod paint_change;
 pub mod palette;
+pub mod panels;
 pub mod path;
 pub mod preferences;
 pub mod recovery;
@@ -68,6 +69,7 @@ pub enum Dialog {
     Losses(losses::Losses),
     Maps(maps::MapsDialog),
     Palette(palette::CommandPalette),
+    Panels(panels::PanelsDialog),
     Preferences(Box<preferences::PreferencesDialog>),
     About,
 }
@@ -173,6 +175,7 @@ impl Dialog {
                 keep.show(ui, &names, requests)
             }
             Dialog::Grid => grid::show(ui, session, requests),
+            Dialog::Panels(panels) => panels.show(ui, requests),
             Dialog::Looks(looks) => looks.show(ui, session, requests),
             Dialog::Materials(materials) => materials.show(ui, session, requests),
             Dialog::Canvas(canvas) => canvas.show(ui, requests),

@@ -10,6 +10,7 @@ pub mod brush_mode;
 mod brush_tip;
 pub mod brushes;
 pub mod colors;
+pub mod comic;
 mod crop;
 pub mod curve;
 mod dual_brush;

@@ -87,6 +87,8 @@ pub enum WindowRequest {
     EdgeDialog(EdgeChange),
     KeepDialog,
     GridDialog,
+    /// A page of panels, of the selected path or the selection if there is one.
+    PanelsDialog,
     LooksDialog,
     MaterialsDialog,
     CanvasSizeDialog,

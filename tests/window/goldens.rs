@@ -54,7 +54,7 @@ const LAYERS: [&str; 32] = [
 ];
 
 /// Commands that open a dialog, and the files that show what it offers.
-const DIALOGS: [(&str, &str); 13] = [
+const DIALOGS: [(&str, &str); 14] = [
     ("New…", "new"),
     ("Canvas size…", "canvas-size"),
     ("Image size…", "image-size"),
@@ -68,6 +68,7 @@ const DIALOGS: [(&str, &str); 13] = [
     ("Curves…", "curves"),
     ("Feather selection…", "feather"),
     ("Grid and snapping…", "grid"),
+    ("Panels…", "panels"),
 ];
 
 /// The text of a control: its role, its name, and what it holds. `None`: it only groups others.

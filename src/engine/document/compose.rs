@@ -143,10 +143,45 @@ impl Composer<'_> {
                 return ComposeFlow::Continue(shown);
             }
             let mut pixels = self.blank();
-            self.stack(&node.children, &mut pixels)?;
+            self.layers_of(node, &mut pixels)?;
             return ComposeFlow::Continue(TileContent::Group(pixels));
         }
         ComposeFlow::Continue(self.compose_layer(node))
+    }
+
+    /// Composes the layers of a group onto a tile; what lies beneath a frame only inside of it.
+    fn layers_of(&self, group: &PreparedLayer, onto: &mut PlanarTile) -> ComposeFlow {
+        let nodes = &group.children;
+        let mut framed =
+            nodes.iter().enumerate().filter(|(_, node)| node.frame.is_some()).peekable();
+        if framed.peek().is_none() {
+            return self.stack(nodes, onto);
+        }
+        let (around, mut done) = (onto.clone(), 0);
+        for (place, node) in framed {
+            self.stack(&nodes[done..place], onto)?;
+            let all = std::mem::replace(onto, around.clone());
+            onto.mix_toward(&all, &self.frame_coverage(node));
+            done = place;
+        }
+        self.stack(&nodes[done..], onto)
+    }
+
+    /// Where what lies beneath a frame is seen.
+    fn frame_coverage(&self, node: &PreparedLayer) -> TileCoverage {
+        let Some(inside) = &node.frame else { return TileCoverage::FULL };
+        let share = |c: u8| f32::from(c) / 255.0;
+        if let Some(far) = &self.far {
+            let values = far.values(|_, pixel| share(inside.at(pixel.x, pixel.y)));
+            return TileCoverage::FULL.times_values(values);
+        }
+        match inside.tile(self.at) {
+            None => TileCoverage::uniform(0.0),
+            Some(tile) if tile.is_whole() => TileCoverage::FULL,
+            Some(tile) => {
+                TileCoverage::FULL.times_values(tile.bytes().iter().map(|c| share(*c)).collect())
+            }
+        }
     }
 
     fn compose_layer(&self, node: &PreparedLayer) -> TileContent {
@@ -171,7 +206,7 @@ impl Composer<'_> {
                 Composer { prepared: self.prepared, at, far, sought: None, floats: None };
             let mut pixels = composer.blank();
             match node.layer.content.role() {
-                Role::Groups(_) => drop(composer.stack(&node.children, &mut pixels)),
+                Role::Groups(_) => drop(composer.layers_of(node, &mut pixels)),
                 _ => {
                     if let Some(paint) = composer.compose_in_place(node).as_paint() {
                         pixels.blend(Mix::default(), paint, &TileCoverage::FULL);
@@ -219,10 +254,10 @@ impl Composer<'_> {
         coverage: &TileCoverage,
     ) -> ComposeFlow {
         if coverage.is_full() {
-            return self.stack(&node.children, onto);
+            return self.layers_of(node, onto);
         }
         let mut after = onto.clone();
-        self.stack(&node.children, &mut after)?;
+        self.layers_of(node, &mut after)?;
         onto.mix_toward(&after, coverage);
         ComposeFlow::Continue(())
     }

@@ -184,6 +184,13 @@ fn narrowed(stroke: &Stroke, to: &CoverageGrid) -> Stroke {
     stroke.selecting(Some(own))
 }
 
+impl Layer {
+    /// A copy of it and of what is in it, under fresh ids.
+    pub fn copied(&self) -> Layer {
+        with_fresh_ids(self)
+    }
+}
+
 /// The same layer and those in it under fresh ids.
 fn with_fresh_ids(layer: &Layer) -> Layer {
     let mut next = Layer { id: LayerId::fresh(), ..layer.clone() };

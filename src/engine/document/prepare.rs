@@ -3,6 +3,7 @@
 //! (`compose`).
 
 use super::filter_stage::{FilterStage, StoredTiles};
+use super::frames;
 use super::layer::effects::EffectTiles;
 use super::layer::on_canvas::on_canvas;
 use super::layer::warp::WarpTiles;
@@ -12,7 +13,7 @@ use super::{
 };
 use crate::math::Size;
 use crate::paint::{EffectLight, Scene};
-use crate::raster::TileAt;
+use crate::raster::{CoverageGrid, TileAt};
 use crate::shading::radiance::BackdropStats;
 use crate::surface::{Contours, Curvature};
 use std::ops::Range;
@@ -48,6 +49,8 @@ pub(super) struct PreparedLayer {
     pub warp: Option<Arc<WarpTiles>>,
     /// What its effects add, if it shows some.
     pub effects: Option<Arc<EffectTiles>>,
+    /// For the frame of a group: what it leaves of the layers beneath it there.
+    pub frame: Option<Arc<CoverageGrid>>,
     /// For a group: its layers, bottom first.
     pub children: Vec<PreparedLayer>,
     /// The run of layers clipped to this one, bottom first.
@@ -217,6 +220,7 @@ impl StackBuilder<'_> {
     fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, scope: Scope) -> PreparedLayer {
         let within = Scope { map: scope.map.within(layer), ..scope };
         let warp = LayerWarp::of(layer, &within.map).filter(|_| is_composed_first(layer));
+        let frame = frames::inside(layer, &scope.map, scene);
         let layer = &on_canvas(layer, &scope.map);
         let first = self.adjustments.len();
         let visible_scene = scene.clone();
@@ -257,6 +261,7 @@ impl StackBuilder<'_> {
                 layer.cache.warped.tiles(&visible_scene, shown, warp, is_cut)
             }),
             effects,
+            frame,
             layer: layer.clone(),
             scene: visible_scene,
             children,

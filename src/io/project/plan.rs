@@ -10,6 +10,8 @@
 //!   hidden next to it: also in Photoshop's format, whose clipping Krita does not read and others
 //!   do not apply at the edge; there the hidden layers are clipped as here;
 //! * an isolated group with a mask becomes one too;
+//! * the inside of a frame is the mask of a group around what lies beneath it, if the format has
+//!   masks; else the group of the frame becomes one with a composed picture;
 //! * where several layers keep to the surface and the format has masks, its edge is the mask of a
 //!   group around them, so that it cuts them once;
 //! * a layer that changes or reads what is beneath in a way that cannot be expressed (radiance
@@ -102,6 +104,9 @@ pub fn plan(document: &Document, words: FormatSupport) -> Vec<PlanItem> {
 
 /// The name of the group whose mask is the surface's edge.
 const ON_SURFACE: &str = "On the surface";
+
+/// The name of the group whose mask is the inside of a frame.
+const IN_FRAME: &str = "In the frame";
 
 struct Planner<'a> {
     document: &'a Document,
@@ -267,13 +272,17 @@ impl Planner<'_> {
     }
 
     fn group(&self, layer: &Arc<Layer>, group: &Group) -> PlanItem {
-        let parts = self.scope(&group.layers);
+        let is_said = !group.pass_through && self.can_express_frame(group);
+        let parts = match group.frames().next().filter(|_| is_said) {
+            Some(frame) => self.plan_framed(group, frame),
+            None => self.scope(&group.layers),
+        };
         if group.pass_through {
             let shows = ItemContent::Stack { isolated: false, items: parts };
             let own = self.with_word_for_effects(layer, item(layer));
             return PlanItem { opacity: 1.0, blend: BlendMode::Normal, shows, ..own };
         }
-        let is_baked = !self.has_words_for_effects(layer);
+        let is_baked = !self.has_words_for_effects(layer) || !is_said;
         let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
         let items = match &layer.mask {
             _ if mask.is_some() && !is_baked => parts,
@@ -287,8 +296,31 @@ impl Planner<'_> {
             }
         };
         let mask = mask.filter(|_| !is_baked);
-        let own = self.with_word_for_effects(layer, item(layer));
+        let own = if is_baked { without_effects(item(layer)) } else { item(layer) };
         PlanItem { shows: ItemContent::Stack { isolated: true, items }, mask, ..own }
+    }
+
+    /// The layers of a group whose frame is the mask of what lies beneath it.
+    fn plan_framed(&self, group: &Group, frame: usize) -> Vec<PlanItem> {
+        let (beneath, above) = group.layers.split_at(frame);
+        let inside = above.first().and_then(|layer| self.document.inside_of_frame(layer.id));
+        let mask = inside.map(|inside| {
+            let coverage = Arc::new(inside.to_plane(self.document.size.rect()));
+            LayerMask::new(MaskKind::File { file: String::new(), coverage })
+        });
+        let shows = ItemContent::Stack { isolated: true, items: self.scope(beneath) };
+        let framed = PlanItem { mask, ..picture(IN_FRAME.into(), shows) };
+        [framed].into_iter().chain(self.scope(above)).collect()
+    }
+
+    /// Whether the format can express the frames of a group.
+    fn can_express_frame(&self, group: &Group) -> bool {
+        let mut frames = group.frames();
+        let Some(frame) = frames.next() else { return true };
+        let above = runs(&group.layers[frame..]);
+        self.words.masks
+            && frames.next().is_none()
+            && !above.iter().any(|run| self.is_composed_with_beneath(run))
     }
 
     /// A visible run that cannot be shown without composing it with what lies beneath.
@@ -302,14 +334,17 @@ impl Planner<'_> {
             Role::Adjusts(_) => clips || !self.can_express_adjustment(base),
             Role::Shapes(_) => false,
             Role::Groups(group) if group.pass_through && !clips => {
-                let is_faded = base.opacity < 1.0 || base.mask.is_some();
+                let is_faded =
+                    base.opacity < 1.0 || base.mask.is_some() || group.frames().next().is_some();
                 let is_baked = !self.has_words_for_effects(base);
                 is_faded
                     || is_baked
                     || runs(&group.layers).iter().any(|run| self.is_composed_with_beneath(run))
             }
-            _ => {
-                let is_baked = clips || !self.has_words_for_effects(base);
+            role => {
+                let is_said =
+                    !matches!(role, Role::Groups(group) if !self.can_express_frame(group));
+                let is_baked = clips || !is_said || !self.has_words_for_effects(base);
                 !self.can_express_blending(base) || (is_baked && !self.can_hold_effects(base))
             }
         }

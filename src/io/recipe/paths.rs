@@ -6,7 +6,8 @@ use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{COORDINATE, Vec2, vec2};
 use crate::paint::{
-    Figure, FigureKind, LivePath, PathCap, PathGeometry, PathJoin, PathNode, PathRule, Subpath,
+    Figure, FigureKind, LivePath, PanelDrag, PanelSettings, PathCap, PathGeometry, PathJoin,
+    PathNode, PathRule, Subpath,
 };
 use serde_json::Value;
 
@@ -30,6 +31,7 @@ impl RecipeValue for LivePath {
         if !self.dashes.is_empty() {
             out.set("dashes", self.dashes.iter().map(|dash| object::number(*dash)).collect());
         }
+        out.flag("frames", self.frames, plain.frames);
         out.into_value()
     }
 
@@ -50,6 +52,7 @@ impl RecipeValue for LivePath {
             cap: fields.one_of("cap", &PathCap::ALL, plain.cap)?,
             join: fields.one_of("join", &PathJoin::ALL, plain.join)?,
             dashes: fields.get("dashes").map_or(Ok(Vec::new()), |node| read_dashes(&node))?,
+            frames: fields.boolean("frames", plain.frames)?,
         };
         fields.finish()?;
         Ok(path)
@@ -86,6 +89,40 @@ impl RecipeValue for Figure {
         }
         fields.finish()?;
         Ok(figure)
+    }
+}
+
+/// `{ "rows": 3, "columns": 2, "margin": 40, … }`.
+impl RecipeValue for PanelSettings {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        for setting in PanelSettings::SETTINGS {
+            out.number(setting.name, (setting.get)(self), (setting.get)(&PanelSettings::DEFAULT));
+        }
+        let plain = PanelSettings::DEFAULT;
+        out.color("border_color", self.border_color, plain.border_color);
+        out.flag("paper", self.paper, plain.paper);
+        out.color("paper_color", self.paper_color, plain.paper_color);
+        out.flag("right_to_left", self.right_to_left, plain.right_to_left);
+        out.word("drag", &PanelDrag::ALL, self.drag, plain.drag);
+        out.into_value()
+    }
+
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let mut settings = PanelSettings::DEFAULT;
+        for setting in PanelSettings::SETTINGS {
+            let default = (setting.get)(&settings);
+            let to = fields.number(setting.name, default, setting.range.clone())?;
+            (setting.set)(&mut settings, to);
+        }
+        settings.border_color = fields.color("border_color", settings.border_color)?;
+        settings.paper = fields.boolean("paper", settings.paper)?;
+        settings.paper_color = fields.color("paper_color", settings.paper_color)?;
+        settings.right_to_left = fields.boolean("right_to_left", settings.right_to_left)?;
+        settings.drag = fields.one_of("drag", &PanelDrag::ALL, settings.drag)?;
+        fields.finish()?;
+        Ok(settings)
     }
 }
 
@@ -178,6 +215,7 @@ mod tests {
             join: PathJoin::Bevel,
             dashes: vec![4.0, 2.5],
             rule: PathRule::EvenOdd,
+            frames: true,
             ..LivePath::new(lines).with_fill(Color::BLACK)
         };
         assert_eq!(read(&path.to_json()).unwrap(), path);

@@ -11,6 +11,7 @@ pub mod guides;
 pub mod hand;
 pub mod layers;
 pub mod palettes;
+pub mod panels;
 pub mod parts;
 pub mod paths;
 pub mod pictures;
@@ -29,6 +30,7 @@ pub use guides::GuideAction;
 pub use hand::HandAction;
 pub use layers::{LayerAction, NewLayer};
 pub use palettes::PaletteAction;
+pub use panels::PanelAction;
 pub use parts::{NewPart, PartAction};
 pub use paths::PathAction;
 pub use pointer::PointerAction;
@@ -100,6 +102,7 @@ rooms! {
     "hand" Hand(HandAction),
     "layer" Layer(LayerAction),
     "palette" Palette(PaletteAction),
+    "panel" Panel(PanelAction),
     "part" Part(PartAction),
     "path" Path(PathAction),
     "pointer" Pointer(PointerAction),
@@ -145,6 +148,7 @@ impl Action {
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
             Action::Palette(action) => done = action.apply(session),
+            Action::Panel(action) => action.apply(session),
             Action::Part(action) => action.apply(session),
             Action::Path(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),

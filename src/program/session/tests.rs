@@ -7,6 +7,7 @@ mod exporting;
 mod held;
 mod kept;
 mod palettes;
+mod panels;
 mod pasting;
 mod paths;
 mod selecting;

@@ -39,6 +39,8 @@ pub type SettingsChange = Box<dyn FnOnce(&mut ToolSettings) + Send>;
 /// What is selected in a document besides its layers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DocumentChoice {
+    /// A layer.
+    Layer(LayerId),
     /// Strokes of the selected layer.
     Strokes(Vec<usize>),
     /// A part of the shape, by its id.

@@ -47,6 +47,11 @@ rilievo_engine::named! {
             "Click for corners, drag for smooth nodes; the first node closes, Enter ends. Drag nodes and handles \
              later; Ctrl breaks a handle, Alt deletes a node",
         ),
+        Panels = "panels" => (
+            "Panels",
+            "Drag across a comic's panels to cut them, or drag new ones; Shift turns a cut in steps of 15°, makes a \
+             panel a square. Click a panel to select its frame",
+        ),
         Move = "move" => (
             "Move",
             "Drag the selected layer; on a stroke layer, the stroke under the pen (Shift: all of them)",
@@ -129,6 +134,7 @@ impl ToolKind {
             ToolKind::Text | ToolKind::Transform => 'T',
             ToolKind::Figure => 'U',
             ToolKind::Path => 'P',
+            ToolKind::Panels => 'C',
             ToolKind::Liquify => 'K',
             ToolKind::Assistants => 'Y',
             ToolKind::Crop => 'C',
@@ -149,13 +155,13 @@ impl ToolKind {
 
     /// Whether that letter is pressed with Shift.
     pub fn is_key_shifted(self) -> bool {
-        matches!(self, ToolKind::Text | ToolKind::Figure | ToolKind::Path)
+        matches!(self, ToolKind::Text | ToolKind::Figure | ToolKind::Path | ToolKind::Panels)
     }
 
     /// Whether the pen snaps to guides, the grid and edges in all uses.
     pub fn is_snapping_tool(self) -> bool {
         use ToolKind::{
-            Assistants, Crop, Figure, Gradient, Move, Path, SelectEllipse, SelectRectangle,
+            Assistants, Crop, Figure, Gradient, Move, Panels, Path, SelectEllipse, SelectRectangle,
             Transform,
         };
         matches!(
@@ -165,6 +171,7 @@ impl ToolKind {
                 | Figure
                 | Gradient
                 | Move
+                | Panels
                 | Path
                 | SelectEllipse
                 | SelectRectangle

@@ -40,7 +40,7 @@ pub fn draw(
     if tool == ToolKind::Crop {
         super::crop::draw(painter, session, &to_screen);
     }
-    if matches!(tool, ToolKind::Path | ToolKind::Figure) {
+    if matches!(tool, ToolKind::Path | ToolKind::Figure | ToolKind::Panels) {
         super::path_handles::draw(painter, session, &to_screen, under, tool);
     }
     if tool == ToolKind::Text {

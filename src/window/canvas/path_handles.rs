@@ -36,6 +36,7 @@ pub fn draw(
     match (tool, live.figure()) {
         (ToolKind::Figure, Some(figure)) => draw_figure(painter, figure, &on_screen),
         (ToolKind::Figure, None) => {}
+        (ToolKind::Panels, _) => draw_outline(painter, live, &on_screen),
         _ => {
             let selected = session.tools.path_node.within(layer.id, live);
             draw_nodes(painter, live, selected, under.map(to_screen), &on_screen);
@@ -45,6 +46,13 @@ pub fn draw(
 
 fn draw_line(painter: &Painter, points: Vec<Pos2>) {
     painter.extend(LOOKS.map(|look| Shape::line(points.clone(), look)));
+}
+
+/// The line of a path without its nodes.
+fn draw_outline(painter: &Painter, live: &LivePath, on_screen: &impl Fn(Vec2) -> Option<Pos2>) {
+    for line in live.flatten(Some) {
+        draw_line(painter, line.points.into_iter().filter_map(on_screen).collect());
+    }
 }
 
 fn draw_figure(painter: &Painter, figure: &Figure, on_screen: &impl Fn(Vec2) -> Option<Pos2>) {

@@ -61,6 +61,14 @@ fn is_text(content: &Content) -> bool {
 
 pub const COMMANDS: &[MenuCommand] = &[
     row(
+        "Panels…",
+        &[],
+        "Divides the page, the selection or the selected path in panels of a comic, each a group \
+         that is clipped to its frame",
+        |session| session.active().is_some(),
+        |_, requests| requests.request(WindowRequest::PanelsDialog),
+    ),
+    row(
         "Select path",
         &[],
         "Selects what lies inside of the path",

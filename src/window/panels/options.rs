@@ -2,7 +2,7 @@
 //! rest is behind *More*. Floor 7.
 
 use super::{
-    assistants, brush_mode, crop, fill, gradient, liquify, path, select, shaping, transform,
+    assistants, brush_mode, comic, crop, fill, gradient, liquify, path, select, shaping, transform,
 };
 use crate::document::Symmetry;
 use crate::operators::{
@@ -101,6 +101,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
         ToolKind::Gradient => gradient::options(ui, session, requests),
         ToolKind::Figure | ToolKind::Path => path::options(ui, session, requests),
+        ToolKind::Panels => comic::options(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
         tool => drop(ui.weak(tool.hint())),

@@ -18,6 +18,8 @@ use std::ops::RangeInclusive;
 const OUTLINE: RangeInclusive<f32> = 0.0..=100.0;
 const OUTLINE_HINT: &str = "The width of the line along the path; 0: none";
 const FILL_HINT: &str = "Filled with a color";
+const FRAME_HINT: &str =
+    "What lies beneath it in its group is seen inside of it only, as in a comic's panel";
 
 /// The options of the path tool and the figure tool, in a bar.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
@@ -96,6 +98,9 @@ pub fn show(ui: &mut Ui, path: &LivePath, setter: &mut LayerSetter) {
     }
     show_fill(ui, path, setter);
     show_outline(ui, path, setter);
+    if let Some(frames) = check(ui, "Frame of its group", FRAME_HINT, path.frames) {
+        set(setter, Some(LivePath { frames, ..path.clone() }));
+    }
     ui.separator();
 }
 

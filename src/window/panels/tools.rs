@@ -19,14 +19,14 @@ const GROUPS: [&[ToolKind]; 5] = {
     [
         &[Brush, Eraser, Fill, Gradient, Eyedropper],
         &[SelectRectangle, SelectEllipse, Lasso, Wand, SurfaceWand],
-        &[Move, Transform, Liquify, Strokes, Image, Text, Figure, Path, Anchors, Crop],
+        &[Move, Transform, Liquify, Strokes, Image, Text, Figure, Path, Panels, Anchors, Crop],
         &[Shape, Touch, Sculpt],
         &[Assistants, Hand, Zoom],
     ]
 };
 /// Sides of a tool's button, points.
 const LARGEST_PT: f32 = 32.0;
-const SMALLEST_PT: f32 = 19.0;
+const SMALLEST_PT: f32 = 18.0;
 /// Of those in two columns.
 const PAIRED_PT: f32 = 24.0;
 /// Between two buttons, and between two groups.

@@ -3,7 +3,7 @@
 
 use super::MainWindow;
 use crate::dialogs::{
-    Dialog, canvas, edge, import, looks, materials, new, paint_change, palette, preferences,
+    Dialog, canvas, edge, import, looks, materials, new, paint_change, palette, panels, preferences,
 };
 use crate::file_purpose::FilePurpose;
 use crate::requests::WindowRequest;
@@ -71,6 +71,9 @@ impl MainWindow {
                 self.dialogs.push(Dialog::Keep(edge::KeepDialog::default()))
             }
             WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),
+            WindowRequest::PanelsDialog => {
+                self.dialogs.extend(panels::PanelsDialog::new(&self.session).map(Dialog::Panels))
+            }
             WindowRequest::LooksDialog => {
                 self.dialogs.push(Dialog::Looks(Box::new(looks::LooksDialog::new(ctx))))
             }

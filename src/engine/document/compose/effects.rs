@@ -31,7 +31,7 @@ impl Composer<'_> {
             && node.warp.is_none();
         // What is sought in it lies on what is beneath it.
         if passes && self.is_sought_in(node) {
-            self.stack(&node.children, onto)?;
+            self.layers_of(node, onto)?;
         }
         let mut own = self.blank();
         if let Some(paint) = self.content(node)?.as_paint() {
@@ -55,7 +55,7 @@ impl Composer<'_> {
         let shape = TileCoverage::FULL.times_values(kept);
         if !shape.is_none() || self.is_sought_in(node) {
             if passes {
-                self.stack(&node.children, &mut inside)?;
+                self.layers_of(node, &mut inside)?;
             } else {
                 self.compose_clipped(node, &mut own)?;
                 own.make_opaque();

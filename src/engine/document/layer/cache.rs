@@ -8,7 +8,7 @@ use super::{
 use crate::document::filter_stage::StoredTiles;
 use crate::document::memory_use::MemoryCount;
 use crate::math::Size;
-use crate::raster::Asset;
+use crate::raster::{Asset, CoverageGrid};
 use crate::shading::RadianceScaling;
 use crate::surface::{Scene, Surface};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -32,6 +32,8 @@ pub struct LayerCache {
     pub(in crate::document) brightest: Memo<()>,
     /// The factor that restores the mean luminance, for given parameters.
     pub(in crate::document) gain: Memo<RadianceScaling>,
+    /// For a frame: what lies inside of it, by the map of its group.
+    pub(in crate::document) framed: Memo<LayerMap, Arc<CoverageGrid>>,
     /// For a filter: what is composed beneath it, if it is clipped or not, in a group's place.
     pub(in crate::document) beneath: Memo<(bool, LayerMap), Arc<StoredTiles>>,
 }
@@ -41,6 +43,9 @@ impl LayerCache {
     pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
         if let Some(tiles) = self.beneath.last() {
             tiles.count(count, keeps);
+        }
+        if let Some(inside) = self.framed.last().filter(|inside| count.is_new(inside)) {
+            count.add_kept(inside.bytes() as u64);
         }
         self.warped.count(count, keeps);
         self.effects.count(count, keeps);

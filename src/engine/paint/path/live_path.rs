@@ -25,6 +25,9 @@ pub struct LivePath {
     pub join: PathJoin,
     /// Lengths of dashes and gaps, px, in turn; empty: one line.
     pub dashes: Vec<f32>,
+    /// It is the frame of the group that it lies in: what lies beneath it there is seen inside of it
+    /// only.
+    pub frames: bool,
 }
 
 /// The lines of a path.
@@ -105,6 +108,7 @@ impl LivePath {
             cap: PathCap::default(),
             join: PathJoin::default(),
             dashes: Vec::new(),
+            frames: false,
         }
     }
 

@@ -138,3 +138,34 @@ fn what_openraster_cannot_blend_is_composed() {
     let masked = Layer { mask: Some(mask), ..group("g", false, vec![fill("b")]) };
     assert_eq!(describe_plan(vec![fill("a"), masked]), "a g[-g~[b] g*1]");
 }
+
+#[test]
+fn the_inside_of_a_frame_is_a_mask_where_there_are_masks() {
+    use crate::document::Live;
+    use crate::math::vec2;
+    use crate::paint::{Figure, LivePath, PlacedImage};
+    let size = Size::new(8, 8);
+    let frame = || {
+        let figure = Figure { from: vec2(2.0, 2.0), to: vec2(6.0, 6.0), ..Figure::DEFAULT };
+        let path = LivePath { frames: true, ..LivePath::new(figure) };
+        Layer::new("f", Content::Image(Live::new(PlacedImage::of_path(size, path))))
+    };
+    let planned = |layers: Vec<Layer>, passes: bool, words| {
+        let layers = vec![Arc::new(group("g", passes, layers))];
+        plan(&Document { layers, ..Document::empty(size) }, words)
+    };
+    let panel = || vec![fill("a"), fill("b"), frame(), fill("c")];
+    let masked = planned(panel(), false, FormatSupport::PHOTOSHOP);
+    assert_eq!(text(&masked), "g[In the frame[a b] f c]");
+    let ItemContent::Stack { items, .. } = &masked[0].shows else { panic!("no group") };
+    let Some(LayerMask { kind: MaskKind::File { coverage, .. }, .. }) = &items[0].mask else {
+        panic!("no mask")
+    };
+    assert_eq!([coverage.at(1, 3), coverage.at(2, 3), coverage.at(5, 5)], [0, 255, 255]);
+    let composed = planned(panel(), false, FormatSupport::OPENRASTER);
+    assert_eq!(text(&composed), "g[-g~[a b f c] g*1]");
+    let passing = planned(panel(), true, FormatSupport::PHOTOSHOP);
+    assert_eq!(text(&passing), "-g~[gthrough[a b f c]] g*1");
+    let two = [panel(), vec![frame()]].concat();
+    assert_eq!(text(&planned(two, false, FormatSupport::PHOTOSHOP)), "g[-g~[a b f c f] g*1]");
+}

@@ -283,6 +283,7 @@ fn works_in_place(tool: ToolKind, open: &OpenDocument) -> Result<Document, &'sta
                 | ToolKind::Liquify
                 | ToolKind::Crop
                 | ToolKind::Assistants
+                | ToolKind::Panels
         );
     let active = open.active_layer.and_then(|id| document.layer(id));
     let is_on_path = active.is_some_and(|layer| path::of_layer(layer).is_some());
@@ -324,7 +325,10 @@ fn take(session: &mut Session, outcome: Outcome) {
             session.tools.lasso.clear();
         }
         Outcome::Choose(choice) => choose(session, choice),
-        Outcome::Refused(why) => session.notes.push(why.into_owned()),
+        Outcome::Refused(why) => {
+            open.forget_preview();
+            session.notes.push(why.into_owned());
+        }
         Outcome::Cancel => open.forget_preview(),
     }
 }
@@ -333,6 +337,10 @@ fn choose(session: &mut Session, choice: DocumentChoice) {
     let target = session.tools.transform.target;
     let Some(open) = session.active_mut() else { return };
     match choice {
+        DocumentChoice::Layer(id) => {
+            open.forget_preview();
+            open.active_layer = Some(id);
+        }
         DocumentChoice::Strokes(strokes) => {
             if let Some(layer) = open.active_layer {
                 open.select_strokes(layer, strokes);

@@ -47,6 +47,20 @@ fn canvas_lines(document: &Document, id: LayerId) -> Option<(Vec<FlatLine>, Path
     Some((path.flatten(to_canvas(image, document.size)), path.rule))
 }
 
+/// The closed lines of the path of a layer on the canvas, before it is bent; `None` for a layer that
+/// is no path, and beyond a horizon.
+pub fn lines_on_canvas(document: &Document, id: LayerId) -> Option<Vec<Subpath>> {
+    let shown = document.with_transform_applied(id)?;
+    let image = of_layer(shown.layer(id)?)?;
+    let path = image.source.path()?;
+    let map = to_canvas(image, document.size);
+    let is_seen = |line: &&Subpath| line.flatten(&map).is_some();
+    let lines = path.subpaths();
+    let seen = lines.iter().filter(|line| line.nodes.len() > 1).filter(is_seen);
+    let lines = seen.map(|line| Subpath { closed: true, ..line.mapped(|p| map(p).unwrap_or(p)) });
+    Some(lines.collect())
+}
+
 /// The document after the brush went along the path of a layer, and the layer that it painted on.
 /// Refused where the brush is refused.
 ///

@@ -30,7 +30,7 @@ const BRUSH: [(&str, &str); 8] = [
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 80] = [
+const SYNONYMS: [(&str, &[&str]); 83] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
@@ -50,6 +50,9 @@ const SYNONYMS: [(&str, &[&str]); 80] = [
     ("bloom", &["glow"]),
     ("despeckle", &["median"]),
     ("mosaic", &["pixelate"]),
+    ("screentone", &["halftone"]),
+    ("frame", &["panels"]),
+    ("comic", &["panels", "balloon"]),
     ("sobel", &["edges"]),
     ("film", &["grain"]),
     ("stabiliser", &["stabilizer"]),

@@ -49,6 +49,7 @@ pub fn gesture(dice: &mut Dice, tool: ToolKind) -> Vec<Action> {
         ToolKind::Path => path_nodes(dice, tool),
         ToolKind::Gradient
         | ToolKind::Figure
+        | ToolKind::Panels
         | ToolKind::Image
         | ToolKind::Anchors
         | ToolKind::Move

@@ -3,7 +3,8 @@
 use super::dice::{Dice, Roll};
 use crate::math::vec2;
 use crate::paint::{
-    Figure, FigureKind, LivePath, PathCap, PathGeometry, PathJoin, PathNode, PathRule, Subpath,
+    Figure, FigureKind, LivePath, PanelDrag, PanelSettings, PathCap, PathGeometry, PathJoin,
+    PathNode, PathRule, Subpath,
 };
 
 impl Roll for Figure {
@@ -57,7 +58,30 @@ impl Roll for LivePath {
             cap: dice.one_of(&PathCap::ALL).0,
             join: dice.one_of(&PathJoin::ALL).0,
             dashes: (0..dice.below(4)).map(|_| dice.within(0.0, 12.0)).collect(),
+            frames: dice.is(25),
             ..LivePath::new(geometry)
         }
+    }
+}
+
+impl Roll for PanelSettings {
+    fn roll(dice: &mut Dice) -> Self {
+        let mut settings = PanelSettings {
+            border_color: dice.value("PanelSettings", "color"),
+            paper: dice.is(70),
+            paper_color: dice.value("PanelSettings", "color"),
+            right_to_left: dice.is(30),
+            drag: dice.one_of(&PanelDrag::ALL).0,
+            ..PanelSettings::DEFAULT
+        };
+        for setting in PanelSettings::SETTINGS {
+            let all = setting.range.clone();
+            let to = match setting.is_length {
+                true => dice.in_range(*all.start()..=12.0, all),
+                false => dice.within(1.0, 3.0),
+            };
+            (setting.set)(&mut settings, to);
+        }
+        settings
     }
 }
