@@ -6,6 +6,10 @@
 
 #![warn(missing_docs)]
 
+mod shapes;
+
+pub use shapes::{MOST_SHAPES, SvgShape, SvgShapes, read_shapes};
+
 use super::{Budget, pixels::Painted};
 use crate::math::{Size, Vec2, vec2};
 use crate::raster::{self, Asset, Picture, TileGrid};
@@ -45,13 +49,19 @@ pub fn is_svg(bytes: &[u8]) -> bool {
     rest.starts_with("<svg") || rest.starts_with("<svg:svg")
 }
 
+/// How much larger than its own size an SVG is drawn whose pixels are to be enough for most uses.
+pub fn layer_scale(own: Vec2) -> f32 {
+    let longer = own.max_element();
+    longer.max(LAYER_PX.min(MOST_ENLARGED * longer)) / longer
+}
+
 /// Decodes an SVG for an image layer, at a resolution of at least 2048 pixels along its longer
 /// side. The picture's file is the same SVG with its text as outlines.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let drawing = Drawing::parse(file, bytes, budget)?;
-    let longer = drawing.tree.size().width().max(drawing.tree.size().height());
+    let own = vec2(drawing.tree.size().width(), drawing.tree.size().height());
     let most = budget.side_px.min(8192) as f32;
-    let scale = longer.max(LAYER_PX.min(MOST_ENLARGED * longer)).min(most) / longer;
+    let scale = layer_scale(own).min(most / own.max_element());
     let (size, texels) = drawing.render(file, scale, budget)?;
     let picture = Picture::srgb8(size, texels);
     let picture = picture.ok_or_else(|| Error::decode(file, "the drawing has no pixels"))?;

@@ -11,19 +11,25 @@ use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
 use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::files::read_file;
-use crate::io::{Budget, Terms, picture};
-use crate::math::{Range, Size};
+use crate::io::{Budget, Terms, picture, svg};
+use crate::math::{Affine2, Range, Size, Vec2};
 use crate::raster::TileGrid;
+use crate::session::actions::parts::paths::PathParts;
 use crate::shape::flats::lifted_ink::LiftedInk;
 use crate::{Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// How much larger or smaller than its own size an SVG is drawn.
+const SCALE: Range = 0.01..=64.0;
 
 /// Make normals, depth and parts for a drawing that has no maps
 ///
 /// The drawing's alpha is its outline; a background of one color is left out. With --flats each
 /// flat color becomes a part, and parts that interrupt the outline of others lie in front of them.
+/// With --paths each filled path of an SVG drawing becomes a part.
 /// FOLDER gets DRAWING_n (normals), _d (depth, near is 0), _h (height), _mask and _id (the number
 /// of the part).
 #[derive(clap::Args)]
@@ -37,6 +43,13 @@ pub struct ShapeArgs {
     /// A part for each separate area of a color, such as two eyes
     #[arg(long, requires = "flats", alias = "places")]
     areas: bool,
+    /// A part for each filled path of the drawing, which is an SVG
+    #[arg(long, conflicts_with_all = ["flats", "areas", "ink"])]
+    paths: bool,
+    /// With --paths: the maps are so many times larger than the SVG says; by default so that the
+    /// longer side has at least 2048 pixels
+    #[arg(long, value_name = "FACTOR", requires = "paths", value_parser = scale)]
+    scale: Option<f32>,
     /// The folder to write the maps to; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
@@ -92,6 +105,10 @@ fn puff(text: &str) -> std::result::Result<f32, String> {
 
 fn profile(text: &str) -> std::result::Result<f32, String> {
     parse_within(text, &Inflation::PROFILE)
+}
+
+fn scale(text: &str) -> std::result::Result<f32, String> {
+    parse_within(text, &SCALE)
 }
 
 fn rim(text: &str) -> std::result::Result<f32, String> {
@@ -152,6 +169,9 @@ impl InkFiles {
     }
 }
 
+/// Flats are found through so much, and no surface takes less.
+const BYTES_A_PIXEL: u64 = 64;
+
 /// The drawing as a document with parts, and what is told about colors without one.
 fn shape_drawing(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     let budget = args.limits.budget();
@@ -160,9 +180,10 @@ fn shape_drawing(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
         profile: args.profile.unwrap_or(args.preset.profile),
         rim_deg: args.rim.unwrap_or(args.preset.rim_deg),
     };
+    if args.paths {
+        return shape_of_paths(args, inflation, &budget);
+    }
     let (size, drawing) = tiles(&args.drawing, &budget)?;
-    // Flats are found through so much, and no surface takes less.
-    const BYTES_A_PIXEL: u64 = 64;
     budget.room(
         &args.drawing,
         &format!("the shape of {size} pixels"),
@@ -203,6 +224,39 @@ fn shape_drawing(args: &ShapeArgs) -> Result<(Document, Option<String>)> {
     let note = parts.note();
     let list: Vec<Arc<Part>> = parts.parts.into_iter().map(Arc::new).collect();
     budget.room_for_shape(&args.drawing, &document, &list, held)?;
+    Ok((document.with_parts(list), note))
+}
+
+/// An SVG as a document with a part for each of its filled paths.
+fn shape_of_paths(
+    args: &ShapeArgs,
+    inflation: Inflation,
+    budget: &Budget,
+) -> Result<(Document, Option<String>)> {
+    let refused = |reason: String| Error::unsupported_file(&args.drawing, reason);
+    let bytes = read_file(&args.drawing, budget.file_bytes)?;
+    if !svg::is_svg(&bytes) {
+        return Err(refused("it is no SVG drawing, so it has no paths (--paths)".into()));
+    }
+    let read = svg::read_shapes(&args.drawing, &bytes, budget)?;
+    let scale = args.scale.unwrap_or_else(|| svg::layer_scale(read.size));
+    // A length that was scaled to whole pixels may be a little above.
+    let side = |length: f32| (length * scale - 1e-3).ceil().max(1.0) as u64;
+    let size = budget.size(&args.drawing, side(read.size.x), side(read.size.y))?;
+    budget.room(
+        &args.drawing,
+        &format!("the shape of {size} pixels"),
+        size.area() as u64 * BYTES_A_PIXEL,
+    )?;
+    let map = Affine2::from_scale(Vec2::splat(scale));
+    let made = PathParts::of(&read, size, &map, BTreeSet::new(), inflation);
+    let note = made.note();
+    if made.parts.is_empty() {
+        return Err(refused("no filled path in it covers enough to be a part".into()));
+    }
+    let document = Document { layers: made.layers, ..Document::empty(size) };
+    let list: Vec<Arc<Part>> = made.parts.into_iter().map(Arc::new).collect();
+    budget.room_for_shape(&args.drawing, &document, &list, 0)?;
     Ok((document.with_parts(list), note))
 }
 

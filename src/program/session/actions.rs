@@ -125,6 +125,7 @@ impl Action {
     pub fn files_mut(&mut self) -> Vec<&mut PathBuf> {
         match self {
             Action::File(action) => action.files_mut(),
+            Action::Part(PartAction::ShapePaths { file: Some(file), .. }) => vec![file],
             Action::Palette(
                 PaletteAction::Import { file } | PaletteAction::Export { file, .. },
             ) => vec![file],

@@ -5,7 +5,6 @@ use super::MainWindow;
 use crate::advice::with_advice;
 use crate::dialogs::{Dialog, import, path, shape};
 use crate::document::SurfaceSource;
-use crate::document::parts::drawing::DrawingTraits;
 use crate::file_purpose::FilePurpose;
 use crate::files::{self, FileAnswer};
 use crate::io::maps::ImportedSurface;
@@ -116,10 +115,14 @@ impl MainWindow {
     /// A document was opened, from a file if it has one.
     pub(super) fn add_opened(&mut self, file: Option<PathBuf>, opened: OpenedFile) {
         self.recent_is(file.clone());
-        let drawing = opened.drawing.filter(DrawingTraits::has_outline);
+        let is_svg = |file: &PathBuf| {
+            file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+        };
+        let svg = file.clone().filter(is_svg);
+        let drawing = opened.drawing.filter(|traits| traits.has_outline() || svg.is_some());
         self.session.adopt(opened);
         if let (Some(traits), Some(open)) = (drawing, self.session.active()) {
-            self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of_picture(open, traits)));
+            self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of_picture(open, traits, svg)));
         }
         if let Some(file) = file {
             self.did(|| Action::File(FileAction::Open { file }));

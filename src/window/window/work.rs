@@ -343,9 +343,7 @@ impl MainWindow {
                     window.finish_shape(key, action, &from, shape);
                 }),
                 Ok(None) => JobResult::nothing(),
-                Err(why) => {
-                    JobResult::then(|window: &mut Self, _| window.messages.push(why.into()))
-                }
+                Err(why) => JobResult::then(|window: &mut Self, _| window.messages.push(why)),
             }
         });
         true

@@ -8,6 +8,7 @@ mod grays;
 mod ink;
 mod list;
 pub mod new;
+pub mod paths;
 mod split;
 
 pub use first::FirstShape;
@@ -23,7 +24,7 @@ use crate::session::{LayerPath, OpenDocument, Session};
 use crate::shape::SculptTool;
 use crate::tools::ShapeSettings;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 names!(SculptTool);
@@ -79,6 +80,9 @@ actions! {
         /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat
         /// colors (`true`) or from each area of one (`"areas"`), and a lit Base.
         "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: PartFor }
+        /// A layer of an SVG gets a shape, a part for each filled path. `file`: the SVG, for a layer
+        /// of paint that it was opened as.
+        "shape paths" ShapePaths { layer: LayerPath, file: Option<PathBuf>, preset: InflationPreset }
         /// A part in a new version, as recipes write it; shown only, until it is `done`.
         "set" Set { part: Value, done: bool }
         /// With what lies on it.
@@ -128,6 +132,11 @@ impl PartAction {
                 }
                 None => Err(NO_PART.into()),
             },
+            PartAction::Shape { .. } | PartAction::ShapePaths { .. } => {
+                open.forget_preview();
+                let shaped = self.perform_long(open.document(), &Progress::default());
+                shaped.map(|shaped| shaped.into_iter().for_each(|shaped| shaped.put(open)))
+            }
             _ => {
                 open.forget_preview();
                 self.step(open).map_err(str::to_owned)
@@ -138,7 +147,8 @@ impl PartAction {
 
     /// A description of a long edit.
     pub fn takes_long(&self) -> Option<&'static str> {
-        matches!(self, PartAction::Shape { .. }).then_some("Giving it a shape")
+        let is_long = matches!(self, PartAction::Shape { .. } | PartAction::ShapePaths { .. });
+        is_long.then_some("Giving it a shape")
     }
 
     /// Performs a long edit on a document, on any thread; `None` for any other.
@@ -146,10 +156,22 @@ impl PartAction {
         &self,
         document: &Document,
         progress: &Progress,
-    ) -> Result<Option<FirstShape>, PartRefusal> {
-        let PartAction::Shape { layer, preset, flats } = self else { return Ok(None) };
-        let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
-        first::shape_layer(document, layer, preset.0, *flats, progress).map(Some)
+    ) -> Result<Option<FirstShape>, String> {
+        let find = |layer: &LayerPath| layer.find(document).map(|layer| layer.id);
+        let no_layer = || "There is no such layer.".to_owned();
+        match self {
+            PartAction::Shape { layer, preset, flats } => {
+                let layer = find(layer).ok_or_else(no_layer)?;
+                first::shape_layer(document, layer, preset.0, *flats, progress)
+                    .map(Some)
+                    .map_err(str::to_owned)
+            }
+            PartAction::ShapePaths { layer, file, preset } => {
+                let layer = find(layer).ok_or_else(no_layer)?;
+                paths::shape_paths(document, layer, file.as_deref(), preset.0, progress).map(Some)
+            }
+            _ => Ok(None),
+        }
     }
 
     fn step(&self, open: &mut OpenDocument) -> Result<(), PartRefusal> {
@@ -170,12 +192,6 @@ impl PartAction {
                     return Err(kind.why_empty());
                 }
                 ("Add part", next, Some(id))
-            }
-            PartAction::Shape { .. } => {
-                if let Some(shaped) = self.perform_long(document, &Progress::default())? {
-                    shaped.put(open);
-                }
-                return Ok(());
             }
             PartAction::Delete { part } => {
                 ("Delete part", document.without_part(part).ok_or(NO_PART)?, None)
@@ -218,7 +234,9 @@ impl PartAction {
                 }
                 return Ok(());
             }
-            PartAction::Set { .. }
+            PartAction::Shape { .. }
+            | PartAction::ShapePaths { .. }
+            | PartAction::Set { .. }
             | PartAction::TakeAlong { .. }
             | PartAction::Select { .. }
             | PartAction::Settings { .. } => return Ok(()),

@@ -93,7 +93,7 @@ pub fn shape_layer(
     // Its edge is the surface's: clipping as well would make it thinner.
     let next =
         document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);
-    let base = base(&next, &tiles);
+    let base = base(&next, Some(&tiles));
     let id = base.id;
     let place = next
         .place_of(layer)
@@ -173,10 +173,10 @@ pub(super) fn with_paint(
 
 /// The layer that shows the form: a painter's light on the drawing, in a few tones of its own colors
 /// if it was drawn pixel by pixel.
-fn base(document: &Document, drawing: &TileGrid) -> Layer {
+pub(super) fn base(document: &Document, drawing: Option<&TileGrid>) -> Layer {
     let mut shading = Shading::fitting(Model::Painter, document.size);
     shading.painter.beneath = true;
-    if let Some(colors) = pixel_art_colors(drawing, document.size) {
+    if let Some(colors) = drawing.and_then(|drawing| pixel_art_colors(drawing, document.size)) {
         shading.pixel = PixelShading { bands: PixelShading::USUAL_BANDS, dither: 0.0, colors };
     }
     let content = Content::Shading(Live::new(shading));

@@ -108,10 +108,11 @@ impl StoryFiles {
             ("export unwrapped", _) => new(&["out-sheet.png", "out-sheet.exr"]),
             ("export lines", _) => new(&["out-lines.svg"]),
             ("open", _) => found(&|name| {
-                [".ora", ".psd", ".json", ".png"].iter().any(|end| name.ends_with(end))
+                [".ora", ".psd", ".json", ".png", ".svg"].iter().any(|end| name.ends_with(end))
             }),
             ("export file", _) => new(&["out.gpl", "out.ase", "out.kpl", "out.pal"]),
             ("import file", _) => found(&|name| name.ends_with(".gpl") || name.ends_with(".kpl")),
+            ("shape paths", _) => found(&|name| name.ends_with(".svg")),
             ("import brush", _) => found(&|name| name.starts_with("picture")),
             _ => found(&|name| {
                 name.starts_with("picture") || name.starts_with("normal") || name == "gray.png"

@@ -46,6 +46,13 @@ pub fn write_assets(folder: &Path) {
     }
 }
 
+/// A vector drawing with a clip and an outline.
+const SHAPES: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="90" height="60">
+  <clipPath id="c"><circle cx="30" cy="30" r="18"/></clipPath>
+  <path id="body" d="M5 50 Q20 5 60 12 T85 50 Z" fill="#c07040"/>
+  <g clip-path="url(#c)"><rect x="15" y="20" width="30" height="30" fill="#40c0a0"/></g>
+  <rect x="55" y="20" width="16" height="14" fill="#3040c0" stroke="#202020" stroke-width="3"/></svg>"##;
+
 /// The files that stories use.
 fn assets() -> &'static [(String, Vec<u8>)] {
     static ASSETS: OnceLock<Vec<(String, Vec<u8>)>> = OnceLock::new();
@@ -53,6 +60,7 @@ fn assets() -> &'static [(String, Vec<u8>)] {
         let mut files = pictures();
         files.push(("recipe.json".into(), RECIPE.as_bytes().to_vec()));
         files.push(("colors.gpl".into(), b"GIMP Palette\n1 2 3\tNight\n200 90 40\n".to_vec()));
+        files.push(("shapes.svg".into(), SHAPES.as_bytes().to_vec()));
         let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/seeds/files");
         for name in ["im-layers16.psd", "im-rgb8.psd", "pt-RGB-ZIP.psd"] {
             files.extend(std::fs::read(seeds.join(name)).map(|bytes| (name.to_owned(), bytes)));
