@@ -5,6 +5,7 @@ mod brushes;
 mod busy;
 mod canvas;
 mod colors;
+mod comics;
 mod documents;
 mod goldens;
 mod keyboard;
