@@ -186,7 +186,10 @@ fn dual_brushes() -> Vec<(String, Make)> {
         let strokes = json!({ "kind": "strokes", "strokes": [stroke] });
         (name, layers(Some(Shape::Ball), json!([paper(), strokes])))
     };
-    let dots = |mode: &str| json!({ "mode": mode, "size": 0.35, "spacing": 1.2, "hardness": 0.5, "scatter": 0.6, "flow": 0.8 });
+    let dots = |mode: &str| {
+        json!({ "mode": mode, "size": 0.35, "spacing": 1.2, "hardness": 0.5, "scatter": 0.6,
+            "flow": 0.8 })
+    };
     let by_mode =
         DualMode::ALL.iter().map(|(_, mode)| cell((*mode).to_owned(), dots(mode), json!({})));
     let leaves = json!({ "mode": "multiply", "size": 0.8, "spacing": 0.5, "tip": { "file": "leaf.png" },
