@@ -17,7 +17,12 @@ fn slope(rise: f32) -> Surface {
     Surface::new(maps).unwrap()
 }
 
-fn ray_at(surface: &Surface, body: &Body, (x, y): (usize, usize), direction: Vec3) -> InnerRay {
+fn ray_at(
+    surface: &Surface,
+    body: &SolidBody,
+    (x, y): (usize, usize),
+    direction: Vec3,
+) -> InnerRay {
     InnerRay {
         at: vec2(x as f32 + 0.5, y as f32 + 0.5),
         nearness: body.nearness_of(surface.depth(x, y)),
