@@ -186,7 +186,7 @@ fn narrowed(stroke: &Stroke, to: &CoverageGrid) -> Stroke {
 
 impl Layer {
     /// A copy of it and of what is in it, under fresh ids.
-    pub fn copied(&self) -> Layer {
+    pub fn copy_with_fresh_ids(&self) -> Layer {
         with_fresh_ids(self)
     }
 }

@@ -58,8 +58,8 @@ fn cover(layer: &Arc<Layer>, around: &LayerMap, scene: &Scene) -> Option<Coverag
     let (image, path) = (live.params(), live.params().source.path()?);
     let is_flat = scene.surface.is_none() || image.bend.operator.is_identity();
     let grid = match is_flat {
-        true => flat(image, path, scene),
-        false => bent(image, path, scene)?,
+        true => cover_flat(image, path, scene),
+        false => cover_bent(image, path, scene)?,
     };
     Some(match LayerWarp::of(layer, &around.within(layer)) {
         Some(warp) => displaced(&grid, &warp, scene),
@@ -68,14 +68,14 @@ fn cover(layer: &Arc<Layer>, around: &LayerMap, scene: &Scene) -> Option<Coverag
 }
 
 /// The inside of a path that is not bent, exactly.
-fn flat(image: &PlacedImage, path: &LivePath, scene: &Scene) -> CoverageGrid {
+fn cover_flat(image: &PlacedImage, path: &LivePath, scene: &Scene) -> CoverageGrid {
     let lines = path.flatten(|p| image.canvas_from_path(scene.size, p));
     let polygons: Vec<_> = lines.iter().map(|line| &line.points[..]).collect();
     shapes::polygons(&polygons, path.rule == PathRule::EvenOdd, scene.size.rect())
 }
 
 /// The inside of a path that is bent as the path is, filled.
-fn bent(image: &PlacedImage, path: &LivePath, scene: &Scene) -> Option<CoverageGrid> {
+fn cover_bent(image: &PlacedImage, path: &LivePath, scene: &Scene) -> Option<CoverageGrid> {
     let solid = LivePath { outline: 0.0, frames: false, ..path.clone() }.with_fill(Color::BLACK);
     // The pin stays where it is, although the box of the path is another.
     let solid = PlacedImage { bend: image.bend.clone(), ..image.with_path(scene.size, solid)? };

@@ -52,7 +52,7 @@ struct PanelGesture {
 
 impl PanelGesture {
     /// The document once the pen is lifted, how the step is called, and what is selected then.
-    fn done(&self) -> Option<(Document, String, Option<LayerId>)> {
+    fn finish(&self) -> Option<(Document, String, Option<LayerId>)> {
         match self.settings.drag {
             PanelDrag::Cut => {
                 let (document, count) =
@@ -99,7 +99,7 @@ impl Gesture for PanelGesture {
         let found = self.snap.point(pen.place());
         self.lines = found.lines;
         self.set_end(found.at, pen);
-        let shown = self.done().map(|(document, ..)| document);
+        let shown = self.finish().map(|(document, ..)| document);
         Outcome::Preview(shown.unwrap_or_else(|| self.document.clone()))
     }
 
@@ -112,7 +112,7 @@ impl Gesture for PanelGesture {
                 Outcome::Choose(DocumentChoice::Layer(panel.frame))
             });
         }
-        match (self.done(), self.settings.drag) {
+        match (self.finish(), self.settings.drag) {
             (Some((document, label, select)), _) => Outcome::Commit { label, document, select },
             (None, PanelDrag::Draw) => Outcome::Cancel,
             (None, PanelDrag::Cut) => Outcome::Refused(

@@ -59,7 +59,7 @@ impl PanelsDialog {
             (None, Some(_)) => "The box around the selection becomes panels.",
             (None, None) => "The page becomes panels.",
         });
-        let divided = self.sketched();
+        let divided = self.find_panels();
         self.sketch(ui, divided.as_deref().unwrap_or_default());
         let all: Vec<&str> = PanelSettings::SETTINGS.iter().map(|setting| setting.name).collect();
         let is_shown = |name: &&str| *name != "margin" || self.within.is_none();
@@ -84,7 +84,7 @@ impl PanelsDialog {
     }
 
     /// The panels as rectangles; or why there are none.
-    fn sketched(&self) -> Result<Vec<Figure>, String> {
+    fn find_panels(&self) -> Result<Vec<Figure>, String> {
         let settings = self.settings.clamp_to_ranges();
         match self.within {
             Some(within) => PanelSettings { margin: 0.0, ..settings }.divide_rectangle(within),

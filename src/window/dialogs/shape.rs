@@ -86,7 +86,7 @@ impl ShapeDialog {
     fn new(open: &OpenDocument, layer: Option<LayerId>, traits: DrawingTraits) -> Self {
         let preset = Inflation::PRESETS[0].0;
         let each = if traits.is_of_flats() { PartFor::Color } else { PartFor::Layer };
-        let is_svg = layer.and_then(|id| open.document().layer(id)).is_some_and(holds_svg);
+        let is_svg = layer.and_then(|id| open.document().layer(id)).is_some_and(has_svg);
         let paths = is_svg.then(PathsChoice::default);
         Self { key: open.key, layer, traits, preset, each, is_first: false, paths }
     }
@@ -187,7 +187,7 @@ impl ShapeDialog {
 }
 
 /// Whether a layer holds an SVG that is no text.
-fn holds_svg(layer: &Arc<Layer>) -> bool {
+fn has_svg(layer: &Arc<Layer>) -> bool {
     let Content::Image(live) = &layer.content else { return false };
     let source = &live.params().source;
     let is_file = source.path().is_none() && source.text().is_none();

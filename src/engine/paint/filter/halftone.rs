@@ -66,8 +66,15 @@ impl Halftone {
     ///
     /// * `at`: where it is, px. `axes`: of the screen. `wide`: how much of the screen it is wide, px.
     fn ink_at(&self, at: Vec2, axes: Vec2, tone: f32, wide: f32) -> f32 {
-        if tone <= 0.0 || tone >= 1.0 {
-            return tone.max(0.0).min(1.0);
+        if tone < LEAST_TONE {
+            return 0.0;
+        }
+        if tone > 1.0 - LEAST_TONE {
+            return 1.0;
+        }
+        if self.size <= 1.0 {
+            // Finer than the pixels, as in a small preview: only its mean is seen.
+            return tone;
         }
         // Counter-clockwise as seen is clockwise in y-down coordinates.
         let in_cells = vec2(at.x * axes.x - at.y * axes.y, at.x * axes.y + at.y * axes.x);
@@ -79,7 +86,10 @@ impl Halftone {
             false => self.inside_dot_px(in_cells, tone),
         };
         let edge_px = wide.max(0.25 * self.size * self.softness / 100.0);
-        (0.5 + inside_px / edge_px).max(0.0).min(1.0)
+        let ink = (0.5 + inside_px / edge_px).max(0.0).min(1.0);
+        // A dot, a line or a gap that is smaller than a pixel covers no more of it than it has.
+        let cell = if self.lines { self.size } else { self.size * self.size };
+        ink.min(tone * cell).max(1.0 - (1.0 - tone) * cell)
     }
 
     /// How far within the ink of a dot a point lies, px; negative outside.
@@ -227,6 +237,9 @@ fn sheet_at(place: &FilterPlace, sheet: &Unwrapping, x: i32, y: i32) -> Option<(
     Some((own, wide))
 }
 
+/// A lighter tone is paper, and one as near to black is ink: less than a quarter of a level.
+const LEAST_TONE: f32 = 1.0 / 1024.0;
+
 /// Tones whose levels are kept.
 const LEVELS: usize = 512;
 
@@ -316,8 +329,8 @@ mod tests {
         let at = |x: usize, y: usize| pixels[y * 128 + x][0];
         // Half of each cell of 8 px: rows 2 to 5.
         for x in [0, 40, 101] {
-            let rows: Vec<f32> = (0..8).map(|y| at(x, y)).collect();
-            assert_eq!(rows, [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]);
+            let rows: Vec<f32> = (0..8).map(|y| (at(x, y) * 1e3).round()).collect();
+            assert_eq!(rows, [1e3, 1e3, 0.0, 0.0, 0.0, 0.0, 1e3, 1e3]);
         }
         let dots = Halftone { size: 16.0, angle: 0.0, ..Halftone::default() };
         let pixels = print(dots, [0.8, 0.8, 0.8, 1.0]);

@@ -21,14 +21,14 @@ pub struct StraightCut {
 
 /// A curve with the widths at its ends, all of it on one side.
 #[derive(Clone, Copy)]
-struct Piece {
+struct CutPiece {
     curve: [Vec2; 4],
     widths: [f32; 2],
 }
 
 /// Pieces of one line that lie on the kept side, from one crossing of the cut to the next.
-struct Chain {
-    pieces: Vec<Piece>,
+struct CutChain {
+    pieces: Vec<CutPiece>,
     /// Where it begins and ends along the cut, px.
     ends: [f32; 2],
 }
@@ -84,10 +84,10 @@ impl StraightCut {
 
     /// The curves of a closed line, parted where they cross the cut, and whether each lies to the
     /// left of it.
-    fn pieces(&self, line: &Subpath) -> Vec<(Piece, bool)> {
+    fn pieces(&self, line: &Subpath) -> Vec<(CutPiece, bool)> {
         let mut out = Vec::new();
         for (i, curve) in line.curves().enumerate() {
-            let mut rest = Piece { curve, widths: line.ends(i).map(|node| node.width) };
+            let mut rest = CutPiece { curve, widths: line.ends(i).map(|node| node.width) };
             let mut done = 0.0;
             for t in self.crossings(curve) {
                 let (piece, after) = rest.split((t - done) / (1.0 - done));
@@ -101,7 +101,7 @@ impl StraightCut {
     }
 
     /// Two pieces whose common end lies on the cut exactly.
-    fn meet(&self, mut before: Piece, mut after: Piece) -> (Piece, Piece) {
+    fn meet(&self, mut before: CutPiece, mut after: CutPiece) -> (CutPiece, CutPiece) {
         let at = before.curve[3];
         let on_cut = match (self.along.x == 0.0, self.along.y == 0.0) {
             (true, _) => vec2(self.at.x, at.y),
@@ -117,7 +117,7 @@ impl StraightCut {
     }
 
     /// Whether a piece that does not cross the cut lies to the left.
-    fn is_left(&self, piece: &Piece) -> bool {
+    fn is_left(&self, piece: &CutPiece) -> bool {
         self.side(piece.middle()) > 0.0
     }
 
@@ -156,12 +156,17 @@ impl StraightCut {
     }
 
     /// The runs of pieces on the left, of a line that has a piece on the right.
-    fn push_chains(&self, pieces: Vec<(Piece, bool)>, outside: usize, chains: &mut Vec<Chain>) {
-        let mut run: Vec<Piece> = Vec::new();
-        let mut end = |run: &mut Vec<Piece>| {
+    fn push_chains(
+        &self,
+        pieces: Vec<(CutPiece, bool)>,
+        outside: usize,
+        chains: &mut Vec<CutChain>,
+    ) {
+        let mut run: Vec<CutPiece> = Vec::new();
+        let mut end = |run: &mut Vec<CutPiece>| {
             if let (Some(first), Some(last)) = (run.first(), run.last()) {
                 let ends = [self.place(first.curve[0]), self.place(last.curve[3])];
-                chains.push(Chain { pieces: std::mem::take(run), ends });
+                chains.push(CutChain { pieces: std::mem::take(run), ends });
             }
         };
         let len = pieces.len();
@@ -175,7 +180,7 @@ impl StraightCut {
     }
 }
 
-impl Piece {
+impl CutPiece {
     /// Both parts of it.
     fn split(&self, t: f32) -> (Self, Self) {
         let [from, to] = self.widths;
@@ -201,7 +206,7 @@ impl Piece {
 }
 
 /// Chains closed along the cut: seen along it, two crossings after each other bound what is inside.
-fn join(chains: &[Chain]) -> Vec<Subpath> {
+fn join(chains: &[CutChain]) -> Vec<Subpath> {
     // Each crossing by its chain, and whether the chain ends there.
     let mut crossings: Vec<(usize, bool)> =
         (0..chains.len()).flat_map(|i| [(i, false), (i, true)]).collect();
@@ -230,10 +235,10 @@ fn join(chains: &[Chain]) -> Vec<Subpath> {
 }
 
 /// One closed line of chains; between them it runs straight.
-fn close<'c>(chains: impl Iterator<Item = &'c Chain>) -> Subpath {
+fn close<'c>(chains: impl Iterator<Item = &'c CutChain>) -> Subpath {
     let mut nodes: Vec<PathNode> = Vec::new();
     for chain in chains {
-        for (i, Piece { curve: [a, b, c, d], widths }) in chain.pieces.iter().enumerate() {
+        for (i, CutPiece { curve: [a, b, c, d], widths }) in chain.pieces.iter().enumerate() {
             match nodes.last_mut().filter(|_| i > 0) {
                 Some(node) => node.after = *b - *a,
                 None => nodes.push(PathNode {

@@ -220,7 +220,7 @@ fn with_panel_cut(
         Arc::make_mut(inner).content = Content::Image(Live::new(image));
         Some(())
     };
-    let mut copy = document.layer(panel.group)?.copied();
+    let mut copy = document.layer(panel.group)?.copy_with_fresh_ids();
     copy.name = format!("{PANEL} {}", u32::MAX);
     with_frame(&mut copy, second)?;
     let place = document.place_of(panel.group)?;
@@ -252,14 +252,14 @@ fn with_numbers(document: Document, settings: &PanelSettings) -> Document {
 /// Where a new panel is put: above all that the selected layer is in.
 pub fn slot_for_panel(document: &Document, layer: Option<LayerId>) -> LayerSlot {
     let highest = document.layers_below_top_ink();
-    let holds = |outer: &Arc<Layer>, id: LayerId| outer.id == id || holds_layer(outer, id);
+    let holds = |outer: &Arc<Layer>, id: LayerId| outer.id == id || has_layer_within(outer, id);
     let outermost = layer.and_then(|id| document.layers.iter().position(|outer| holds(outer, id)));
     LayerSlot::top_level(outermost.map_or(highest, |place| (place + 1).min(highest)))
 }
 
-fn holds_layer(layer: &Layer, id: LayerId) -> bool {
+fn has_layer_within(layer: &Layer, id: LayerId) -> bool {
     let group = layer.content.group();
     group.is_some_and(|group| {
-        group.layers.iter().any(|inner| inner.id == id || holds_layer(inner, id))
+        group.layers.iter().any(|inner| inner.id == id || has_layer_within(inner, id))
     })
 }

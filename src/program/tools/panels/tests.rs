@@ -28,7 +28,7 @@ fn page(settings: &PanelSettings) -> Document {
 }
 
 /// Names of the panels from above, with the corners of their frames.
-fn told(document: &Document) -> Vec<(String, Option<[f32; 4]>)> {
+fn describe_panels(document: &Document) -> Vec<(String, Option<[f32; 4]>)> {
     let group = |layer: &Arc<Layer>| {
         let panels = find_panels(document);
         let panel = panels.iter().find(|panel| panel.group == layer.id).unwrap();
@@ -62,7 +62,7 @@ fn panels_are_named_as_they_are_read_and_the_first_is_on_top() {
     let settings = PanelSettings { rows: 2.0, columns: 2.0, ..SETTINGS };
     let document = page(&settings);
     assert_eq!(
-        told(&document),
+        describe_panels(&document),
         [
             ("Panel 1".into(), Some([10.0, 10.0, 98.0, 56.0])),
             ("Panel 2".into(), Some([102.0, 10.0, 190.0, 56.0])),
@@ -84,7 +84,7 @@ fn a_drag_across_a_panel_cuts_it_and_numbers_it_again() {
     let across = [vec2(5.0, 60.0), vec2(110.0, 63.0)];
     let cut = commit(drag(&document, SETTINGS, &across, true));
     assert_eq!(
-        told(&cut),
+        describe_panels(&cut),
         [
             ("Panel 1".into(), Some([10.0, 10.0, 98.0, 56.0])),
             ("Panel 2".into(), Some([10.0, 64.0, 98.0, 110.0])),
@@ -95,7 +95,7 @@ fn a_drag_across_a_panel_cuts_it_and_numbers_it_again() {
     // Over both panels, slanted: four, none of which is a rectangle.
     let both = commit(drag(&document, SETTINGS, &[vec2(0.0, 40.0), vec2(200.0, 80.0)], false));
     let names: Vec<_> =
-        told(&both).into_iter().map(|(name, figure)| (name, figure.is_some())).collect();
+        describe_panels(&both).into_iter().map(|(name, figure)| (name, figure.is_some())).collect();
     let named = |n: usize| (format!("Panel {n}"), false);
     assert_eq!(names.len(), 4);
     assert!(names.iter().all(|(_, is_figure)| !is_figure));
@@ -114,11 +114,11 @@ fn both_parts_get_what_the_panel_held() {
     let notes = cut.walk().into_iter().filter(|(_, layer)| layer.name == "Note");
     let ids: Vec<LayerId> = notes.map(|(_, layer)| layer.id).collect();
     assert!(ids.len() == 2 && ids[0] != ids[1]);
-    assert_eq!(told(&cut)[0].1, Some([10.0, 10.0, 98.0, 110.0]));
-    assert_eq!(told(&cut)[1].1, Some([102.0, 10.0, 190.0, 110.0]));
+    assert_eq!(describe_panels(&cut)[0].1, Some([10.0, 10.0, 98.0, 110.0]));
+    assert_eq!(describe_panels(&cut)[1].1, Some([102.0, 10.0, 190.0, 110.0]));
     let manga = PanelSettings { right_to_left: true, ..SETTINGS };
     let cut = commit(drag(&document, manga, &[vec2(100.0, 0.0), vec2(100.0, 120.0)], false));
-    assert_eq!(told(&cut)[0].1, Some([102.0, 10.0, 190.0, 110.0]));
+    assert_eq!(describe_panels(&cut)[0].1, Some([102.0, 10.0, 190.0, 110.0]));
 }
 
 #[test]
@@ -143,11 +143,11 @@ fn new_panels_are_drawn_and_clicks_select_frames() {
     let settings = PanelSettings { drag: PanelDrag::Draw, ..SETTINGS };
     let drawn = drag(&page(&SETTINGS), settings, &[vec2(150.0, 90.0), vec2(50.0, 30.0)], false);
     let document = commit(drawn);
-    let all = told(&document);
+    let all = describe_panels(&document);
     assert_eq!(all.len(), 2);
     assert!(all.iter().any(|(_, corners)| *corners == Some([50.0, 30.0, 150.0, 90.0])));
     let square = drag(&document, settings, &[vec2(10.0, 10.0), vec2(50.0, 20.0)], true);
-    let all = told(&commit(square));
+    let all = describe_panels(&commit(square));
     assert!(all.iter().any(|(_, corners)| *corners == Some([10.0, 10.0, 50.0, 50.0])));
     let small = drag(&document, settings, &[vec2(10.0, 10.0), vec2(10.5, 30.0)], false);
     assert!(matches!(small, Outcome::Cancel));
@@ -168,7 +168,8 @@ fn a_cut_goes_where_the_transform_of_a_panel_shows_it() {
     let id = document.layers[0].id;
     let document = document.with_layer(id, |layer| layer.transform = transform).unwrap();
     let cut = commit(drag(&document, SETTINGS, &[vec2(80.0, 0.0), vec2(80.0, 120.0)], false));
-    let frames: Vec<_> = told(&cut).into_iter().map(|(_, corners)| corners.unwrap()).collect();
+    let frames: Vec<_> =
+        describe_panels(&cut).into_iter().map(|(_, corners)| corners.unwrap()).collect();
     // x of the frame is 2 (150 − x of the canvas): the gutter from 78 to 82 lies from 144 to 136.
     assert_eq!(frames, [[144.0, 10.0, 190.0, 110.0], [10.0, 10.0, 136.0, 110.0]]);
 }
