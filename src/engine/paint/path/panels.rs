@@ -277,8 +277,8 @@ mod tests {
         for half in halves {
             let PathGeometry::Nodes(lines) = half else { panic!("half a circle is no figure") };
             let area = lines[0].area_px();
-            // Half of the circle without half of the gutter's strip.
-            assert!((area - 3427.9).abs() < 2.0, "{area}");
+            // Half of the circle without half of the gutter's strip, as a polygon.
+            assert!((area - 3427.8).abs() < 7.0, "{area}");
         }
         let whole = PanelSettings { columns: 1.0, ..settings };
         assert_eq!(whole.divide_shape(&circle).unwrap(), [PathGeometry::Nodes(circle)]);

@@ -114,10 +114,10 @@ fn what_paths_cannot_show_stays_a_picture_over_hidden_outlines() {
     assert_eq!(document.parts.list.len(), 1);
     assert!(document.surface.is_some(), "{:?}", session.notes);
     // The image layer of an SVG holds its file; other layers hold none.
-    let script = r#"{"in":"file","do":"new","width":160,"height":120}
+    let script = r##"{"in":"file","do":"new","width":160,"height":120,"background":"#ffffff"}
 {"in":"part","do":"shape paths","layer":"0","preset":"pillow"}
 {"in":"file","do":"place","file":"FILE","at":[80,60]}
-{"in":"part","do":"shape paths","layer":"1","preset":"pillow"}"#;
+{"in":"part","do":"shape paths","layer":"1","preset":"pillow"}"##;
     let (session, _folder) = opened(script, svg);
     assert_eq!(session.notes, ["This layer is no SVG drawing, so it has no paths."]);
     assert_eq!(session.active().unwrap().document().parts.list.len(), 1);
