@@ -29,7 +29,7 @@ const LIGHT_WALL: Rgb<u8> = Rgb([0xd9, 0xd4, 0xcc]);
 const NIGHT: Rgb<u8> = Rgb([0x14, 0x1a, 0x24]);
 
 /// Layers that the gallery shows alone: picture, recipe, layer, background.
-const LAYERS: [(&str, &str, &str, Rgb<u8>); 26] = [
+const LAYERS: [(&str, &str, &str, Rgb<u8>); 27] = [
     ("noise_knot_1", "noise_knot", "γ 1", WHITE),
     ("noise_knot_2", "noise_knot", "γ 2", WHITE),
     ("noise_knot_3", "noise_knot", "γ 3", WHITE),
@@ -48,6 +48,7 @@ const LAYERS: [(&str, &str, &str, Rgb<u8>); 26] = [
     ("imitated_knot_mirror", "imitated_knot", "Mirror", LIGHT_WALL),
     ("imitated_knot_glass", "imitated_knot", "Glass", LIGHT_WALL),
     ("imitated_knot_plastic", "imitated_knot", "Plastic", LIGHT_WALL),
+    ("solid_knot_mirror", "solid_knot", "Mirror", LIGHT_WALL),
     ("glass_muse_plain", "glass_muse", "Glass", NIGHT),
     ("glass_muse_scaled", "glass_muse", "Glass, scaled", NIGHT),
     ("precomputed_muse_1", "precomputed_muse", "Environment", WALL),

@@ -48,7 +48,7 @@ rilievo_engine::named! {
              later; Ctrl breaks a handle, Alt deletes a node",
         ),
         Panels = "panels" => (
-            "Panels",
+            "Comic panels",
             "Drag across a comic's panels to cut them, or drag new ones; Shift turns a cut in steps of 15°, makes a \
              panel a square. Click a panel to select its frame",
         ),

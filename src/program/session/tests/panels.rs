@@ -30,7 +30,7 @@ const PAINT: [&str; 5] = [
     r##"{"in":"hand","do":"color","color":"#c02010"}"##,
     r#"{"in":"hand","do":"size","to":60}"#,
     r#"{"in":"hand","do":"hardness","to":1}"#,
-    r#"{"in":"pointer","do":"press","tool":"brush","pen":[60,60],"px_per_pt":1}"#,
+    r#"{"in":"pointer","do":"press","tool":"brush","pen":[60,60,1],"px_per_pt":1}"#,
     r#"{"in":"pointer","do":"release"}"#,
 ];
 
@@ -99,14 +99,14 @@ fn the_selection_and_the_shape_of_a_path_become_panels() {
     let none = play(&[r#"{"in":"panel","do":"settings","panels":{"margin":70}}"#, DIVIDE]);
     assert!(names(&none).is_empty());
     assert_eq!(
-        none.notes,
+        none.said,
         [
             "There are no panels: 2 × 3 panels, their gutters and the margin do not fit in 200 × 120 px."
         ]
     );
     let none = play(&[CUT]);
     assert_eq!(
-        none.notes,
+        none.said,
         ["No panel was cut: the line goes over none that is shown and not locked."]
     );
 }

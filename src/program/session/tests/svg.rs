@@ -45,7 +45,7 @@ const EMBLEM: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="240" hei
     <g clip-path="url(#box)"><rect id="side" x="50" y="50" width="20" height="20" fill="#3060c0"/></g>
     <path id="line" d="M20 100 L100 100" fill="none" stroke="#101010" stroke-width="4"/></svg>"##;
 
-fn opened(script: &str, svg: &str) -> (Session, tempfile::TempDir) {
+fn open_svg(script: &str, svg: &str) -> (Session, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let named = |name: &str| folder.path().join(name).to_string_lossy().replace('\\', "/");
     std::fs::write(named("emblem.svg"), svg).unwrap();
@@ -61,7 +61,7 @@ fn each_filled_path_of_an_svg_is_the_outline_of_a_part() {
 {"in":"part","do":"shape paths","layer":"0","file":"FILE","preset":"pillow"}
 {"in":"file","do":"save","file":"OUT"}
 {"in":"file","do":"open","file":"OUT"}"#;
-    let (session, _folder) = opened(script, EMBLEM);
+    let (session, _folder) = open_svg(script, EMBLEM);
     assert!(session.notes.is_empty(), "{:?}", session.notes);
     let [made, read] = &session.open_documents[..] else { panic!("there are not two documents") };
     let document = made.document();
@@ -106,7 +106,7 @@ fn what_paths_cannot_show_stays_a_picture_over_hidden_outlines() {
         <circle id="ball" cx="40" cy="30" r="25" fill="url(#r)"/></svg>"##;
     let script = r#"{"in":"file","do":"open","file":"FILE"}
 {"in":"part","do":"shape paths","layer":"0","file":"FILE","preset":"tube"}"#;
-    let (session, _folder) = opened(script, svg);
+    let (session, _folder) = open_svg(script, svg);
     let document = session.active().unwrap().document();
     let layers: Vec<_> = document.layers.iter().map(|l| (l.name.as_str(), l.visible)).collect();
     assert_eq!(layers[0], ("Outlines", false));
@@ -118,7 +118,7 @@ fn what_paths_cannot_show_stays_a_picture_over_hidden_outlines() {
 {"in":"part","do":"shape paths","layer":"0","preset":"pillow"}
 {"in":"file","do":"place","file":"FILE","at":[80,60]}
 {"in":"part","do":"shape paths","layer":"1","preset":"pillow"}"##;
-    let (session, _folder) = opened(script, svg);
+    let (session, _folder) = open_svg(script, svg);
     assert_eq!(session.notes, ["This layer is no SVG drawing, so it has no paths."]);
     assert_eq!(session.active().unwrap().document().parts.list.len(), 1);
 }

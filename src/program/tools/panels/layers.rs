@@ -4,7 +4,7 @@
 use crate::document::{
     Content, Document, Group, Layer, LayerId, LayerLock, LayerMap, LayerSlot, Live, PixelLayer,
 };
-use crate::math::{PlaneMap, Vec2, vec2};
+use crate::math::{PlaneMap, Vec2};
 use crate::paint::path::{StraightCut, order_panels};
 use crate::paint::{LivePath, PanelSettings, PathGeometry, PathJoin, PlacedImage, Subpath};
 use crate::tools::path;
@@ -58,33 +58,33 @@ fn visit(
         let Some(frame) = group.frames().last().map(|place| &group.layers[place]) else { continue };
         let Some(image) = path::of_layer(frame) else { continue };
         let plane = map.within(frame).plane;
-        let to_canvas = canvas_from_path(image, document, &plane);
-        let Some(live) = image.source.path() else { continue };
-        let lines = live.flatten(to_canvas).into_iter().map(|line| line.points).collect();
+        let Some(lines) = lines_on_canvas(image, document, &plane) else { continue };
         let is_open = is_open && frame.lock != LayerLock::All;
         found.push(Panel { group: layer.id, frame: frame.id, lines, is_open });
     }
 }
 
-/// Canvas points of those of a path's plane.
-fn canvas_from_path(
+/// The corners of each line of a path, on the canvas; `None` for what is no path.
+fn lines_on_canvas(
     image: &PlacedImage,
     document: &Document,
     plane: &PlaneMap,
-) -> impl Fn(Vec2) -> Option<Vec2> {
-    let (map, plane) = (image.frame_from_path(document.size), *plane);
-    move |point| plane.to_canvas(map?.transform_point2(point))
+) -> Option<Vec<Vec<Vec2>>> {
+    let map = image.frame_from_path(document.size);
+    let to_canvas = |point: Vec2| plane.to_canvas(map?.transform_point2(point));
+    let lines = image.source.path()?.flatten(to_canvas);
+    Some(lines.into_iter().map(|line| line.points).collect())
+}
+
+/// The corners of the box around some lines.
+fn box_around(lines: &[Vec<Vec2>]) -> [Vec2; 2] {
+    let points = || lines.iter().flatten();
+    let low = points().fold(Vec2::INFINITY, |low, p| low.min(*p));
+    let high = points().fold(Vec2::NEG_INFINITY, |high, p| high.max(*p));
+    if low.is_finite() && high.is_finite() { [low, high] } else { [Vec2::ZERO; 2] }
 }
 
 impl Panel {
-    /// The corners of the box around it.
-    fn bounds(&self) -> [Vec2; 2] {
-        let points = || self.lines.iter().flatten();
-        let low = points().fold(Vec2::INFINITY, |low, p| low.min(*p));
-        let high = points().fold(Vec2::NEG_INFINITY, |high, p| high.max(*p));
-        if low.is_finite() && high.is_finite() { [low, high] } else { [Vec2::ZERO; 2] }
-    }
-
     /// Where a line crosses its outline, px from a point of the line.
     fn crossings(&self, from: Vec2, along: Vec2) -> Vec<f32> {
         let side = |p: Vec2| along.perp_dot(p - from);
@@ -205,13 +205,8 @@ fn with_panel_cut(
     });
     let [Some(a), Some(b)] = halves else { return None };
     // The one that is read first stays above, with the layers as they are.
-    let middle = |image: &PlacedImage| {
-        let path = image.source.path()?;
-        let bounds = path.bounds();
-        let at = vec2((bounds.x0 + bounds.x1) as f32, (bounds.y0 + bounds.y1) as f32) * 0.5;
-        canvas_from_path(image, document, &map)(at)
-    };
-    let boxes = [middle(&a)?, middle(&b)?].map(|p| [p, p]);
+    let bounds = |image: &PlacedImage| Some(box_around(&lines_on_canvas(image, document, &map)?));
+    let boxes = [bounds(&a)?, bounds(&b)?];
     let is_first = order_panels(&boxes, settings.right_to_left)[0] == 0;
     let (first, second) = if is_first { (a, b) } else { (b, a) };
     let with_frame = |group: &mut Layer, image: PlacedImage| {
@@ -237,7 +232,7 @@ fn with_numbers(document: Document, settings: &PanelSettings) -> Document {
         number.is_some_and(|n| n.trim_start().parse::<u32>().is_ok())
     };
     let panels: Vec<Panel> = find_panels(&document).into_iter().filter(is_numbered).collect();
-    let boxes: Vec<[Vec2; 2]> = panels.iter().map(Panel::bounds).collect();
+    let boxes: Vec<[Vec2; 2]> = panels.iter().map(|panel| box_around(&panel.lines)).collect();
     let order = order_panels(&boxes, settings.right_to_left);
     let mut next = document.clone();
     for (number, i) in order.into_iter().enumerate() {

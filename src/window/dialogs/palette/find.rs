@@ -52,7 +52,7 @@ const SYNONYMS: [(&str, &[&str]); 83] = [
     ("mosaic", &["pixelate"]),
     ("screentone", &["halftone"]),
     ("frame", &["panels"]),
-    ("comic", &["panels", "balloon"]),
+    ("comic", &["panels"]),
     ("sobel", &["edges"]),
     ("film", &["grain"]),
     ("stabiliser", &["stabilizer"]),

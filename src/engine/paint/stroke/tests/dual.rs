@@ -89,7 +89,8 @@ fn a_second_tip_acts_on_the_whole_stroke_and_not_on_each_dab() {
     let alpha =
         |brush: Brush| one(white(brush, Operator::None, samples.clone()), &flat()).pixel(70, 64)[3];
     assert_eq!(alpha(brush.clone()), 255, "many dabs of a faint flow");
-    assert_eq!(alpha(with_second(brush, settings)), 128);
+    let halved = alpha(with_second(brush, settings));
+    assert!((127..=128).contains(&halved), "{halved}");
 }
 
 #[test]
