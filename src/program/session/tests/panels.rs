@@ -26,10 +26,12 @@ const SETTINGS: &str = r##"{"in":"panel","do":"settings","panels":{"rows":1,"col
 "gutter_across":20,"gutter_down":20,"border":4,"border_color":"#102030"}}"##;
 const DIVIDE: &str = r#"{"in":"panel","do":"divide"}"#;
 const CUT: &str = r#"{"in":"panel","do":"cut","from":[0,60],"to":[95,60]}"#;
-const PAINT: [&str; 5] = [
+const PAINT: [&str; 7] = [
     r##"{"in":"hand","do":"color","color":"#c02010"}"##,
     r#"{"in":"hand","do":"size","to":60}"#,
     r#"{"in":"hand","do":"hardness","to":1}"#,
+    r#"{"in":"hand","do":"opacity","to":1}"#,
+    r#"{"in":"hand","do":"flow","to":1}"#,
     r#"{"in":"pointer","do":"press","tool":"brush","pen":[60,60,1],"px_per_pt":1}"#,
     r#"{"in":"pointer","do":"release"}"#,
 ];
