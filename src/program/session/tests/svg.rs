@@ -122,3 +122,21 @@ fn what_paths_cannot_show_stays_a_picture_over_hidden_outlines() {
     assert_eq!(session.notes, ["This layer is no SVG drawing, so it has no paths."]);
     assert_eq!(session.active().unwrap().document().parts.list.len(), 1);
 }
+
+#[test]
+fn the_ground_of_a_drawing_is_no_part_of_it() {
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="80" height="60">
+        <rect id="ground" width="80" height="60" fill="#e0e0d0"/>
+        <circle id="ball" cx="40" cy="30" r="25" fill="#c04040"/></svg>"##;
+    let script = r#"{"in":"file","do":"open","file":"FILE"}
+{"in":"part","do":"shape paths","layer":"0","file":"FILE","preset":"pillow"}"#;
+    let (session, _folder) = open_svg(script, svg);
+    let parts = |session: &Session| -> Vec<String> {
+        let document = session.active().unwrap().document();
+        document.parts.list.iter().map(|part| part.name.clone()).collect()
+    };
+    assert_eq!(parts(&session), ["ball"], "{:?}", session.notes);
+    let alone = svg.replace(r##"<circle id="ball" cx="40" cy="30" r="25" fill="#c04040"/>"##, "");
+    let (session, _folder) = open_svg(script, &alone);
+    assert_eq!(parts(&session), ["ground"], "there is no other");
+}

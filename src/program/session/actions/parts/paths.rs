@@ -23,6 +23,9 @@ use std::sync::Arc;
 /// A path that is less opaque is a shade on others, and no part.
 const LEAST_OPACITY: f32 = 0.5;
 
+/// A path that covers more of the canvas is a ground and no part, unless there is no other.
+const GROUND_SHARE: f64 = 0.999;
+
 /// With more paths, the drawing stays one picture, and only outlines of parts are layers.
 const MOST_LAYERS: usize = 64;
 
@@ -63,6 +66,11 @@ impl PathParts {
             .map(|(i, shape)| (i, visible_area_px(shape, canvas)))
             .filter(|(_, area)| *area > 0.0)
             .collect();
+        // What covers all of the canvas is the ground that others lie on.
+        let ground = GROUND_SHARE * canvas.area() as f64;
+        if areas.iter().any(|(_, area)| *area < ground) {
+            areas.retain(|(_, area)| *area < ground);
+        }
         let filled = areas.len();
         let least = f64::from(LEAST_SHARE) * canvas.area() as f64;
         areas.retain(|(_, area)| *area >= least);
