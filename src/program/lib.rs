@@ -4,6 +4,8 @@
 
 #![cfg_attr(not(test), warn(missing_docs))]
 
+pub mod language;
+
 pub mod tools;
 
 pub mod session;

@@ -62,4 +62,4 @@ use rilievo_engine::{
     Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface,
 };
 use rilievo_io as io;
-use rilievo_program::{session, tools};
+use rilievo_program::{language, session, tools, tr};

@@ -1,10 +1,12 @@
 //! The window's own widgets: each has a name that a screen reader and a test can find, and
-//! distinguishes dragging from its end. `value_bar` draws numbers. Floor 7.
+//! distinguishes dragging from its end. They take their names and hints in English and show them in
+//! the language of the window. `value_bar` draws numbers. Floor 7.
 
 mod value_bar;
 
 use super::icons::Icon;
 use super::theme::{self, color32, outline};
+use crate::language::{tr, tr_number};
 use crate::math::srgb::Color;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
@@ -69,7 +71,15 @@ pub struct NumberField<'a> {
 
 impl<'a> NumberField<'a> {
     pub fn new(label: &'a str, range: RangeInclusive<f32>, hint: &'a str) -> Self {
-        Self { label, hint, range, suffix: "", decimals: 2, logarithmic: false, factor: 1.0 }
+        Self {
+            label: tr(label),
+            hint: tr(hint),
+            range,
+            suffix: "",
+            decimals: 2,
+            logarithmic: false,
+            factor: 1.0,
+        }
     }
 
     pub fn px(self) -> Self {
@@ -106,7 +116,7 @@ impl<'a> NumberField<'a> {
     pub fn format(&self, value: f32) -> String {
         // A zero has no sign.
         let shown = value * self.factor + 0.0;
-        format!("{shown:.*}{}", self.decimals, self.suffix)
+        format!("{}{}", tr_number(&format!("{shown:.*}", self.decimals)), self.suffix)
     }
 
     /// A bar in a row of its own.
@@ -132,7 +142,9 @@ impl<'a> NumberField<'a> {
             .range(self.range.clone())
             .speed(speed.min(1.0))
             .suffix(self.suffix)
-            .fixed_decimals(self.decimals);
+            .fixed_decimals(self.decimals)
+            .custom_formatter(|value, _| tr_number(&format!("{value:.*}", self.decimals)).into())
+            .custom_parser(|text| text.trim().replace(',', ".").parse().ok());
         let response = ui.add(drag);
         response.widget_info(|| egui::WidgetInfo::drag_value(true, f64::from(value)));
         set_accessible_name(&response, self.label);
@@ -148,6 +160,7 @@ pub fn set_accessible_name(response: &Response, label: &str) {
 
 /// A property's name; all have the same width.
 pub fn name(ui: &mut Ui, text: &str) -> Response {
+    let text = tr(text);
     let (rect, response) =
         ui.allocate_exact_size(vec2(76.0, ui.spacing().interact_size.y), egui::Sense::hover());
     let color = ui.visuals().text_color();
@@ -166,13 +179,13 @@ pub fn choice<T: Copy + PartialEq>(
 ) -> Option<T> {
     let shown = choices.iter().find(|(choice, _)| *choice == current).map_or("", |(_, word)| word);
     let mut to = current;
-    let combo =
-        egui::ComboBox::from_id_salt(label).selected_text(sentence(shown)).show_ui(ui, |ui| {
-            for (choice, word) in choices {
-                ui.selectable_value(&mut to, *choice, sentence(word));
-            }
-        });
-    set_accessible_name(&combo.response, label);
+    let combo = egui::ComboBox::from_id_salt(label).selected_text(tr(&sentence(shown)));
+    let combo = combo.show_ui(ui, |ui| {
+        for (choice, word) in choices {
+            ui.selectable_value(&mut to, *choice, tr(&sentence(word)));
+        }
+    });
+    set_accessible_name(&combo.response, tr(label));
     (to != current).then_some(to)
 }
 
@@ -200,12 +213,12 @@ pub fn sentence(word: &str) -> String {
 
 pub fn check(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Option<bool> {
     let mut to = on;
-    check_box(ui, &mut to, label).on_hover_text(hint).changed().then_some(to)
+    check_box(ui, &mut to, label).on_hover_text(tr(hint)).changed().then_some(to)
 }
 
 /// A box to tick, whose outline is seen while it is empty.
-pub fn check_box(ui: &mut Ui, on: &mut bool, label: impl Into<String>) -> Response {
-    show_outlined(ui, |ui| ui.checkbox(on, label.into()))
+pub fn check_box(ui: &mut Ui, on: &mut bool, label: impl AsRef<str>) -> Response {
+    show_outlined(ui, |ui| ui.checkbox(on, tr(label.as_ref())))
 }
 
 /// One of several choices, as a ring to fill.
@@ -213,9 +226,9 @@ pub fn radio<T: PartialEq>(
     ui: &mut Ui,
     current: &mut T,
     choice: T,
-    label: impl Into<String>,
+    label: impl AsRef<str>,
 ) -> Response {
-    show_outlined(ui, |ui| ui.radio_value(current, choice, label.into()))
+    show_outlined(ui, |ui| ui.radio_value(current, choice, tr(label.as_ref())))
 }
 
 fn show_outlined(ui: &mut Ui, show: impl FnOnce(&mut Ui) -> Response) -> Response {
@@ -237,7 +250,7 @@ pub fn list(ui: &Ui, most_pt: f32) -> ScrollArea {
 /// The title of a part of a panel.
 pub fn title(ui: &mut Ui, text: &str) {
     ui.add_space(8.0);
-    ui.label(RichText::new(text).strong());
+    ui.label(RichText::new(tr(text)).strong());
 }
 
 /// Several choices on a common ground, of which one is on.
@@ -251,21 +264,22 @@ pub fn segments(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
 
 /// One of them.
 pub fn segment(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Response {
+    let label = tr(label);
     let text = if on { RichText::new(label).strong() } else { RichText::new(label) };
     let button =
         egui::Button::selectable(on, text).min_size(vec2(0.0, ui.spacing().interact_size.y));
-    ui.add(button).on_hover_text(hint)
+    ui.add(button).on_hover_text(tr(hint))
 }
 
 /// A button for what the tool needs less often; it stays open while something is set there.
 pub fn more(ui: &mut Ui, show: impl FnOnce(&mut Ui)) {
     let stays = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
-    let (button, _) = MenuButton::new("More").config(stays).ui(ui, |ui| {
+    let (button, _) = MenuButton::new(tr("More")).config(stays).ui(ui, |ui| {
         ui.set_width(250.0);
         show(ui);
     });
-    set_accessible_name(&button, "More options");
-    button.on_hover_text("What this tool needs less often");
+    set_accessible_name(&button, tr("More options"));
+    button.on_hover_text(tr("What this tool needs less often"));
 }
 
 /// The height of a tab, points.
@@ -282,7 +296,8 @@ pub fn tab_width_pt(ui: &Ui, has_icon: bool, label: &str) -> f32 {
     2.0 * TAB_INSET_PT + icon_pt + name.size().x
 }
 
-/// One of several names of which one is in front, with a line beneath it. Without room for the name
+/// One of several names, in the language of the window, of which one is in front, with a line beneath
+/// it. Without room for the name
 /// only the icon is shown.
 pub fn tab(ui: &mut Ui, icon: Option<Icon>, label: &str, shows_name: bool, on: bool) -> Response {
     let icon_pt = Icon::Dots.grid();
@@ -347,6 +362,7 @@ pub fn draw_swatch(
     rect: egui::Rect,
     response: Response,
 ) -> Response {
+    let label = tr(label);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label));
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, color32(Color { a: 255, ..color }));

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use super::Icon;
+use crate::language::tr;
 use eframe::egui::{self, Rect, Response, Sense, StrokeKind, Ui, Vec2};
 
 /// The side of an icon's button, screen points.
@@ -16,7 +17,7 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, label: &str, on: bool) -> Response {
 pub fn quiet_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side_pt), Sense::click());
     let enabled = ui.is_enabled();
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, on, label));
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, on, tr(label)));
     if ui.is_rect_visible(rect) {
         let look = ui.style().interact(&response);
         if response.hovered() || response.has_focus() {
@@ -32,7 +33,7 @@ pub fn quiet_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32
 pub fn add_sized_button(ui: &mut Ui, icon: Icon, label: &str, on: bool, side_pt: f32) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side_pt), Sense::click());
     let enabled = ui.is_enabled();
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, on, label));
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, on, tr(label)));
     if ui.is_rect_visible(rect) {
         let look = ui.style().interact_selectable(&response, on);
         if on || response.hovered() || response.has_focus() {

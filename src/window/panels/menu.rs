@@ -9,10 +9,12 @@ use crate::commands::{MENUS, MenuCommand};
 use crate::file_pictures::FilePictures;
 use crate::icons::{Icon, add_sized_button};
 use crate::keymap::key_text;
+use crate::language::tr;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, SelectionAction};
 use crate::session::{Action, Session};
 use crate::settings::Settings;
+use crate::tr;
 use crate::widgets::{set_accessible_name, tab};
 use eframe::egui::load::SizedTexture;
 use eframe::egui::{self, Button, Image, Ui, vec2};
@@ -36,7 +38,7 @@ pub fn show(
     egui::MenuBar::new().ui(ui, |ui| {
         for (title, commands) in MENUS {
             let MenuState { keys, pictures } = &mut *menu;
-            let button = ui.menu_button(title, |ui| {
+            let button = ui.menu_button(tr(title), |ui| {
                 ui.set_min_width(220.0);
                 // A low window scrolls the menu.
                 let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 12.0;
@@ -73,15 +75,15 @@ fn entry(
         let each = |ui: &mut Ui| {
             command.within.iter().for_each(|row| entry(ui, session, settings, row, requests))
         };
-        return drop(ui.menu_button(command.name, each));
+        return drop(ui.menu_button(tr(command.name), each));
     }
     let is_on = command.is_on.is_some_and(|is_on| is_on(session, &settings.layout));
-    let mut button = Button::selectable(is_on, command.name);
+    let mut button = Button::selectable(is_on, tr(command.name));
     if let Some(keys) = settings.keymap.first(command) {
         button = button.shortcut_text(key_text(ui.ctx(), keys));
     }
     let response = ui.add_enabled((command.can)(session), button);
-    if response.on_hover_text(command.hint).clicked() {
+    if response.on_hover_text(tr(command.hint)).clicked() {
         (command.run)(session, requests);
         ui.close();
     }
@@ -97,7 +99,7 @@ fn recent_files(
     requests: &mut UiRequests,
 ) {
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
-        ui.menu_button("Open recent", |ui| {
+        ui.menu_button(tr("Open recent"), |ui| {
             for file in recent {
                 let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let button = match pictures.of(ui.ctx(), file) {
@@ -124,7 +126,7 @@ fn recent_files(
 fn show_kept_selections(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let kept = session.active().map_or(&[][..], |open| &open.document().selections);
     ui.add_enabled_ui(!kept.is_empty(), |ui| {
-        ui.menu_button("Select kept", |ui| {
+        ui.menu_button(tr("Select kept"), |ui| {
             for name in kept.iter().map(|kept| kept.name.clone()) {
                 if ui.button(&name).clicked() {
                     let how = session.tools.select.combine;
@@ -146,13 +148,13 @@ pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             let path = open
                 .file
                 .as_ref()
-                .map_or_else(|| "Not saved yet".to_owned(), |file| file.display().to_string());
+                .map_or_else(|| tr("Not saved yet").to_owned(), |file| file.display().to_string());
             let response = tab(ui, None, &title, true, is_front).on_hover_text(path);
             if response.clicked() {
                 requests.act(Action::File(FileAction::Show { index }));
             }
-            let close =
-                add_sized_button(ui, Icon::Close, &format!("Close {}", open.title()), false, 18.0);
+            let name = tr!("Close {title}", title = open.title());
+            let close = add_sized_button(ui, Icon::Close, &name, false, 18.0);
             if close.clicked() || response.middle_clicked() {
                 requests.request(WindowRequest::Close(index));
             }

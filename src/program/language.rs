@@ -1,0 +1,121 @@
+//! The language of the window and of the command line. Texts stand in English where they are shown,
+//! and are looked up in the catalog of the chosen language as they are shown. Floor 5. Not here: the
+//! texts of documents, files and scripts, which have no language.
+//!
+//! [`tr`] translates a text, [`tr!`](crate::tr) one with values in it, and [`tr_message`] what the
+//! lower floors have put together in English: notes, refusals, steps of the history.
+
+mod catalog;
+
+use catalog::Catalog;
+use std::borrow::Cow;
+use std::cell::Cell;
+use std::fmt::Display;
+
+rilievo_engine::named! {
+    /// A language of the window, by its code and with the name that it has for itself.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Language {
+        #[default]
+        English = "en" => "English",
+        German = "de" => "Deutsch",
+        French = "fr" => "Français",
+        Spanish = "es" => "Español",
+        Japanese = "ja" => "日本語",
+        Chinese = "zh" => "简体中文",
+    }
+}
+
+impl Language {
+    /// The language of a locale such as `de_AT.UTF-8` or `zh-Hans-CN`, if the window speaks it.
+    pub fn from_locale(locale: &str) -> Option<Self> {
+        let code = locale.split(['_', '-', '.', '@']).next()?.to_ascii_lowercase();
+        Self::ALL.into_iter().map(|(language, _)| language).find(|of| of.name() == code)
+    }
+
+    /// What stands between the whole and the fraction of a number.
+    pub fn decimal_mark(self) -> char {
+        match self {
+            Self::German | Self::French | Self::Spanish => ',',
+            Self::English | Self::Japanese | Self::Chinese => '.',
+        }
+    }
+
+    /// Whether its letters are not among those of the window's own font.
+    pub fn needs_han(self) -> bool {
+        matches!(self, Self::Japanese | Self::Chinese)
+    }
+
+    fn catalog(self) -> Option<&'static Catalog> {
+        catalog::find_catalog(self)
+    }
+
+    /// The English texts that this language has a translation of.
+    pub fn translated_texts(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.catalog().into_iter().flat_map(Catalog::rows)
+    }
+}
+
+thread_local! {
+    /// The language of what this thread shows. Only one thread shows texts.
+    static CURRENT: Cell<Language> = const { Cell::new(Language::English) };
+}
+
+/// What this thread shows is in this language from now on.
+pub fn set_language(language: Language) {
+    CURRENT.set(language);
+}
+
+/// The language of what this thread shows.
+pub fn language() -> Language {
+    CURRENT.get()
+}
+
+/// A text in the current language; the English one where the catalog has none.
+pub fn tr(text: &str) -> &str {
+    match language().catalog() {
+        Some(catalog) => catalog.find_text(text).unwrap_or(text),
+        None => text,
+    }
+}
+
+/// A text that was put together in English, in the current language: the catalog's row of which it
+/// is an instance gives the words, and the text the values. Values are translated as well, if they
+/// are rows themselves.
+pub fn tr_message(message: &str) -> Cow<'_, str> {
+    match language().catalog() {
+        Some(catalog) => catalog.translate_message(message),
+        None => Cow::Borrowed(message),
+    }
+}
+
+/// A text with values in braces, in the current language. Use [`tr!`](crate::tr).
+pub fn tr_with(template: &str, values: &[(&str, &dyn Display)]) -> String {
+    catalog::fill_in(tr(template), values)
+}
+
+/// A number as the current language writes it.
+pub fn tr_number(number: &str) -> Cow<'_, str> {
+    match language().decimal_mark() {
+        '.' => Cow::Borrowed(number),
+        mark => Cow::Owned(number.replace('.', mark.encode_utf8(&mut [0; 4]))),
+    }
+}
+
+/// A text in the current language, with values: `tr!("Close {title}", title = name)`. A value that is
+/// a variable of the same name needs no second word.
+#[macro_export]
+macro_rules! tr {
+    ($text:literal) => { $crate::language::tr($text) };
+    ($text:literal, $($name:ident $(= $value:expr)?),+ $(,)?) => {
+        $crate::language::tr_with(
+            $text,
+            &[$((stringify!($name), &$crate::tr!(@value $name $($value)?) as &dyn std::fmt::Display)),+],
+        )
+    };
+    (@value $name:ident) => { $name };
+    (@value $name:ident $value:expr) => { $value };
+}
+
+#[cfg(test)]
+mod tests;
