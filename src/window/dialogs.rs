@@ -12,6 +12,7 @@ pub mod losses;
 pub mod maps;
 pub mod materials;
 pub mod new;
+pub mod news;
 pub mod paint_change;
 pub mod palette;
 pub mod panels;
@@ -71,6 +72,7 @@ pub enum Dialog {
     Palette(palette::CommandPalette),
     Panels(panels::PanelsDialog),
     Preferences(Box<preferences::PreferencesDialog>),
+    News,
     About,
 }
 
@@ -191,6 +193,7 @@ impl Dialog {
             Dialog::Maps(maps) => maps.show(ui, session),
             Dialog::Losses(losses) => losses.show(ui),
             Dialog::Palette(palette) => palette.show(ui, session, &settings.keymap, requests),
+            Dialog::News => news::show(ui),
             Dialog::About => help::show_about(ui),
             Dialog::Preferences(_) | Dialog::Path(_) => DialogAnswer::Close,
         }

@@ -98,6 +98,7 @@ pub enum WindowRequest {
     Palette,
     /// The preferences, at a page.
     Preferences(PreferencePage),
+    News,
     About,
     /// Opens the menus, for the arrow keys.
     Menus,

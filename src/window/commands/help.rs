@@ -33,6 +33,9 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.request(WindowRequest::Menus),
     ),
     LINE,
+    row("What's new…", &[], "What this version brought", always, |_, requests| {
+        requests.request(WindowRequest::News)
+    }),
     row("About Rilievo…", &[], "About this program", always, |_, requests| {
         requests.request(WindowRequest::About)
     }),

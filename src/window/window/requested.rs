@@ -85,6 +85,7 @@ impl MainWindow {
             WindowRequest::Preferences(page) => self
                 .dialogs
                 .push(Dialog::Preferences(Box::new(preferences::PreferencesDialog::at(page)))),
+            WindowRequest::News => self.dialogs.push(Dialog::News),
             WindowRequest::About => self.dialogs.push(Dialog::About),
             WindowRequest::Menus => {
                 if ctx.input(|i| i.viewport().fullscreen.unwrap_or(false)) {
