@@ -63,7 +63,8 @@ fn content(
         }
         Content::Ink(lines) => {
             ui.label(tr!(
-                "The ink of “{layer}”, as it was drawn: no light falls on it. Draw on that layer, and the lines follow.",
+                "The ink of “{layer}”, as it was drawn: no light falls on it. Draw on that layer, and \
+                 the lines follow.",
                 layer = lines.of
             ));
         }
