@@ -42,3 +42,4 @@ pub mod surface;
 pub mod text;
 pub mod tools;
 mod transform;
+mod words;

@@ -3,6 +3,7 @@
 
 use super::{colors, curve, ramp};
 use crate::document::Histogram;
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::math::vec2;
 use crate::paint::adjustment::{
@@ -11,6 +12,7 @@ use crate::paint::adjustment::{
 };
 use crate::paint::{ColorAdjustment, GradientStop, PictureFilter};
 use crate::theme::ACCENT;
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange, check, choice_row, set_accessible_name};
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2};
 
@@ -179,7 +181,7 @@ impl ParameterVisitor for ParameterRows<'_> {
     fn color(&mut self, name: ParameterName, _: Color, value: &mut Color) {
         let changed = self.ui.horizontal(|ui| {
             let changed = colors::button(ui, name.label, *value);
-            ui.label(name.label);
+            ui.label(tr(name.label));
             changed
         });
         self.take(value, changed.inner);
@@ -189,10 +191,10 @@ impl ParameterVisitor for ParameterRows<'_> {
         if name.key != self.group {
             return;
         }
-        let label = format!("Curve of {}", name.label);
+        let label = tr!("Curve of {name}", name = tr(name.label));
         let changed = tone_curve(self.ui, &label, value, self.histogram);
         self.take(value, changed);
-        if self.ui.button("Reset curve").clicked() {
+        if self.ui.button(tr("Reset curve")).clicked() {
             *value = ToneCurve::default();
             self.changed = Some(true);
         }
@@ -210,9 +212,9 @@ impl ParameterVisitor for ParameterRows<'_> {
                     let sides = if table.is_separate() { "1D" } else { "3D" };
                     ui.weak(format!("{} · {} · {sides}", table.title(), table.side()))
                 }
-                None => ui.weak("No table yet: colors stay as they are"),
+                None => ui.weak(tr("No table yet: colors stay as they are")),
             };
-            self.asks_for_table |= ui.button("Choose .cube file…").clicked();
+            self.asks_for_table |= ui.button(tr("Choose .cube file…")).clicked();
         });
     }
 
@@ -292,7 +294,7 @@ fn level_handles(
     };
     let size = egui::vec2(ui.available_width(), HEIGHT_PT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    set_accessible_name(&response, "Histogram of levels");
+    set_accessible_name(&response, tr("Histogram of levels"));
     let graph = Rect::from_min_max(rect.min, pos2(rect.right(), rect.bottom() - FOOT_PT));
     let visuals = ui.visuals();
     let rim = visuals.widgets.noninteractive.bg_stroke;

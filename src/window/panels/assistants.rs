@@ -3,6 +3,7 @@
 
 use crate::document::AssistantKind;
 use crate::document::Symmetry;
+use crate::language::tr;
 use crate::requests::UiRequests;
 use crate::session::actions::{GuideAction, HandAction};
 use crate::session::{Action, Session};
@@ -36,8 +37,8 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let mut set = |aids: ViewAids| requests.act(Action::Guide(GuideAction::Aids { aids }));
     for (assistant, label, hint) in KINDS {
         if ui
-            .add(Button::selectable(aids.assistant == assistant, label))
-            .on_hover_text(hint)
+            .add(Button::selectable(aids.assistant == assistant, tr(label)))
+            .on_hover_text(tr(hint))
             .clicked()
         {
             set(ViewAids { assistant, ..aids });
@@ -49,7 +50,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if let Some(changed) = magnetism.inline(ui, aids.magnetism, 80.0) {
         set(ViewAids { magnetism: changed.to, ..aids });
     }
-    if session.symmetry().kind != Symmetry::None && ui.button("Axes to the middle").clicked() {
+    if session.symmetry().kind != Symmetry::None && ui.button(tr("Axes to the middle")).clicked() {
         requests.act(Action::Hand(HandAction::Axes { center: None, turn: 0.0 }));
     }
 }

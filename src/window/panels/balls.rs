@@ -2,10 +2,12 @@
 
 use super::setter::LayerSetter;
 use crate::io::recipe::PaintedBall;
+use crate::language::tr;
 use crate::math::srgb;
 use crate::raster::Picture;
 use crate::session::Action;
 use crate::session::actions::LayerAction;
+use crate::tr;
 use crate::widgets::set_accessible_name;
 use eframe::egui::load::SizedTexture;
 use eframe::egui::{self, Color32, ColorImage, Id, TextureHandle, TextureOptions, Ui, vec2};
@@ -33,10 +35,11 @@ pub fn chooser(ui: &mut Ui, setter: &mut LayerSetter) {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
         for ball in PaintedBall::all() {
             let Some(texture) = made.get(ball.key) else { continue };
+            let name = tr(ball.name);
             let shown = SizedTexture::new(texture.id(), vec2(36.0, 36.0));
             let response = ui.add(egui::Button::image(shown).frame(false));
-            let response = response.on_hover_text(format!("{}: a painted ball", ball.name));
-            set_accessible_name(&response, &format!("Ball: {}", ball.name));
+            let response = response.on_hover_text(tr!("{ball}: a painted ball", ball = name));
+            set_accessible_name(&response, &tr!("Ball: {ball}", ball = name));
             if response.clicked() {
                 let (layer, name) = (setter.layer.clone(), ball.key.to_owned());
                 let action = LayerAction::PaintedBall { layer, name, hollows: false };

@@ -2,8 +2,10 @@
 //! the second tip (`dual_brush`), the list of brushes (`brushes`), the curve widget (`curve`).
 
 use super::brush_tip::{self, TipChoice};
+use super::words::translate_within;
 use super::{curve, dual_brush};
 use crate::io::recipe::brush_to_json;
+use crate::language::tr;
 use crate::math::NumberSetting;
 use crate::paint::brush_options::{Bearing, DistanceMetric, Falloff, Spread};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
@@ -14,6 +16,7 @@ use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
+use crate::tr;
 use crate::widgets::{NumberField, check, choice_row, sentence, set_accessible_name};
 use eframe::egui::{self, Ui};
 
@@ -22,7 +25,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.tools.brush;
     let mut changed = None;
     let mut part = |ui: &mut Ui, label: &str, show: &mut dyn FnMut(&mut Ui) -> Option<Brush>| {
-        let header = egui::CollapsingHeader::new(label).id_salt(("brush", label));
+        let header = egui::CollapsingHeader::new(tr(label)).id_salt(("brush", label));
         changed = header.show(ui, show).body_returned.flatten().or(changed.take());
     };
     part(ui, "Tip", &mut |ui| tip(ui, brush));
@@ -141,7 +144,7 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     ui.horizontal_wrapped(|ui| {
         for (label, lies, hint) in SPACES {
             let is_on = grain.lies.plain() == lies;
-            if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
+            if ui.selectable_label(is_on, tr(label)).on_hover_text(tr(hint)).clicked() && !is_on {
                 (to.lies, changed) = (lies, true);
             }
         }
@@ -267,31 +270,33 @@ fn mixing_and_stylus(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
 fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to: Option<Dynamics> = None;
     for Drive { property, input, curve: shape } in brush.dynamics.drives() {
-        let plus = if shape.is_additive() { " plus" } else { "" };
-        let label = format!(
-            "{}{plus} by {}",
-            word(&Property::ALL, property),
-            word(&Input::ALL, input).to_lowercase()
-        );
+        let (property_name, input_name) =
+            (word(&Property::ALL, property), word(&Input::ALL, input));
+        let (what, by) = (tr(&property_name), translate_within(&input_name));
+        let label = match shape.is_additive() {
+            true => tr!("{property} plus by {input}", property = what, input = by),
+            false => tr!("{property} by {input}", property = what, input = by),
+        };
         ui.horizontal(|ui| {
             ui.label(&label);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let remove = ui.small_button("Remove").on_hover_text("Removes this row");
-                set_accessible_name(&remove, &format!("Remove {label}"));
+                let remove = ui.small_button(tr("Remove")).on_hover_text(tr("Removes this row"));
+                set_accessible_name(&remove, &tr!("Remove {name}", name = label));
                 if remove.clicked() {
                     to = Some(brush.dynamics.without(*property, *input, shape.is_additive()));
                 }
             });
         });
-        let bent = curve::show(ui, &format!("Curve of {}", label.to_lowercase()), shape, 64.0);
+        let label = tr!("Curve of {name}", name = translate_within(&label));
+        let bent = curve::show(ui, &label, shape, 64.0);
         to = bent.map(|bent| brush.dynamics.with(*property, *input, bent.to)).or(to.take());
     }
-    let menu = ui.menu_button("+ Let something follow…", |ui| {
+    let menu = ui.menu_button(tr("+ Let something follow…"), |ui| {
         for (property, name) in Property::ALL {
-            ui.menu_button(sentence(name), |ui| {
+            ui.menu_button(tr(&sentence(name)), |ui| {
                 for (input, name) in Input::ALL {
                     let is_new = brush.dynamics.curve(property, input).is_none();
-                    if ui.add_enabled(is_new, egui::Button::new(sentence(name))).clicked() {
+                    if ui.add_enabled(is_new, egui::Button::new(tr(&sentence(name)))).clicked() {
                         to = Some(brush.dynamics.with(property, input, Curve::Share(1.0)));
                         ui.close();
                     }
@@ -299,13 +304,13 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             });
         }
     });
-    menu.response.on_hover_text(
+    menu.response.on_hover_text(tr(
         "Choose a property of the brush, then what it follows: the pen, chance, or the surface",
-    );
+    ));
     to.map(|dynamics| Brush { dynamics, ..brush.clone() })
 }
 
-/// The display name of a property or an input.
+/// The English display name of a property or an input.
 fn word<T: PartialEq>(all: &[(T, &str)], wanted: &T) -> String {
     all.iter()
         .find(|(known, _)| known == wanted)

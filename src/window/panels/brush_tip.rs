@@ -1,5 +1,6 @@
 //! What a tip looks like: its kind and its numbers. Floor 7.
 
+use crate::language::tr;
 use crate::paint::Tip;
 use crate::paint::tip::{Bristles, Noise};
 use crate::widgets::NumberField;
@@ -74,7 +75,7 @@ pub fn numbers(ui: &mut Ui, tip: &Tip) -> Option<Tip> {
             cells.or(density).map(Tip::Noise)
         }
         Tip::Picture(_) | Tip::Hose(_) => {
-            ui.weak("Pictures. Import… adds others.");
+            ui.weak(tr("Pictures. Import… adds others."));
             None
         }
     }

@@ -6,6 +6,7 @@ use crate::brush_shelf::BrushShelf;
 use crate::file_purpose::FilePurpose;
 use crate::icons::{BUTTON_PT, Icon, icon_button};
 use crate::io::recipe::{BrushPreset, PresetGroup};
+use crate::language::tr;
 use crate::paint::{Brush, Property};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, HandAction};
@@ -13,6 +14,7 @@ use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
 use crate::swatches::Swatches;
 use crate::theme::ACCENT;
+use crate::tr;
 use crate::widgets::{NumberField, segment, segments, set_accessible_name, title};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
@@ -71,13 +73,13 @@ fn presets(
     search: &str,
     requests: &mut UiRequests,
 ) {
-    if !session.presets.iter().any(|preset| is_found(preset, search)) {
-        ui.weak(format!("No brush is called “{}”", search.trim()));
+    if !session.presets.iter().any(|preset| is_sought(preset, search)) {
+        ui.weak(tr!("No brush is called “{name}”", name = search.trim()));
     }
     let (mut marked, mut is_first) = (None, true);
-    for (name, kind, presets) in sections(session, shelf, search) {
+    for (name, listing, presets) in sections(session, shelf, search) {
         if std::mem::take(&mut is_first) {
-            ui.strong(name);
+            ui.strong(tr(name));
         } else {
             title(ui, name);
         }
@@ -85,7 +87,7 @@ fn presets(
             ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
             for known in presets {
                 let is_favorite = shelf.is_favorite(&known.key);
-                let look = CellLook { kind, is_on: session.preset == known.key, is_favorite };
+                let look = CellLook { listing, is_on: session.preset == known.key, is_favorite };
                 let response = preset(ui, known, look, swatches);
                 if response.clicked() {
                     requests.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
@@ -101,28 +103,73 @@ fn presets(
     }
 }
 
-/// The groups that are not empty, each with its title and what its brushes are called besides:
-/// favorites, those used last, the user's own, then those of the program.
+/// What a preset is called: the program's own in the language of the window.
+pub fn preset_name(preset: &BrushPreset) -> &str {
+    match preset.group {
+        PresetGroup::Imported => &preset.name,
+        _ => tr(&preset.name),
+    }
+}
+
+/// What is said about a preset.
+pub fn preset_about(preset: &BrushPreset) -> &str {
+    match preset.group {
+        PresetGroup::Imported => &preset.about,
+        _ => tr(&preset.about),
+    }
+}
+
+/// Whether a preset matches a search, in English or by the words that are shown.
+fn is_sought(preset: &BrushPreset, search: &str) -> bool {
+    let has_shown_words = || {
+        let (name, group) = (preset_name(preset), tr(preset.group.name()));
+        let text = format!("{name} {group} {}", preset_about(preset)).to_lowercase();
+        search.to_lowercase().split_whitespace().all(|word| text.contains(word))
+    };
+    is_found(preset, search) || has_shown_words()
+}
+
+/// Where a preset is listed.
+#[derive(Clone, Copy)]
+enum PresetListing {
+    Favorites,
+    LastUsed,
+    Group,
+}
+
+impl PresetListing {
+    /// What a preset is called there for screen readers, where it may be listed twice.
+    fn label(self, name: &str) -> String {
+        match self {
+            PresetListing::Favorites => tr!("Brush {name}, favorite", name),
+            PresetListing::LastUsed => tr!("Brush {name}, last used", name),
+            PresetListing::Group => tr!("Brush {name}", name),
+        }
+    }
+}
+
+/// The groups that are not empty, each with its title and its kind: favorites, those used last, the
+/// user's own, then those of the program.
 fn sections<'a>(
     session: &'a Session,
     shelf: &BrushShelf,
     search: &str,
-) -> Vec<(&'static str, &'static str, Vec<&'a BrushPreset>)> {
-    let found = |preset: &&BrushPreset| is_found(preset, search);
+) -> Vec<(&'static str, PresetListing, Vec<&'a BrushPreset>)> {
+    let found = |preset: &&BrushPreset| is_sought(preset, search);
     let by_key = |keys: &[String]| -> Vec<&'a BrushPreset> {
         let one = |key: &String| session.presets.iter().find(|preset| preset.key == *key);
         keys.iter().filter_map(one).filter(found).collect()
     };
-    let mut sections = vec![("Favorites", ", favorite", by_key(&shelf.favorites))];
+    let mut sections = vec![("Favorites", PresetListing::Favorites, by_key(&shelf.favorites))];
     // The brush in hand alone says nothing.
     if shelf.used.len() > 1 && search.is_empty() {
-        sections.push(("Last used", ", last used", by_key(&shelf.used)));
+        sections.push(("Last used", PresetListing::LastUsed, by_key(&shelf.used)));
     }
     let own = PresetGroup::ALL.into_iter().filter(|(group, _)| *group == PresetGroup::Imported);
     let others = PresetGroup::ALL.into_iter().filter(|(group, _)| *group != PresetGroup::Imported);
     for (group, name) in own.chain(others) {
         let of_group = session.presets.iter().filter(|preset| preset.group == group);
-        sections.push((name, "", of_group.filter(found).collect()));
+        sections.push((name, PresetListing::Group, of_group.filter(found).collect()));
     }
     sections.retain(|(.., presets)| !presets.is_empty());
     sections
@@ -138,11 +185,11 @@ fn menu(
     let mut marked = None;
     response.context_menu(|ui| {
         let mark = if is_favorite { "Remove from favorites" } else { "Add to favorites" };
-        if ui.button(mark).clicked() {
+        if ui.button(tr(mark)).clicked() {
             marked = Some(!is_favorite);
             ui.close();
         }
-        if known.group == PresetGroup::Imported && ui.button("Remove brush").clicked() {
+        if known.group == PresetGroup::Imported && ui.button(tr("Remove brush")).clicked() {
             requests.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
             ui.close();
         }
@@ -157,11 +204,11 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         let field = TextEdit::singleline(&mut name)
-            .hint_text("Name")
+            .hint_text(tr("Name"))
             .desired_width(ui.available_width() - 96.0);
-        set_accessible_name(&ui.add(field), "Name of the brush to keep");
-        let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Keep brush"));
-        if button.on_hover_text("Adds the current brush to the list").clicked() {
+        set_accessible_name(&ui.add(field), tr("Name of the brush to keep"));
+        let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new(tr("Keep brush")));
+        if button.on_hover_text(tr("Adds the current brush to the list")).clicked() {
             requests.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
         }
     });
@@ -173,12 +220,12 @@ fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     let id = Id::unique("brush search");
     let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     let room_pt = ui.available_width() - BUTTON_PT - 14.0;
-    let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(room_pt);
-    set_accessible_name(&ui.add(field), "Search brushes");
-    let import = icon_button(ui, Icon::Add, "Import a brush…", false).on_hover_text(
+    let field = TextEdit::singleline(&mut search).hint_text(tr("Search")).desired_width(room_pt);
+    set_accessible_name(&ui.add(field), tr("Search brushes"));
+    let import = icon_button(ui, Icon::Add, "Import a brush…", false).on_hover_text(tr(
         "Import brushes of GIMP (.gbr, .gih), Krita (.kpp, .bundle), MyPaint (.myb), Photoshop (.abr), a preset \
          (.json), or a picture as a tip",
-    );
+    ));
     if import.clicked() {
         requests.request(WindowRequest::Choose(FilePurpose::Brush));
     }
@@ -193,8 +240,7 @@ const SWATCH_PT: f32 = 44.0;
 /// How a preset is shown.
 #[derive(Clone, Copy)]
 struct CellLook {
-    /// What its name is followed by for screen readers, where it is listed twice.
-    kind: &'static str,
+    listing: PresetListing,
     is_on: bool,
     is_favorite: bool,
 }
@@ -203,13 +249,13 @@ struct CellLook {
 fn preset(
     ui: &mut Ui,
     preset: &BrushPreset,
-    CellLook { kind, is_on, is_favorite }: CellLook,
+    CellLook { listing, is_on, is_favorite }: CellLook,
     swatches: &mut Swatches,
 ) -> Response {
     let (rect, response) = ui.allocate_exact_size(CELL_PT, Sense::click());
-    let label = &preset.name;
+    let label = preset_name(preset);
     response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}{kind}"))
+        egui::WidgetInfo::selected(egui::Role::Button, true, is_on, listing.label(label))
     });
     if !ui.is_rect_visible(rect) {
         return response;
@@ -233,7 +279,7 @@ fn preset(
         ui.painter().circle_filled(corner, 3.5, ACCENT);
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
-    let mut job = LayoutJob::simple(label.clone(), font, look.text_color(), rect.width() - 4.0);
+    let mut job = LayoutJob::simple(label.to_owned(), font, look.text_color(), rect.width() - 4.0);
     // A name takes two lines; a longer one ends in an ellipsis, and the tooltip shows all of it.
     job.wrap = TextWrapping {
         max_rows: 2,
@@ -248,7 +294,7 @@ fn preset(
         text,
         look.text_color(),
     );
-    response.on_hover_text(format!("{label}\n{}", preset.about))
+    response.on_hover_text(format!("{label}\n{}", preset_about(preset)))
 }
 
 fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {

@@ -7,12 +7,14 @@ mod wheel;
 
 use crate::harmony::Harmony;
 use crate::icons::{Icon, icon_button};
+use crate::language::tr;
 use crate::math::hsv;
 use crate::math::srgb::{Color, quantize};
 use crate::panel_layout::{ColorView, PanelKind};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange, check, set_accessible_name, swatch};
 use eframe::egui::{
     self, Button, Id, Popup, PopupCloseBehavior, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2,
@@ -64,7 +66,7 @@ fn row(ui: &mut Ui, session: &Session, view: &mut ColorView, requests: &mut UiRe
         swatch(ui, "Paint color", session.tools.color, vec2(1.6 * SWATCH_PT, SWATCH_PT));
         let other =
             swatch(ui, "Other color", session.tools.second_color, vec2(SWATCH_PT, SWATCH_PT));
-        if other.on_hover_text("Click to paint with it (X)").clicked() {
+        if other.on_hover_text(tr("Click to paint with it (X)")).clicked() {
             requests.act(Action::Hand(HandAction::SwapColors {}));
         }
         ui.add_space(7.0);
@@ -78,7 +80,7 @@ fn row(ui: &mut Ui, session: &Session, view: &mut ColorView, requests: &mut UiRe
                 ui.painter().rect_stroke(rect, 3.0, line, StrokeKind::Inside);
                 continue;
             };
-            if swatch(ui, &format!("Recent color {}", i + 1), color, size).clicked() {
+            if swatch(ui, &tr!("Recent color {number}", number = i + 1), color, size).clicked() {
                 requests.act(Action::Hand(HandAction::Color { color }));
             }
         }
@@ -94,10 +96,10 @@ fn companions(ui: &mut Ui, label: &str, color: Color, harmony: Harmony, requests
     let now = known_hsv(ui, label, color);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = GAP_PT;
-        ui.weak(harmony.label());
+        ui.weak(tr(harmony.label()));
         for (other, i) in harmony.colors(now).zip(1..) {
             let size = vec2(1.6 * SWATCH_PT, SWATCH_PT);
-            if swatch(ui, &format!("Harmony {i}"), other, size).clicked() {
+            if swatch(ui, &tr!("Harmony {number}", number = i), other, size).clicked() {
                 requests.act(Action::Hand(HandAction::Color { color: other }));
             }
         }
@@ -107,7 +109,7 @@ fn companions(ui: &mut Ui, label: &str, color: Color, harmony: Harmony, requests
 /// What the panel shows, and where.
 fn menu(ui: &mut Ui, view: &mut ColorView, requests: &mut UiRequests) {
     let dots = icon_button(ui, Icon::Dots, "Color", false)
-        .on_hover_text("Wheel, sliders, harmony, numbers and palette, window of its own");
+        .on_hover_text(tr("Wheel, sliders, harmony, numbers and palette, window of its own"));
     let stays = PopupCloseBehavior::CloseOnClickOutside;
     Popup::menu(&dots).close_behavior(stays).show(|ui| {
         let hint = "A wheel of hues around the square";
@@ -118,16 +120,16 @@ fn menu(ui: &mut Ui, view: &mut ColorView, requests: &mut UiRequests) {
         let hint = "Hue, saturation, value, red, green, blue, hex, and a palette";
         let numbers = check(ui, "Numbers and palette", hint, view.has_numbers);
         view.has_numbers = numbers.unwrap_or(view.has_numbers);
-        ui.menu_button("Harmony", |ui| {
+        ui.menu_button(tr("Harmony"), |ui| {
             for (harmony, label) in Harmony::LABELS {
-                let row = Button::selectable(view.harmony == harmony, label);
-                if ui.add(row).on_hover_text(harmony.hint()).clicked() {
+                let row = Button::selectable(view.harmony == harmony, tr(label));
+                if ui.add(row).on_hover_text(tr(harmony.hint())).clicked() {
                     view.harmony = harmony;
                     ui.close();
                 }
             }
         });
-        if ui.button("In a window of its own, or back").clicked() {
+        if ui.button(tr("In a window of its own, or back")).clicked() {
             requests.request(WindowRequest::Float(PanelKind::Color));
             ui.close();
         }
@@ -243,7 +245,7 @@ fn numbers(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>>
         ui.end_row();
     });
     ui.horizontal(|ui| {
-        ui.weak("Hex");
+        ui.weak(tr("Hex"));
         if let Some(to) = hex(ui, color) {
             out = Some(ValueChange { to, done: true });
         }
@@ -257,7 +259,7 @@ fn hex(ui: &mut Ui, color: Color) -> Option<Color> {
     let shown = Color { a: 255, ..color }.to_string();
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_else(|| shown.clone());
     let response = ui.add(TextEdit::singleline(&mut text).desired_width(74.0).char_limit(9));
-    set_accessible_name(&response, "Hex color");
+    set_accessible_name(&response, tr("Hex color"));
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, text));
         return None;

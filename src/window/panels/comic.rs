@@ -2,6 +2,7 @@
 //! here: the dialog (`dialogs::panels`).
 
 use super::colors;
+use crate::language::tr;
 use crate::paint::{PanelDrag, PanelSettings};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::PanelAction;
@@ -30,10 +31,10 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         requests.act(Action::Panel(PanelAction::Settings { panels: settings }));
     }
     let hint = "Divides the page, the selection or the selected path in panels";
-    if ui.button("Panels…").on_hover_text(hint).clicked() {
+    if ui.button(tr("Panels…")).on_hover_text(tr(hint)).clicked() {
         requests.request(WindowRequest::PanelsDialog);
     }
-    ui.weak(session.tool.hint());
+    ui.weak(tr(session.tool.hint()));
 }
 
 /// The choices of a drag, with their names.
@@ -65,7 +66,7 @@ pub fn show_look(ui: &mut Ui, settings: &mut PanelSettings) {
     ui.horizontal(|ui| {
         let changed = colors::button(ui, "Border color", settings.border_color);
         settings.border_color = changed.map_or(settings.border_color, |changed| changed.to);
-        ui.label("Border color");
+        ui.label(tr("Border color"));
     });
     ui.horizontal(|ui| {
         let hint = "A color at the bottom of each panel";

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::canvas::crop;
+use crate::language::tr;
 use crate::math::Rect;
 use crate::requests::UiRequests;
 use crate::session::actions::CanvasAction;
@@ -20,7 +21,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (mut x, mut y) = (area.x0, area.y0);
     let (mut width, mut height) = (area.width() as i32, area.height() as i32);
     let number = |ui: &mut Ui, label: &str, value: &mut i32, range| {
-        let label = ui.label(label);
+        let label = ui.label(tr(label));
         ui.add(DragValue::new(value).range(range).speed(1.0).suffix(" px"))
             .labelled_by(label.id)
             .changed()
@@ -48,12 +49,12 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         requests.act(Action::Canvas(CanvasAction::Aspect { aspect }));
     }
     ui.add_space(6.0);
-    let crops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new("Crop to frame"));
-    if crops.on_hover_text("The canvas becomes the frame (Enter)").clicked() {
+    let crops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new(tr("Crop to frame")));
+    if crops.on_hover_text(tr("The canvas becomes the frame (Enter)")).clicked() {
         requests.act(crop::apply(area));
     }
-    let drops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new("Discard"));
-    if drops.on_hover_text("Removes the frame (Escape)").clicked() {
+    let drops = ui.add_enabled(session.tools.crop.area.is_some(), Button::new(tr("Discard")));
+    if drops.on_hover_text(tr("Removes the frame (Escape)")).clicked() {
         requests.act(Action::Canvas(CanvasAction::CropArea { frame: None }));
     }
 }

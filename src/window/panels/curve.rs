@@ -1,6 +1,7 @@
 //! A curve widget: points in a square with straight lines between them. Floor 7. Not here: what the
 //! curve drives (the brush editor).
 
+use crate::language::tr;
 use crate::math::{Vec2, vec2};
 use crate::paint::Curve;
 use crate::paint::dynamics::{MAX_POINTS, MOST_ADDED};
@@ -81,7 +82,7 @@ impl CurveSquare<'_> {
     pub fn show(&self, ui: &mut Ui, mut points: Vec<Vec2>) -> Option<ValueChange<Vec<Vec2>>> {
         let size = egui::vec2(ui.available_width(), self.height_pt);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        set_accessible_name(&response, self.label);
+        set_accessible_name(&response, tr(self.label));
         let inner = rect.shrink(5.0);
         let on_screen = |p: Vec2| {
             pos2(inner.left() + p.x * inner.width(), inner.bottom() - p.y * inner.height())

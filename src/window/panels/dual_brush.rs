@@ -1,7 +1,9 @@
 //! The second tip of the current brush. Floor 7. Not here: the rest of the brush (`brush`).
 
 use super::brush_tip::{self, TipChoice};
+use super::brushes::preset_name;
 use crate::io::recipe::PresetGroup;
+use crate::language::tr;
 use crate::math::NumberSetting;
 use crate::paint::{Brush, Curve, DualBrush, DualMode, DualSettings, Dynamics, Input, Property};
 use crate::requests::UiRequests;
@@ -15,7 +17,7 @@ use std::sync::Arc;
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> Option<Brush> {
     let brush = &session.tools.brush;
     if brush.is_wet() {
-        ui.weak("For brushes that paint and pick up no paint.");
+        ui.weak(tr("For brushes that paint and pick up no paint."));
         return None;
     }
     let dual = brush.dual.as_deref();
@@ -49,13 +51,13 @@ fn with_tip(dual: Option<&DualBrush>, kind: TipChoice) -> DualBrush {
 
 /// A list of the brushes whose tips can be taken; the user's own come first.
 fn choose_tip_of_brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let menu = ui.menu_button("Tip of a brush…", |ui| {
+    let menu = ui.menu_button(tr("Tip of a brush…"), |ui| {
         list(ui, 320.0).show(ui, |ui| {
             let is_own = |own: bool| {
                 session.presets.iter().filter(move |p| (p.group == PresetGroup::Imported) == own)
             };
             for preset in is_own(true).chain(is_own(false)) {
-                if ui.button(preset.name.as_str()).clicked() {
+                if ui.button(preset_name(preset)).clicked() {
                     let name = preset.key.clone();
                     requests.act(Action::Hand(HandAction::SecondTip { name }));
                     ui.close();
@@ -63,7 +65,7 @@ fn choose_tip_of_brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests
             }
         });
     });
-    menu.response.on_hover_text("Takes the tip of another brush as the second one");
+    menu.response.on_hover_text(tr("Takes the tip of another brush as the second one"));
 }
 
 fn numbers(ui: &mut Ui, settings: &DualSettings) -> Option<DualSettings> {

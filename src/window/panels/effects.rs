@@ -1,14 +1,17 @@
 //! The effects of a layer: which it has, in their order, and what one of them is set to. Floor 7.
 
 use super::setter::LayerSetter;
+use super::words::translate_within;
 use super::{colors, curve, ramp};
 use crate::document::{Document, Layer};
+use crate::language::tr;
 use crate::math::{Vec2, vec2};
 use crate::paint::adjustment::ToneCurve;
 use crate::paint::effect::{EffectField, EffectFill};
 use crate::paint::{EffectKind, EffectLight, LayerEffect};
 use crate::session::Property;
 use crate::session::actions::LayerAction;
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange, check, check_box, choice_row, set_accessible_name};
 use eframe::egui::{Id, Ui};
 
@@ -18,7 +21,10 @@ pub fn show(ui: &mut Ui, document: &Document, layer: &Layer, setter: &mut LayerS
         return;
     }
     let count = layer.effects.len();
-    let title = if count == 0 { "Effects".to_owned() } else { format!("Effects ({count})") };
+    let title = match count {
+        0 => tr("Effects").to_owned(),
+        _ => tr!("Effects ({count})", count),
+    };
     let section = eframe::egui::CollapsingHeader::new(title).id_salt("effects");
     section.show(ui, |ui| {
         let hint = "How much of the layer shows; its effects stay";
@@ -56,19 +62,20 @@ fn list(ui: &mut Ui, layer: &Layer, setter: &mut LayerSetter) -> Option<usize> {
     };
     for (i, effect) in layer.effects.iter().enumerate() {
         let label = effect.kind.label();
+        let (name, number) = (translate_within(label), i + 1);
         ui.horizontal(|ui| {
             let mut on = effect.on;
-            let shown = check_box(ui, &mut on, "").on_hover_text("Show this effect");
-            set_accessible_name(&shown, &format!("Show {} {}", label.to_lowercase(), i + 1));
+            let shown = check_box(ui, &mut on, "").on_hover_text(tr("Show this effect"));
+            set_accessible_name(&shown, &tr!("Show {effect} {number}", effect = name, number));
             if shown.changed() {
                 set(setter, with_effect_at(layer, i, LayerEffect { on, ..effect.clone() }));
             }
             let hint = effect.kind.hint();
-            if ui.selectable_label(i == chosen, label).on_hover_text(hint).clicked() {
+            if ui.selectable_label(i == chosen, tr(label)).on_hover_text(tr(hint)).clicked() {
                 chosen = i;
             }
-            let removed = ui.small_button("✕").on_hover_text("Remove this effect");
-            set_accessible_name(&removed, &format!("Remove {} {}", label.to_lowercase(), i + 1));
+            let removed = ui.small_button("✕").on_hover_text(tr("Remove this effect"));
+            set_accessible_name(&removed, &tr!("Remove {effect} {number}", effect = name, number));
             if removed.clicked() {
                 let mut all = layer.effects.to_vec();
                 all.remove(i);
@@ -81,9 +88,9 @@ fn list(ui: &mut Ui, layer: &Layer, setter: &mut LayerSetter) -> Option<usize> {
 }
 
 fn add(ui: &mut Ui, layer: &Layer, setter: &mut LayerSetter) {
-    let menu = ui.menu_button("Add effect", |ui| {
+    let menu = ui.menu_button(tr("Add effect"), |ui| {
         for (kind, label) in EffectKind::LABELS {
-            if ui.button(label).on_hover_text(kind.hint()).clicked() {
+            if ui.button(tr(label)).on_hover_text(tr(kind.hint())).clicked() {
                 setter.set(Property::Effects { effects: with_new(layer, kind) }, true);
                 let kept = Id::unique((layer.id, "chosen effect"));
                 ui.data_mut(|data| data.insert_temp(kept, layer.effects.len()));
@@ -193,7 +200,7 @@ fn field_row(ui: &mut Ui, field: EffectField, effect: &mut LayerEffect) -> Optio
         EffectField::Color(color) => {
             let changed = ui.horizontal(|ui| {
                 let changed = colors::button(ui, color.label, (color.get)(all));
-                ui.label(color.label);
+                ui.label(tr(color.label));
                 changed
             });
             let ValueChange { to, done } = changed.inner?;
@@ -221,7 +228,7 @@ fn field_row(ui: &mut Ui, field: EffectField, effect: &mut LayerEffect) -> Optio
         EffectField::Pattern => {
             match &effect.pattern {
                 Some(pattern) => ui.weak(format!("{} · {}", pattern.name(), pattern.picture().0)),
-                None => ui.weak("No picture: the layer stays as it is"),
+                None => ui.weak(tr("No picture: the layer stays as it is")),
             };
             None
         }

@@ -1,9 +1,11 @@
 //! Properties of drawings by the form: which lines, brush and color, the hand, the light. Floor 7.
 
+use super::brushes::{preset_about, preset_name};
 use super::setter::LayerSetter;
 use super::{colors, painter};
 use crate::document::{Content, Layer};
 use crate::io::recipe::presets;
+use crate::language::tr;
 use crate::math::{Vec3, vec3};
 use crate::paint::{Brush, DrawingHand, FormDrawing, FormPattern};
 use crate::session::actions::LayerAction;
@@ -22,7 +24,7 @@ pub fn show(
     setter: &mut LayerSetter,
 ) {
     if !has_surface {
-        ui.weak("These lines need a shape: give the drawing one, or add maps.");
+        ui.weak(tr("These lines need a shape: give the drawing one, or add maps."));
     }
     match drawing.pattern {
         FormPattern::Lines(lines) => {
@@ -36,7 +38,7 @@ pub fn show(
     let hand = DrawingHand::settings_of(&drawing.pattern);
     painter::settings(ui, hand, drawing.hand, setter, |hand| Property::Hand { hand });
     let hint = "The lines become strokes, to be edited one by one";
-    if ui.button("Make strokes").on_hover_text(hint).clicked() {
+    if ui.button(tr("Make strokes")).on_hover_text(tr(hint)).clicked() {
         setter.act(|layer| LayerAction::MakeStrokes { layer });
     }
 }
@@ -104,7 +106,7 @@ fn guides(ui: &mut Ui, session: &Session, of: &str, setter: &mut LayerSetter) {
         setter.set(Property::GuidedBy { name }, true);
     }
     let hint = "Selects a stroke layer; lines follow the strokes that you paint on it";
-    if ui.button("Draw guide strokes").on_hover_text(hint).clicked() {
+    if ui.button(tr("Draw guide strokes")).on_hover_text(tr(hint)).clicked() {
         setter.act(|layer| LayerAction::DrawGuides { layer });
     }
 }
@@ -118,7 +120,7 @@ fn redraw_row(ui: &mut Ui, session: &Session, on: &str, setter: &mut LayerSetter
         setter.set(Property::RedrawnOn { name }, true);
     }
     let hint = "Selects a stroke layer; strokes that you paint along lines take their place";
-    if ui.button("Redraw lines").on_hover_text(hint).clicked() {
+    if ui.button(tr("Redraw lines")).on_hover_text(tr(hint)).clicked() {
         setter.act(|layer| LayerAction::DrawGuides { layer });
     }
 }
@@ -136,7 +138,7 @@ fn layer_row(
     let mut chosen = None;
     ui.horizontal(|ui| {
         name(ui, label);
-        let shown = if current.is_empty() { "None" } else { current };
+        let shown = if current.is_empty() { tr("None") } else { current };
         let combo = egui::ComboBox::from_id_salt(label)
             .selected_text(shown)
             .width(ui.available_width())
@@ -148,7 +150,7 @@ fn layer_row(
                 }
             }
         });
-        set_accessible_name(&response.response, label);
+        set_accessible_name(&response.response, tr(label));
     });
     chosen
 }
@@ -176,19 +178,23 @@ fn brush(ui: &mut Ui, session: &Session, drawing: &FormDrawing, setter: &mut Lay
     let size = NumberField::new("Line width", Brush::HAND_SIZE, "At full pressure, px");
     let changed = size.row(ui, drawing.brush.size);
     setter.take(changed.map(|c| c.map(|to| Property::LineSize { to })));
-    let combo = egui::ComboBox::from_id_salt("brush of the lines").selected_text("Brushes");
+    let combo = egui::ComboBox::from_id_salt("brush of the lines").selected_text(tr("Brushes"));
     let response = combo.show_ui(ui, |ui| {
         for preset in presets().filter(|preset| !preset.brush.mode.is_retouching()) {
-            if ui.selectable_label(false, &preset.name).on_hover_text(&preset.about).clicked() {
+            if ui
+                .selectable_label(false, preset_name(&preset))
+                .on_hover_text(preset_about(&preset))
+                .clicked()
+            {
                 setter.set(Property::DrawnWith { preset: preset.key }, true);
             }
         }
     });
-    set_accessible_name(&response.response, "Brush of the lines");
+    set_accessible_name(&response.response, tr("Brush of the lines"));
     let hint = "The brush and the color in hand draw the lines";
     let can_draw = !session.tools.brush.mode.is_retouching();
-    let button = ui.add_enabled(can_draw, egui::Button::new("Use my brush"));
-    if button.on_hover_text(hint).clicked() {
+    let button = ui.add_enabled(can_draw, egui::Button::new(tr("Use my brush")));
+    if button.on_hover_text(tr(hint)).clicked() {
         setter.act(|layer| LayerAction::DrawWith { layer });
     }
 }

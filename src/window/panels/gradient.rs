@@ -1,5 +1,6 @@
 //! What new gradients are like, and a menu of ramps that shows them. Floor 7.
 
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::paint::{GradientStop, RampColors, RampStyle};
 use crate::requests::UiRequests;
@@ -7,6 +8,7 @@ use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::theme::color32;
 use crate::tools::gradient::GradientSettings;
+use crate::tr;
 use crate::widgets::{check, choice};
 use eframe::egui::{
     self, Color32, Mesh, Painter, Rect, Response, Role, Sense, Shape, StrokeKind, TextStyle, Ui,
@@ -20,7 +22,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let mut push = |to: Option<GradientSettings>| {
         requests.actions.extend(to.map(|gradient| Action::Hand(HandAction::Gradient { gradient })))
     };
-    let colors = ramp_menu(ui, "Ramp", settings.colors, own);
+    let colors = ramp_menu(ui, settings.colors, own);
     push(colors.map(|colors| GradientSettings { colors, ..settings }));
     let style = choice(ui, "Style", settings.style, &RampStyle::LABELS);
     push(style.map(|style| GradientSettings { style, ..settings }));
@@ -29,14 +31,14 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let hint = "New gradients are layers whose ends can be moved; otherwise they go into the selected paint layer";
     let live = check(ui, "Live", hint, settings.live);
     push(live.map(|live| GradientSettings { live, ..settings }));
-    ui.weak(session.tool.hint());
+    ui.weak(tr(session.tool.hint()));
 }
 
 /// A button with a ramp that opens a menu of all ramps.
-fn ramp_menu(ui: &mut Ui, label: &str, now: RampColors, own: [Color; 2]) -> Option<RampColors> {
+fn ramp_menu(ui: &mut Ui, now: RampColors, own: [Color; 2]) -> Option<RampColors> {
     let shown = now.stops(own[0], own[1]);
-    let (button, chosen) = menu(ui, label, &shown, own, Some(now));
-    button.on_hover_text(format!("{label}: {}", now.label()));
+    let (button, chosen) = menu(ui, "Ramp", &shown, own, Some(now));
+    button.on_hover_text(tr!("Ramp: {ramp}", ramp = tr(now.label())));
     chosen
 }
 
@@ -44,7 +46,7 @@ fn ramp_menu(ui: &mut Ui, label: &str, now: RampColors, own: [Color; 2]) -> Opti
 pub fn stops_menu(ui: &mut Ui, stops: &[GradientStop]) -> Option<Vec<GradientStop>> {
     let own = [stops.first()?.color, stops.last()?.color];
     let (button, chosen) = menu(ui, "Ramps", stops, own, None);
-    button.on_hover_text("Takes the stops of a ramp that comes with the program");
+    button.on_hover_text(tr("Takes the stops of a ramp that comes with the program"));
     chosen.map(|colors| colors.stops(own[0], own[1]))
 }
 
@@ -74,7 +76,7 @@ fn menu(
 fn ramp_row(ui: &mut Ui, colors: RampColors, own: [Color; 2], is_on: bool) -> Response {
     let (rect, response) =
         ui.allocate_exact_size(vec2(230.0, ui.spacing().interact_size.y), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, colors.label()));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr(colors.label())));
     let visuals = ui.style().interact_selectable(&response, is_on);
     if is_on || response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 3.0, visuals.weak_bg_fill);
@@ -82,18 +84,18 @@ fn ramp_row(ui: &mut Ui, colors: RampColors, own: [Color; 2], is_on: bool) -> Re
     let bar = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(72.0, rect.height() - 8.0));
     draw_ramp(ui.painter(), bar, &colors.stops(own[0], own[1]));
     let text = ui.painter().layout_no_wrap(
-        colors.label().into(),
+        tr(colors.label()).into(),
         TextStyle::Button.resolve(ui.style()),
         visuals.text_color(),
     );
     let at = rect.left_center() + vec2(86.0, -0.5 * text.size().y);
     ui.painter().galley(at, text, visuals.text_color());
-    response.on_hover_text(colors.hint())
+    response.on_hover_text(tr(colors.hint()))
 }
 
 fn ramp_button(ui: &mut Ui, label: &str, stops: &[GradientStop], size: egui::Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, tr(label)));
     draw_ramp(ui.painter(), rect, stops);
     let stroke = ui.style().interact(&response).fg_stroke;
     ui.painter().rect_stroke(rect, 2.0, stroke, StrokeKind::Inside);

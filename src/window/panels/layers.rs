@@ -9,6 +9,7 @@ mod row;
 
 use crate::document::{Content, Layer, LayerId, LayerLabel, LayerLock};
 use crate::icons::{BUTTON_PT, Icon, icon_button};
+use crate::language::tr;
 use crate::paint::FormPattern;
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
@@ -59,7 +60,7 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     let Some(document) = session.shown_document() else {
-        ui.weak("No document is open.");
+        ui.weak(tr("No document is open."));
         return;
     };
     head(ui, session, requests);
@@ -85,9 +86,9 @@ pub fn show(
                 row.show(ui, thumbnails, requests);
             }
             if document.layers.is_empty() {
-                ui.weak("No layers yet: paint, or drop a picture.");
+                ui.weak(tr("No layers yet: paint, or drop a picture."));
             } else if rows.is_empty() {
-                ui.weak("No layer has this name. Press Escape in the field to show all.");
+                ui.weak(tr("No layer has this name. Press Escape in the field to show all."));
             }
         });
 }
@@ -116,7 +117,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         toggles(ui, layer, &selected, requests);
         let is_alone = session.active().is_some_and(|open| open.solo == Some(layer.id));
         if icon_button(ui, Icon::Solo, "Show layer alone", is_alone)
-            .on_hover_text("Shows this layer alone")
+            .on_hover_text(tr("Shows this layer alone"))
             .clicked()
         {
             requests.act(Action::Layer(LayerAction::Solo { layer: path }));
@@ -145,7 +146,7 @@ fn toggles(ui: &mut Ui, layer: &Layer, selected: &LayerPaths, requests: &mut UiR
     ];
     for (icon, label, is_on, hint) in toggles {
         let button = icon_button(ui, icon, label, is_on);
-        if !button.on_hover_text(format!("{label}\n{hint}")).clicked() {
+        if !button.on_hover_text(format!("{}\n{}", tr(label), tr(hint))).clicked() {
             continue;
         }
         let lock =
@@ -163,9 +164,9 @@ fn toggles(ui: &mut Ui, layer: &Layer, selected: &LayerPaths, requests: &mut UiR
 fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        ui.menu_button("+ Add", |ui| {
+        ui.menu_button(tr("+ Add"), |ui| {
             for (kind, name) in NewLayer::LABELS {
-                if ui.button(name).clicked() {
+                if ui.button(tr(name)).clicked() {
                     requests.act(Action::Layer(LayerAction::Add { kind }));
                     ui.close();
                 }
@@ -186,7 +187,7 @@ fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         for (icon, label, make) in buttons {
             let hint = crate::commands::find_command(label).map_or(label, |command| command.hint);
             if icon_button(ui, icon, label, false)
-                .on_hover_text(format!("{label}\n{hint}"))
+                .on_hover_text(format!("{}\n{}", tr(label), tr(hint)))
                 .clicked()
             {
                 requests.act(Action::Layer(make(session.layer_paths())));

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::commands::{REMOVE_LIQUIFY, TRANSFORMS};
+use crate::language::tr;
 use crate::paint::{LiquifySettings, LiquifyTool};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
@@ -12,8 +13,8 @@ use eframe::egui::{Button, Ui};
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (now, mut to) = (session.tools.liquify, None);
     for (tool, label) in LiquifyTool::LABELS {
-        let button = Button::selectable(now.tool == tool, sentence(label));
-        if ui.add(button).on_hover_text(tool.hint()).clicked() {
+        let button = Button::selectable(now.tool == tool, tr(&sentence(label)));
+        if ui.add(button).on_hover_text(tr(tool.hint())).clicked() {
             to = Some(LiquifySettings { tool, ..now });
         }
     }
@@ -33,17 +34,17 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         .or(to);
     let mut next = now;
     let hint = "Only the object under the first dab is displaced";
-    if check_box(ui, &mut next.one_object, "Keep to one object").on_hover_text(hint).changed() {
+    if check_box(ui, &mut next.one_object, "Keep to one object").on_hover_text(tr(hint)).changed() {
         to = Some(LiquifySettings { one_object: next.one_object, ..now });
     }
     let hint = "Measures dabs and their movement along the surface: less where it turns away";
-    if check_box(ui, &mut next.foreshortened, "Foreshortened").on_hover_text(hint).changed() {
+    if check_box(ui, &mut next.foreshortened, "Foreshortened").on_hover_text(tr(hint)).changed() {
         to = Some(LiquifySettings { foreshortened: next.foreshortened, ..now });
     }
     if let Some(command) = TRANSFORMS.iter().find(|command| command.name == REMOVE_LIQUIFY) {
         let button = ui
-            .add_enabled((command.can)(session), Button::new(command.name))
-            .on_hover_text(command.hint);
+            .add_enabled((command.can)(session), Button::new(tr(command.name)))
+            .on_hover_text(tr(command.hint));
         if button.clicked() {
             (command.run)(session, requests);
         }

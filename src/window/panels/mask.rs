@@ -4,6 +4,7 @@
 use super::select::{softness, tolerance};
 use super::setter::LayerSetter;
 use crate::document::{DerivedMask, Layer, MaskKind};
+use crate::language::tr;
 use crate::session::PicturePart;
 use crate::session::Property;
 use crate::session::actions::LayerAction;
@@ -84,26 +85,26 @@ fn buttons(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter) 
                     ("Show all", false, "A mask to paint on that shows the whole layer: paint black to hide"),
                     ("Hide all", true, "A mask to paint on that hides the whole layer: paint white to show"),
                 ] {
-                    if ui.button(text).on_hover_text(hint).clicked() {
+                    if ui.button(tr(text)).on_hover_text(tr(hint)).clicked() {
                         setter.act(|layer| LayerAction::PaintMask { layer, hides });
                     }
                 }
             }
             Some(mask) if matches!(mask.kind, MaskKind::File { .. }) => {
                 let hint = "The brush and the eraser change the mask: white shows, black and the eraser hide";
-                if ui.selectable_label(on_mask, "Paint on mask").on_hover_text(hint).clicked() {
+                if ui.selectable_label(on_mask, tr("Paint on mask")).on_hover_text(tr(hint)).clicked() {
                     setter.act(|layer| LayerAction::OnMask { layer, on: !on_mask });
                 }
             }
             Some(_) => {
                 let hint = "Turns the mask into a picture that the brush can change; it no longer follows the surface";
-                if ui.button("Paint on it").on_hover_text(hint).clicked() {
+                if ui.button(tr("Paint on it")).on_hover_text(tr(hint)).clicked() {
                     setter.act(|layer| LayerAction::PaintMask { layer, hides: false });
                 }
             }
         }
         setter.choose(ui, PicturePart::Mask, "From a picture…");
-        if layer.mask.is_some() && ui.button("Delete mask").clicked() {
+        if layer.mask.is_some() && ui.button(tr("Delete mask")).clicked() {
             setter.set(Property::Mask { mask: None }, true);
         }
     });

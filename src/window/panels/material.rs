@@ -3,6 +3,7 @@
 
 use super::setter::LayerSetter;
 use super::{balls, colors, painter};
+use crate::language::tr;
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::mood_pictures::MoodPictures;
 use crate::session::actions::LayerAction;
@@ -11,6 +12,7 @@ use crate::shading::{
     BallStrokes, Environment, FeatureScale, Features, Light, LightKind, Model, Projection,
     RadianceScaling, Scaling, Shading, SolidGlass, Term,
 };
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
 
@@ -150,10 +152,10 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
         ui.horizontal_wrapped(|ui| {
             setter.choose(ui, part, "Choose…");
             match file {
-                None => drop(ui.weak(none)),
+                None => drop(ui.weak(tr(none))),
                 Some(file) => {
                     ui.label(file);
-                    if ui.small_button("Remove").clicked() {
+                    if ui.small_button(tr("Remove")).clicked() {
                         setter.set(Property::Without { part }, true);
                     }
                 }
@@ -186,9 +188,9 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
         );
         balls::chooser(ui, setter);
         ball_strokes(ui, shading.strokes, setter);
-        let button = ui.button("Paint the ball");
+        let button = ui.button(tr("Paint the ball"));
         let hint = "Opens the ball as a drawing of its own; each stroke on it repaints the shape";
-        if button.on_hover_text(hint).clicked() {
+        if button.on_hover_text(tr(hint)).clicked() {
             let paint = LayerAction::PaintBall { layer: setter.layer.clone(), hollows: false };
             setter.requests.act(Action::Layer(paint));
         }
@@ -234,12 +236,13 @@ fn term(
     put: fn(Term) -> Property,
 ) {
     ui.horizontal(|ui| {
-        let color = colors::button(ui, &format!("{label} color"), term.color);
+        let color_label = tr!("{term} color", term = tr(label));
+        let color = colors::button(ui, &color_label, term.color);
         setter.take(color.map(|c| c.map(|color| put(Term { color, ..term }))));
         let weight = NumberField::new(label, 0.0..=2.0, hint).row(ui, term.weight);
         setter.take(weight.map(|c| c.map(|weight| put(Term { weight, ..term }))));
     });
-    let gamma = format!("{label} relief");
+    let gamma = tr!("{term} relief", term = tr(label));
     let number =
         NumberField::new(&gamma, 0.0..=8.0, "How strongly features are enhanced in this term (γ)");
     let changed = number.row(ui, term.scaling.gamma_convex);
@@ -259,14 +262,14 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
             position: vec3(canvas.x * 0.3, canvas.y * 0.3, canvas.max_element() * 0.3),
         };
         for (text, kind) in [("Add light", far), ("Add light at a point", near)] {
-            if ui.button(text).clicked() {
+            if ui.button(tr(text)).clicked() {
                 let new = Light { kind, intensity: 0.5, ..Light::default() };
                 let lights = lights.iter().copied().chain([new]).collect();
                 setter.set(Property::Lights { lights }, true);
             }
         }
     });
-    ui.weak("The anchor tool (A) drags lights on the canvas.");
+    ui.weak(tr("The anchor tool (A) drags lights on the canvas."));
 }
 
 /// One of the lamps: its direction as a ball, its color, its strength and, of a lamp at a point,
@@ -285,28 +288,29 @@ fn light(ui: &mut Ui, lights: &[Light], i: usize, setter: &mut LayerSetter) {
             // A point light far enough away is a direction, which the ball shows.
             LightKind::Point { position } => position,
         };
-        let turned = ball(ui, &format!("Direction of light {number_of}"), direction);
+        let turned = ball(ui, &tr!("Direction of light {number}", number = number_of), direction);
         if matches!(own.kind, LightKind::Directional { .. }) {
             let kind = |direction| LightKind::Directional { direction };
             setter.take(turned.map(|c| c.map(|to| put(Light { kind: kind(to), ..own }))));
         }
         ui.vertical(|ui| {
             ui.horizontal(|ui| {
-                let color = colors::button(ui, &format!("Color of light {number_of}"), own.color);
+                let label = tr!("Color of light {number}", number = number_of);
+                let color = colors::button(ui, &label, own.color);
                 setter.take(color.map(|c| c.map(|color| put(Light { color, ..own }))));
-                if lights.len() > 1 && ui.small_button("Remove").clicked() {
+                if lights.len() > 1 && ui.small_button(tr("Remove")).clicked() {
                     let mut left = lights.to_vec();
                     left.remove(i);
                     setter.set(Property::Lights { lights: left }, true);
                 }
             });
-            let label = format!("Light {number_of}");
+            let label = tr!("Light {number}", number = number_of);
             let field = NumberField::new(&label, 0.0..=4.0, "Intensity");
             let put_intensity = |intensity| put(Light { intensity, ..own });
             number(ui, field, own.intensity, setter, put_intensity);
             if let LightKind::Point { position } = own.kind {
-                let (label, hint) =
-                    (format!("Height {number_of}"), "Height above the nearest point, px");
+                let label = tr!("Height {number}", number = number_of);
+                let hint = "Height above the nearest point, px";
                 let field = NumberField::new(&label, 0.0..=4000.0, hint).decimals(0);
                 let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
                 let put_height = |z| put(Light { kind: kind(z), ..own });
@@ -319,7 +323,7 @@ fn light(ui: &mut Ui, lights: &[Light], i: usize, setter: &mut LayerSetter) {
 /// A ball on which a direction is dragged: toward the light, camera space (y up).
 fn ball(ui: &mut Ui, label: &str, direction: Vec3) -> Option<ValueChange<Vec3>> {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(58.0, 58.0), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, label));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, tr(label)));
     let (center, radius) = (rect.center(), 26.0);
     let l = direction.normalize_or(Vec3::Z);
     let painter = ui.painter();
@@ -343,7 +347,7 @@ fn ball(ui: &mut Ui, label: &str, direction: Vec3) -> Option<ValueChange<Vec3>> 
     );
     let is_held =
         response.is_pointer_button_down_on() || response.drag_stopped() || response.clicked();
-    let response = response.on_hover_text("Drag: the middle faces you, the rim grazes");
+    let response = response.on_hover_text(tr("Drag: the middle faces you, the rim grazes"));
     let pos = response.interact_pointer_pos().filter(|_| is_held)?;
     let at = (pos - center) / radius;
     let flat = vec2(at.x, -at.y).clamp_length_max(0.999);

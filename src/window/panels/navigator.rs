@@ -2,6 +2,7 @@
 //! there. Floor 7.
 
 use crate::canvas::Canvas;
+use crate::language::tr;
 use crate::math::{Size, Vec2, vec2};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
@@ -12,7 +13,7 @@ use eframe::egui::{self, Color32, Rect, Sense, Shape, Stroke, Ui, pos2};
 
 pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut UiRequests) {
     let Some(open) = session.active() else {
-        ui.weak("No document is open.");
+        ui.weak(tr("No document is open."));
         return;
     };
     let (size, Some(view)) = (open.shown_size(), open.view) else { return };
@@ -42,7 +43,8 @@ fn small_picture(
     let side = egui::vec2(size.width as f32, size.height as f32) * scale;
     ui.vertical_centered(|ui| {
         let (rect, response) = ui.allocate_exact_size(side, Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Navigator"));
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, tr("Navigator")));
         ui.painter().rect_filled(rect, 0.0, Color32::from_gray(0x78));
         if let Some(texture) = canvas.small(ui.ctx(), size) {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
@@ -74,18 +76,18 @@ fn small_picture(
 
 fn buttons(ui: &mut Ui, view: &CanvasView, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
-        if ui.button("Fit").on_hover_text("The whole canvas in the window").clicked() {
+        if ui.button(tr("Fit")).on_hover_text(tr("The whole canvas in the window")).clicked() {
             requests.request(WindowRequest::Scale(0.0));
         }
-        if ui.button("100 %").on_hover_text("Actual pixels").clicked() {
+        if ui.button("100 %").on_hover_text(tr("Actual pixels")).clicked() {
             requests.request(WindowRequest::Scale(1.0));
         }
-        let mirror = ui.selectable_label(view.mirrored, "Mirror");
-        if mirror.on_hover_text("See the picture mirrored (M)").clicked() {
+        let mirror = ui.selectable_label(view.mirrored, tr("Mirror"));
+        if mirror.on_hover_text(tr("See the picture mirrored (M)")).clicked() {
             requests.act(Action::View(ViewAction::Mirror {}));
         }
-        let upright = ui.selectable_label(view.turn_rad != 0.0, "Upright");
-        if upright.on_hover_text("Turn the canvas back (5)").clicked() {
+        let upright = ui.selectable_label(view.turn_rad != 0.0, tr("Upright"));
+        if upright.on_hover_text(tr("Turn the canvas back (5)")).clicked() {
             requests.act(Action::View(ViewAction::Upright {}));
         }
     });

@@ -5,6 +5,7 @@ use super::{
     assistants, brush_mode, comic, crop, fill, gradient, liquify, path, select, shaping, transform,
 };
 use crate::document::Symmetry;
+use crate::language::tr;
 use crate::operators::{
     OPERATORS, OfferedOperator, OperatorOwner, give, has_operator, hint_of, set, whose,
 };
@@ -62,7 +63,8 @@ fn is_bending(tool: ToolKind) -> bool {
 fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (whose, operator) = whose(session);
     if let OperatorOwner::Layer(_) = whose {
-        ui.weak("Selected layer").on_hover_text("What you set here bends the selected layer");
+        ui.weak(tr("Selected layer"))
+            .on_hover_text(tr("What you set here bends the selected layer"));
     }
     segments(ui, |ui| {
         for OfferedOperator { label, begins, hint } in OPERATORS {
@@ -78,10 +80,10 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             set(requests, &whose, changed);
         }
     } else if operator != Operator::None {
-        ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks stay flat");
+        ui.colored_label(ui.visuals().warn_fg_color, tr("No surface here: marks stay flat"));
         let hint = "Makes a shape from what the drawing covers, so that marks bend over it and \
                     light falls on it";
-        if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
+        if ui.button(tr("Give it a shape…")).on_hover_text(tr(hint)).clicked() {
             requests.request(WindowRequest::ShapeDialog);
         }
     }
@@ -104,7 +106,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ToolKind::Panels => comic::options(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
-        tool => drop(ui.weak(tool.hint())),
+        tool => drop(ui.weak(tr(tool.hint()))),
     }
 }
 
@@ -126,13 +128,13 @@ const SYMMETRY_HINT: &str = "Repeats every stroke about an axis or a point, whic
 fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let now = session.symmetry().kind;
     let known = SYMMETRIES.iter().find(|(choice, _)| *choice == now).map(|(_, label)| *label);
-    let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| symmetries(ui, now, requests));
-    menu.response.on_hover_text(SYMMETRY_HINT);
+    let menu = ui.menu_button(tr(known.unwrap_or("Symmetry")), |ui| symmetries(ui, now, requests));
+    menu.response.on_hover_text(tr(SYMMETRY_HINT));
 }
 
 fn symmetries(ui: &mut Ui, now: Symmetry, requests: &mut UiRequests) {
     for (choice, label) in SYMMETRIES {
-        let row = ui.selectable_label(choice == now, label).on_hover_text(SYMMETRY_HINT);
+        let row = ui.selectable_label(choice == now, tr(label)).on_hover_text(tr(SYMMETRY_HINT));
         if row.clicked() {
             requests.act(Action::Hand(HandAction::Symmetry { symmetry: choice }));
             ui.close();

@@ -3,11 +3,13 @@
 
 use super::colors;
 use super::setter::LayerSetter;
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::mood_pictures::MoodPictures;
 use crate::session::Property;
 use crate::session::actions::LayerAction;
 use crate::shading::{Mood, NumberSetting, Painter, PixelShading, Shading, Shadows};
+use crate::tr;
 use crate::widgets::{NumberField, check, set_accessible_name, title};
 use eframe::egui::{self, Ui};
 
@@ -41,7 +43,7 @@ pub fn moods(ui: &mut Ui, shading: &Shading, pictures: &MoodPictures, setter: &m
     ui.horizontal_wrapped(|ui| {
         for (mood, _) in Mood::ALL {
             let is_on = mood.is_of(shading);
-            let text = egui::RichText::new(mood.label()).small();
+            let text = egui::RichText::new(tr(mood.label())).small();
             let button = match pictures.picture(mood) {
                 Some((texture, size)) => {
                     let shown = size * (64.0 / size.max_elem().max(1.0));
@@ -52,8 +54,9 @@ pub fn moods(ui: &mut Ui, shading: &Shading, pictures: &MoodPictures, setter: &m
                 }
                 None => egui::Button::new(text),
             };
-            let response = ui.add(button.selected(is_on)).on_hover_text("Lamps, shadows and all");
-            set_accessible_name(&response, &format!("Mood: {}", mood.label()));
+            let response =
+                ui.add(button.selected(is_on)).on_hover_text(tr("Lamps, shadows and all"));
+            set_accessible_name(&response, &tr!("Mood: {mood}", mood = tr(mood.label())));
             if response.clicked() && !is_on {
                 setter.set(Property::InMood { mood }, true);
             }
@@ -115,12 +118,12 @@ pub fn pixels(ui: &mut Ui, pixel: &PixelShading, setter: &mut LayerSetter) {
     }));
     ui.horizontal(|ui| {
         let hint = "Take tones from the colors of the picture beneath, as it is now";
-        if ui.button("Colors of the picture").on_hover_text(hint).clicked() {
+        if ui.button(tr("Colors of the picture")).on_hover_text(tr(hint)).clicked() {
             setter.act(|layer| LayerAction::PixelColors { layer });
         }
         let hint = "Make every tone: shade darker and cooler, light paler and warmer";
-        let made = egui::Button::new("Made colors").selected(pixel.colors.is_empty());
-        if ui.add(made).on_hover_text(hint).clicked() {
+        let made = egui::Button::new(tr("Made colors")).selected(pixel.colors.is_empty());
+        if ui.add(made).on_hover_text(tr(hint)).clicked() {
             let pixel = PixelShading { colors: Vec::new(), ..pixel.clone() };
             setter.set(Property::Pixeled { pixel }, true);
         }

@@ -4,11 +4,13 @@
 use crate::file_purpose::FilePurpose;
 use crate::icons::{BUTTON_PT, Icon, icon_button};
 use crate::io::palette::PaletteFormat;
+use crate::language::tr;
 use crate::paint::ColorPalette;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{HandAction, PaletteAction};
 use crate::session::{Action, Session};
 use crate::theme::ACCENT;
+use crate::tr;
 use crate::widgets::{NumberField, draw_swatch, set_accessible_name};
 use eframe::egui::{
     self, Button, ComboBox, Id, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, Ui, vec2,
@@ -26,28 +28,28 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let shown = session.palettes.shown.clone();
     head(ui, session, shown.as_deref(), requests);
     let Some(palette) = session.shown_palette() else {
-        ui.weak("No document is open.");
+        ui.weak(tr("No document is open."));
         return;
     };
     let is_fixed = shown.as_deref().is_some_and(|name| session.palettes.is_fixed(name));
     if palette.colors.is_empty() {
-        ui.weak("It has no colors yet.");
+        ui.weak(tr("It has no colors yet."));
     } else {
         let view = PaletteView { session, palette, shown: shown.as_deref(), is_fixed };
         view.colors(ui, requests);
     }
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let add = ui.add_enabled(!is_fixed, Button::new("Add color"));
-        if add.on_hover_text("Adds the current color at the end").clicked() {
+        let add = ui.add_enabled(!is_fixed, Button::new(tr("Add color")));
+        if add.on_hover_text(tr("Adds the current color at the end")).clicked() {
             let (color, name) = (session.tools.color, String::new());
             act(requests, PaletteAction::Add { palette: shown.clone(), color, name, index: None });
         }
         let has_document = session.active().is_some();
         ui.add_enabled_ui(!is_fixed && has_document, |ui| {
-            ui.menu_button("From the picture", |ui| {
+            ui.menu_button(tr("From the picture"), |ui| {
                 for count in COUNTS {
-                    if ui.button(format!("{count} colors")).clicked() {
+                    if ui.button(tr!("{count} colors", count)).clicked() {
                         let palette = shown.clone();
                         act(requests, PaletteAction::FromPicture { palette, count });
                         ui.close();
@@ -67,19 +69,22 @@ fn head(ui: &mut Ui, session: &Session, shown: Option<&str>, requests: &mut UiRe
     ui.horizontal(|ui| {
         let width = ui.available_width() - BUTTON_PT - 8.0;
         let list = ComboBox::from_id_salt("palette").width(width).truncate();
-        let list = list.selected_text(shown.unwrap_or(OF_DOCUMENT)).show_ui(ui, |ui| {
-            if ui.selectable_label(shown.is_none(), OF_DOCUMENT).clicked() {
+        // The program's own palette has a name in every language.
+        let name_of = |name| if session.palettes.is_fixed(name) { tr(name) } else { name };
+        let list = list.selected_text(shown.map_or(tr(OF_DOCUMENT), name_of));
+        let list = list.show_ui(ui, |ui| {
+            if ui.selectable_label(shown.is_none(), tr(OF_DOCUMENT)).clicked() {
                 act(requests, PaletteAction::Show { palette: None });
             }
             for name in session.palettes.names() {
-                if ui.selectable_label(shown == Some(name), name).clicked() {
+                if ui.selectable_label(shown == Some(name), name_of(name)).clicked() {
                     act(requests, PaletteAction::Show { palette: Some(name.into()) });
                 }
             }
         });
-        set_accessible_name(&list.response, "Palette shown");
+        set_accessible_name(&list.response, tr("Palette shown"));
         let dots = icon_button(ui, Icon::Dots, "Palette menu", false)
-            .on_hover_text("New, name, copies, files of other programs");
+            .on_hover_text(tr("New, name, copies, files of other programs"));
         let stays = egui::PopupCloseBehavior::CloseOnClickOutside;
         egui::Popup::menu(&dots)
             .close_behavior(stays)
@@ -89,7 +94,7 @@ fn head(ui: &mut Ui, session: &Session, shown: Option<&str>, requests: &mut UiRe
 
 fn menu(ui: &mut Ui, session: &Session, shown: Option<&str>, requests: &mut UiRequests) {
     let mut entry = |ui: &mut Ui, label: &str, is_on: bool, action: PaletteAction| {
-        if ui.add_enabled(is_on, Button::new(label)).clicked() {
+        if ui.add_enabled(is_on, Button::new(tr(label))).clicked() {
             act(requests, action);
             ui.close();
         }
@@ -107,14 +112,14 @@ fn menu(ui: &mut Ui, session: &Session, shown: Option<&str>, requests: &mut UiRe
     let is_there = session.shown_palette().is_some_and(|palette| !palette.is_blank());
     entry(ui, "Delete palette", !is_fixed && is_there, delete);
     ui.separator();
-    if ui.button("Import…").clicked() {
+    if ui.button(tr("Import…")).clicked() {
         requests.request(WindowRequest::Choose(FilePurpose::Palette));
         ui.close();
     }
     ui.add_enabled_ui(session.shown_palette().is_some(), |ui| {
-        ui.menu_button("Export", |ui| {
+        ui.menu_button(tr("Export"), |ui| {
             for (format, label) in PaletteFormat::LABELS {
-                if ui.button(format!("{label}…")).clicked() {
+                if ui.button(format!("{}…", tr(label))).clicked() {
                     requests.request(WindowRequest::ExportPalette(format));
                     ui.close();
                 }
@@ -142,9 +147,9 @@ fn name_field(ui: &mut Ui, label: &str, current: &str) -> Option<String> {
     let id = ui.scope_id().with(label);
     let known = ui.data(|data| data.get_temp::<String>(id));
     let mut text = known.unwrap_or_else(|| current.to_owned());
-    let field = TextEdit::singleline(&mut text).hint_text("Name").desired_width(170.0);
+    let field = TextEdit::singleline(&mut text).hint_text(tr("Name")).desired_width(170.0);
     let response = ui.add(field.char_limit(ColorPalette::LONGEST_NAME));
-    set_accessible_name(&response, label);
+    set_accessible_name(&response, tr(label));
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, text));
         return None;
@@ -194,8 +199,8 @@ impl PaletteView<'_> {
     fn color(&self, ui: &Ui, i: usize, rect: Rect, requests: &mut UiRequests) {
         let named = &self.palette.colors[i];
         let label = match named.name.as_str() {
-            "" => format!("Palette color {}", i + 1),
-            name => format!("Palette color {}, {name}", i + 1),
+            "" => tr!("Palette color {number}", number = i + 1),
+            name => tr!("Palette color {number}, {name}", number = i + 1, name),
         };
         let sense = if self.is_fixed { Sense::click() } else { Sense::click_and_drag() };
         let response = ui.interact(rect, ui.scope_id().with(("palette color", i)), sense);
@@ -242,12 +247,12 @@ impl PaletteView<'_> {
                 act(requests, PaletteAction::Name { palette: palette(), index, name });
             }
         });
-        if ui.button("Replace with the current color").clicked() {
+        if ui.button(tr("Replace with the current color")).clicked() {
             let color = self.session.tools.color;
             act(requests, PaletteAction::Recolor { palette: palette(), index, color });
             ui.close();
         }
-        if ui.button("Remove").clicked() {
+        if ui.button(tr("Remove")).clicked() {
             act(requests, PaletteAction::Remove { palette: palette(), index });
             ui.close();
         }

@@ -3,6 +3,7 @@
 
 use super::colors;
 use super::setter::LayerSetter;
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::paint::{Figure, FigureKind, LivePath, PathCap, PathGeometry, PathJoin, PathRule};
 use crate::requests::UiRequests;
@@ -10,6 +11,7 @@ use crate::session::actions::PathAction;
 use crate::session::{Action, Property, Session};
 use crate::tools::ToolKind;
 use crate::tools::path::PathSettings;
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange, check, choice, choice_row, more};
 use eframe::egui::Ui;
 use std::ops::RangeInclusive;
@@ -49,7 +51,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         let join = choice_row(ui, "Corners", settings.join, &PathJoin::LABELS);
         push(join.map(|join| PathSettings { join, ..settings }));
     });
-    ui.weak(session.tool.hint());
+    ui.weak(tr(session.tool.hint()));
 }
 
 /// Some numbers of a figure, by their names; the changed figure.
@@ -90,8 +92,16 @@ pub fn show(ui: &mut Ui, path: &LivePath, setter: &mut LayerSetter) {
         PathGeometry::Figure(figure) => show_figure(ui, path, figure, setter),
         PathGeometry::Nodes(lines) => {
             let (nodes, lines) = (path.count_nodes(), lines.len());
-            let word = if lines == 1 { "line" } else { "lines" };
-            ui.weak(format!("{nodes} nodes, {lines} {word}; take the path tool to move them"));
+            ui.weak(match lines {
+                1 => tr!("{nodes} nodes, 1 line; take the path tool to move them", nodes),
+                _ => {
+                    tr!(
+                        "{nodes} nodes, {lines} lines; take the path tool to move them",
+                        nodes,
+                        lines
+                    )
+                }
+            });
             let rule = choice_row(ui, "Inside", path.rule, &PathRule::LABELS);
             set(setter, rule.map(|rule| LivePath { rule, ..path.clone() }));
         }
@@ -122,7 +132,7 @@ fn show_figure(ui: &mut Ui, path: &LivePath, figure: &Figure, setter: &mut Layer
     let number = figure_numbers(*figure, names, |field, value| field.row(ui, value));
     take(setter, number.map(|changed| changed.map(with)));
     let hint = "Its corners become nodes, which the path tool moves";
-    if ui.button("To nodes").on_hover_text(hint).clicked() {
+    if ui.button(tr("To nodes")).on_hover_text(tr(hint)).clicked() {
         let layer = setter.layer.clone();
         setter.requests.act(Action::Path(PathAction::ToNodes { layer }));
     }
@@ -154,7 +164,7 @@ fn show_outline(ui: &mut Ui, path: &LivePath, setter: &mut LayerSetter) {
         let changed = colors::button(ui, "Outline color", path.outline_color);
         let with = |outline_color| LivePath { outline_color, ..path.clone() };
         take(setter, changed.map(|changed| changed.map(with)));
-        ui.label("Outline color");
+        ui.label(tr("Outline color"));
     });
     let cap = choice_row(ui, "Ends", path.cap, &PathCap::LABELS);
     set(setter, cap.map(|cap| LivePath { cap, ..path.clone() }));

@@ -8,6 +8,7 @@ use super::{
 };
 use crate::document::{Content, DetailSource, Document, Histogram, Layer, NormalLayer, Progress};
 use crate::file_purpose::FilePurpose;
+use crate::language::tr;
 use crate::math::{Vec2, vec2};
 use crate::mood_pictures::MoodPictures;
 use crate::operators::{OPERATORS, OfferedOperator};
@@ -21,13 +22,14 @@ use crate::session::actions::LayerAction;
 use crate::session::{Property, Session};
 use crate::shading::Model;
 use crate::surface::{NoiseRelief, Weights};
+use crate::tr;
 use crate::widgets::{NumberField, check, choice_row, title};
 use eframe::egui::{Id, Ui};
 use std::sync::Arc;
 
 pub fn show(ui: &mut Ui, session: &Session, moods: &mut MoodPictures, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {
-        ui.weak("No layer is selected.");
+        ui.weak(tr("No layer is selected."));
         return;
     };
     let mut setter = LayerSetter { layer: path, requests };
@@ -57,12 +59,13 @@ fn content(
             setter.take(changed.map(|c| c.map(|color| Property::Fill { color })));
         }
         Content::Pixels(_) => {
-            ui.weak("Paint. Strokes on it are pixels.");
+            ui.weak(tr("Paint. Strokes on it are pixels."));
         }
         Content::Ink(lines) => {
-            ui.label(format!(
-                "The ink of “{}”, as it was drawn: no light falls on it. Draw on that layer, and the lines follow.",
-                lines.of
+            ui.label(tr!(
+                "The ink of “{layer}”, as it was drawn: no light falls on it. Draw on that layer, and \
+                 the lines follow.",
+                layer = lines.of
             ));
         }
         Content::Strokes(live) => {
@@ -179,10 +182,12 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
     }
     title(ui, "Anchors");
     let n = image.bend.anchors.len();
-    ui.weak(format!(
-        "{n} {}; take the anchor tool (A) to move, add and remove them",
-        if n == 1 { "anchor" } else { "anchors" }
-    ));
+    ui.weak(match n {
+        1 => tr("1 anchor; take the anchor tool (A) to move, add and remove them").to_owned(),
+        _ => {
+            tr!("{count} anchors; take the anchor tool (A) to move, add and remove them", count = n)
+        }
+    });
     if let Weights::Shepard { power } = image.bend.weights
         && n > 1
     {
@@ -199,7 +204,7 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
 
 /// Detail: noise, or a map of normals.
 fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
-    ui.label("Normals combined with the surface, for all layers above.");
+    ui.label(tr("Normals combined with the surface, for all layers above."));
     let number = NumberField::new("Strength", 0.0..=4.0, "1 is the map as it is");
     setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
     ui.horizontal_wrapped(|ui| {
@@ -207,11 +212,11 @@ fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
             DetailSource::Map { picture, .. } => {
                 format!("{} · {}", picture.file, picture.picture.size)
             }
-            DetailSource::Grain(_) => "Grain, made of noise".into(),
+            DetailSource::Grain(_) => tr("Grain, made of noise").into(),
         };
         ui.weak(source);
         setter.choose(ui, PicturePart::Detail, "Normal map…");
-        if matches!(normals.source, DetailSource::Map { .. }) && ui.button("Grain").clicked() {
+        if matches!(normals.source, DetailSource::Map { .. }) && ui.button(tr("Grain")).clicked() {
             setter.set(Property::Grained { grain: NoiseRelief::default() }, true);
         }
     });
@@ -241,7 +246,7 @@ fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut LayerS
     ui.horizontal_wrapped(|ui| {
         for OfferedOperator { label, begins, hint } in OPERATORS {
             let is_on = operator.is_like(begins);
-            if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
+            if ui.selectable_label(is_on, tr(label)).on_hover_text(tr(hint)).clicked() && !is_on {
                 setter.set(Property::Bend { operator: begins }, true);
             }
         }
@@ -328,7 +333,7 @@ fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut LayerSetter) {
         if let Some(stops) = super::gradient::stops_menu(ui, &gradient.stops) {
             setter.set(Property::Stops { stops }, true);
         }
-        if ui.button("Swap ends").clicked() {
+        if ui.button(tr("Swap ends")).clicked() {
             setter.set(Property::Ends { from: gradient.to, to: gradient.from }, true);
         }
     });

@@ -1,8 +1,10 @@
 //! The stops of a ramp: colors and places. Floor 7.
 
 use super::colors;
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::paint::GradientStop;
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange};
 use eframe::egui::Ui;
 
@@ -18,23 +20,24 @@ pub fn show(ui: &mut Ui, stops: &[GradientStop]) -> Option<ValueChange<Vec<Gradi
     let mut changed = None;
     for (i, stop) in stops.iter().enumerate() {
         ui.horizontal(|ui| {
-            let color = colors::button(ui, &format!("Color of stop {}", i + 1), stop.color);
+            let color =
+                colors::button(ui, &tr!("Color of stop {number}", number = i + 1), stop.color);
             let color = color.map(|c| c.map(|color| with(i, GradientStop { color, ..*stop })));
-            let place = format!("Position of stop {}", i + 1);
+            let place = tr!("Position of stop {number}", number = i + 1);
             let t = NumberField::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second")
                 .field(ui, stop.t);
             let t = t.map(|c| c.map(|t| with(i, GradientStop { t, ..*stop })));
             if let Some(to) = color.or(t) {
                 changed = Some(to);
             }
-            if stops.len() > 1 && ui.small_button("Remove").clicked() {
+            if stops.len() > 1 && ui.small_button(tr("Remove")).clicked() {
                 let mut stops = stops.to_vec();
                 stops.remove(i);
                 changed = Some(ValueChange { to: stops, done: true });
             }
         });
     }
-    if ui.button("Add stop").clicked() {
+    if ui.button(tr("Add stop")).clicked() {
         let mut stops = stops.to_vec();
         let color = stops.last().map_or(Color::WHITE, |stop| stop.color);
         stops.push(GradientStop { t: 0.5, color });

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use super::fill::BOUNDS;
+use crate::language::tr;
 use crate::paint::Fill;
 use crate::paint::fill::{FARTHEST_GROWTH_PX, WIDEST_GAP_PX};
 use crate::raster::coverage::SelectionMode;
@@ -39,8 +40,8 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             .extend(to.map(|select| Action::Selection(SelectionAction::Settings { select })));
     };
     for (way, label, hint) in WAYS {
-        let button = Button::selectable(select.combine == way, label);
-        if ui.add(button).on_hover_text(hint).clicked() {
+        let button = Button::selectable(select.combine == way, tr(label));
+        if ui.add(button).on_hover_text(tr(hint)).clicked() {
             push(Some(SelectSettings { combine: way, ..select }));
         }
     }
@@ -48,7 +49,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     match session.tool {
         ToolKind::Wand => push(wand(ui, select)),
         ToolKind::SurfaceWand => push(region(ui, select.region, select)),
-        _ => drop(ui.weak(session.tool.hint())),
+        _ => drop(ui.weak(tr(session.tool.hint()))),
     }
 }
 

@@ -1,10 +1,13 @@
 //! How the panels of one layer change it. Floor 7.
 
+use super::words::translate_within;
 use crate::file_purpose::FilePurpose;
+use crate::language::tr;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath, Property};
+use crate::tr;
 use crate::widgets::{ValueChange, set_accessible_name};
 use eframe::egui::Ui;
 
@@ -30,8 +33,9 @@ impl LayerSetter<'_> {
 
     /// A button that requests a picture for the layer.
     pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
-        let response = ui.button(text);
-        set_accessible_name(&response, &format!("Choose {}", part.label().to_lowercase()));
+        let response = ui.button(tr(text));
+        let picture = translate_within(part.label());
+        set_accessible_name(&response, &tr!("Choose {picture}", picture));
         if response.clicked() {
             self.requests.request(WindowRequest::Choose(FilePurpose::Part(part)));
         }

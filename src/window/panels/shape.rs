@@ -10,6 +10,7 @@ use crate::commands::PARTS;
 use crate::document::{Document, Part};
 use crate::icons::{Icon, icon_button};
 use crate::io::recipe::parts::write_part;
+use crate::language::tr;
 use crate::part_pictures::PartPictures;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::PartAction;
@@ -39,7 +40,7 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     let Some((open, document)) = session.active().zip(session.shown_document()) else {
-        ui.weak("No document is open.");
+        ui.weak(tr("No document is open."));
         return;
     };
     head(ui, session, document, requests);
@@ -99,7 +100,8 @@ fn flats(ui: &mut Ui, document: &Document, part: &Part, requests: &mut UiRequest
     ui.horizontal(|ui| {
         for (action, label, hint) in buttons {
             // Only what can be done has a button.
-            if let Some(action) = action.filter(|_| ui.button(label).on_hover_text(hint).clicked())
+            if let Some(action) =
+                action.filter(|_| ui.button(tr(label)).on_hover_text(tr(hint)).clicked())
             {
                 act(requests, action);
             }
@@ -116,18 +118,20 @@ fn forms(document: &Document) -> impl DoubleEndedIterator<Item = &Arc<Part>> {
 /// The buttons that add, copy, order and delete.
 fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
-        ui.menu_button("+ Part", |ui| {
+        ui.menu_button(tr("+ Part"), |ui| {
             for command in PARTS {
-                let response =
-                    ui.add_enabled((command.can)(session), eframe::egui::Button::new(command.name));
-                if response.on_hover_text(command.hint).clicked() {
+                let response = ui.add_enabled(
+                    (command.can)(session),
+                    eframe::egui::Button::new(tr(command.name)),
+                );
+                if response.on_hover_text(tr(command.hint)).clicked() {
                     (command.run)(session, requests);
                     ui.close();
                 }
             }
         })
         .response
-        .on_hover_text("Adds a part in front of all others");
+        .on_hover_text(tr("Adds a part in front of all others"));
         let Some(part) = session.active().and_then(|open| open.selected_part()) else { return };
         let siblings: Vec<&Arc<Part>> =
             document.parts.list.iter().filter(|other| other.on() == part.on()).collect();
@@ -146,7 +150,8 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
         for (icon, label, action) in buttons {
             let button =
                 ui.add_enabled_ui(action.is_some(), |ui| icon_button(ui, icon, label, false));
-            if let Some(action) = action.filter(|_| button.inner.on_hover_text(label).clicked()) {
+            if let Some(action) = action.filter(|_| button.inner.on_hover_text(tr(label)).clicked())
+            {
                 act(requests, action);
             }
         }
@@ -156,12 +161,12 @@ fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRe
 /// What to do if there are no parts yet.
 fn begin(ui: &mut Ui, document: &Document, requests: &mut UiRequests) {
     ui.label(match document.surface {
-        Some(_) => "The shape comes from the maps. Parts are in front of it.",
-        None => "This drawing has no shape yet: marks stay flat.",
+        Some(_) => tr("The shape comes from the maps. Parts are in front of it."),
+        None => tr("This drawing has no shape yet: marks stay flat."),
     });
     let hint =
         "Inflates what the drawing covers, in one part or a part for each color, and lights it";
-    if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
+    if ui.button(tr("Give it a shape…")).on_hover_text(tr(hint)).clicked() {
         requests.request(WindowRequest::ShapeDialog);
     }
 }

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::canvas::ball;
+use crate::language::tr;
 use crate::math::{Vec3, vec3};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::PartAction;
@@ -14,8 +15,8 @@ use eframe::egui::{Button, Sense, Ui, vec2};
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let has_parts = session.shown_document().is_some_and(|document| !document.parts.is_empty());
     if !has_parts {
-        ui.weak("There is no part to work on yet.");
-        if ui.button("Give it a shape…").clicked() {
+        ui.weak(tr("There is no part to work on yet."));
+        if ui.button(tr("Give it a shape…")).clicked() {
             requests.request(WindowRequest::ShapeDialog);
         }
         return;
@@ -25,7 +26,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ToolKind::Touch => touching(ui, now),
         ToolKind::Sculpt => sculpting(ui, now),
         tool => {
-            ui.weak(tool.hint());
+            ui.weak(tr(tool.hint()));
             None
         }
     };
@@ -47,7 +48,7 @@ fn direction_from_lean([right, up]: [f32; 2]) -> Vec3 {
 fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     let side = ui.spacing().interact_size.y + 4.0;
     let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::drag());
-    set_accessible_name(&response, "Direction of touches");
+    set_accessible_name(&response, tr("Direction of touches"));
     ball(ui.painter(), rect.center(), 0.46 * side, now.normal);
     let mut to = None;
     if response.dragged() {
@@ -59,21 +60,21 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
         let normal = vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt());
         to = Some(ShapeSettings { normal, ..now });
     }
-    response.on_hover_text(
+    response.on_hover_text(tr(
         "The direction that touches give to the surface: drag the ball. Alt-click takes it from \
          the surface",
-    );
+    ));
     let [right, up] = leaning(now.normal);
     let number = |label, hint| NumberField::new(label, -88.0..=88.0, hint).degrees();
-    ui.label("right");
+    ui.label(tr("right"));
     let changed =
         number("Lean right", "How far it leans to the right; below 0 to the left").field(ui, right);
     to = changed.map(|c| ShapeSettings { normal: direction_from_lean([c.to, up]), ..now }).or(to);
-    ui.label("up");
+    ui.label(tr("up"));
     let changed = number("Lean up", "How far it leans up; below 0 down").field(ui, up);
     to =
         changed.map(|c| ShapeSettings { normal: direction_from_lean([right, c.to]), ..now }).or(to);
-    if ui.button("Facing you").on_hover_text("Touches level the surface").clicked() {
+    if ui.button(tr("Facing you")).on_hover_text(tr("Touches level the surface")).clicked() {
         to = Some(ShapeSettings { normal: Vec3::Z, ..now });
     }
     ui.add_space(6.0);
@@ -87,8 +88,9 @@ fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
 fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
     let mut to = None;
     for (tool, word) in SculptTool::ALL {
-        let button = Button::selectable(now.tool == tool, sentence(word));
-        if ui.add(button).on_hover_text(describe(tool)).clicked() {
+        let word = sentence(word);
+        let button = Button::selectable(now.tool == tool, tr(&word));
+        if ui.add(button).on_hover_text(tr(describe(tool))).clicked() {
             to = Some(ShapeSettings { tool, ..now });
         }
     }
@@ -123,7 +125,7 @@ fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
             field.inline(ui, now.share, 60.0).map(|c| ShapeSettings { share: c.to, ..now })
         }
     };
-    ui.weak("Weaker with less pressure");
+    ui.weak(tr("Weaker with less pressure"));
     changed.or(to)
 }
 

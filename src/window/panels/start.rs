@@ -5,6 +5,7 @@ use crate::commands::find_command;
 use crate::file_pictures::FilePictures;
 use crate::icons::Icon;
 use crate::keymap::{Keymap, key_text};
+use crate::language::tr;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::sample::SAMPLES;
 use crate::sample_pictures::SamplePictures;
@@ -73,9 +74,9 @@ pub fn show(
             ui.spacing_mut().item_spacing = Vec2::splat(GAP_PT);
             ui.add_space((0.08 * area.height()).min(64.0));
             ui.label(RichText::new("Rilievo").size(28.0).strong());
-            ui.weak(
+            ui.weak(tr(
                 "Paint on shapes: drop a drawing, a photo, normal maps or a project anywhere here.",
-            );
+            ));
             beginnings(ui, keymap, requests);
             let files: Vec<StartCard> = recent.iter().cloned().map(StartCard::File).collect();
             cards(ui, "Recent", &files, &mut pictures, requests);
@@ -94,7 +95,8 @@ fn beginnings(ui: &mut Ui, keymap: &Keymap, requests: &mut UiRequests) {
         for (name, title, about, icon) in BEGINNINGS {
             let Some(command) = find_command(name) else { continue };
             let keys = keymap.first(command).map(|keys| key_text(ui.ctx(), keys));
-            let hint = format!("{} {}", command.hint, keys.unwrap_or_default());
+            let hint = format!("{} {}", tr(command.hint), keys.unwrap_or_default());
+            let (title, about) = (tr(title), tr(about));
             let (rect, response) = ui.allocate_exact_size(vec2(side, COMMAND_PT), Sense::click());
             frame(ui, rect, &response, title);
             let visuals = ui.visuals();
@@ -128,7 +130,7 @@ fn cards(
         return;
     }
     ui.add_space(GAP_PT);
-    ui.label(RichText::new(title).strong());
+    ui.label(RichText::new(tr(title)).strong());
     let columns = ((ui.available_width() + GAP_PT) / (PICTURE_PT.x + GAP_PT)).floor().max(1.0);
     let side = (ui.available_width() - (columns - 1.0) * GAP_PT) / columns;
     for row in cards.chunks(columns as usize) {
@@ -154,7 +156,11 @@ fn card(
         ),
         StartCard::Sample(index) => {
             let Some(sample) = SAMPLES.get(*index) else { return };
-            (sample.name.to_owned(), sample.about.to_owned(), WindowRequest::OpenSample(*index))
+            (
+                tr(sample.name).to_owned(),
+                tr(sample.about).to_owned(),
+                WindowRequest::OpenSample(*index),
+            )
         }
     };
     let (rect, response) = ui.allocate_exact_size(vec2(width_pt, PICTURE_PT.y), Sense::click());

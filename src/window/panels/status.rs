@@ -4,11 +4,13 @@
 use crate::canvas::Canvas;
 use crate::document::{Document, MemoryUse};
 use crate::jobs::{JobKind, JobWindow, Jobs, RunningJob};
+use crate::language::{tr, tr_message, tr_number};
 use crate::math::Vec2;
 use crate::memory::bytes_text;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::memory::DocumentMemory;
 use crate::session::{OpenDocument, Session};
+use crate::tr;
 use crate::usage::{KEPT_SHARE, MemoryMeter};
 use crate::widgets::{NumberField, bar, set_accessible_name};
 use eframe::egui::{self, Button, RichText, Ui};
@@ -25,7 +27,7 @@ pub fn show<W: JobWindow>(
         show_jobs(ui, jobs);
         let Some(open) = session.active() else {
             if !say(ui, jobs) {
-                ui.weak("Open a document, or drop a picture or a normal map on the window");
+                ui.weak(tr("Open a document, or drop a picture or a normal map on the window"));
             }
             return;
         };
@@ -40,14 +42,14 @@ pub fn show<W: JobWindow>(
             |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
         match canvas.under.filter(is_here) {
             Some(at) => show_point(ui, document, at, details.is_some()),
-            None => _ = ui.weak(session.tool.hint()),
+            None => _ = ui.weak(tr(session.tool.hint())),
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if let Some(memory) = details {
                 show_measurements(ui, session, canvas, (memory, kept_share), requests);
             }
             if document.surface.is_none() {
-                ui.weak("No surface: marks stay flat");
+                ui.weak(tr("No surface: marks stay flat"));
             }
         });
     });
@@ -58,9 +60,10 @@ fn show_jobs<W: JobWindow>(ui: &mut Ui, jobs: &Jobs<W>) {
     let is_shown =
         |job: &RunningJob| matches!(job.kind, JobKind::Working | JobKind::Looking) && job.is_long();
     for job in jobs.under_way.iter().filter(|job| is_shown(job)) {
-        ui.label(job.title());
+        ui.label(tr_message(&job.title()));
         bar(ui, job.share(), 90.0);
-        if ui.small_button("Cancel").on_hover_text(format!("Cancel: {}", job.name)).clicked() {
+        let hint = tr!("Cancel: {job}", job = tr_message(&job.name));
+        if ui.small_button(tr("Cancel")).on_hover_text(hint).clicked() {
             job.progress.cancel();
         }
         ui.separator();
@@ -75,16 +78,16 @@ fn show_view(ui: &mut Ui, open: &OpenDocument, requests: &mut UiRequests) {
     let percent = open.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
     if ui
         .add(Button::new(format!("{percent:.0} %")).frame(false))
-        .on_hover_text("Click for actual pixels")
+        .on_hover_text(tr("Click for actual pixels"))
         .clicked()
     {
         requests.request(WindowRequest::Scale(1.0));
     }
     ui.weak(open.shown_document().size.to_string());
     if open.unwrap_settings().is_some() {
-        ui.label("Unwrapped").on_hover_text(
+        ui.label(tr("Unwrapped")).on_hover_text(tr(
             "You are painting on the unwrapped surface; View, Unwrapped shows the picture",
-        );
+        ));
     }
     ui.separator();
 }
@@ -94,9 +97,14 @@ fn show_selection(ui: &mut Ui, canvas: &Canvas, document: &Document) {
     let Some(rect) = canvas.selected_rect().filter(|_| document.active_selection.is_some()) else {
         return;
     };
-    let (w, h) = (rect.width(), rect.height());
-    let about = format!("Selected {w} × {h} at {}, {}", rect.x0, rect.y0);
-    ui.label(about).on_hover_text("The rectangle around all that is selected");
+    let about = tr!(
+        "Selected {width} × {height} at {x}, {y}",
+        width = rect.width(),
+        height = rect.height(),
+        x = rect.x0,
+        y = rect.y0
+    );
+    ui.label(about).on_hover_text(tr("The rectangle around all that is selected"));
     ui.separator();
 }
 
@@ -108,8 +116,8 @@ fn show_point(ui: &mut Ui, document: &Document, at: Vec2, is_detailed: bool) {
     if let Some(surface) = surface.filter(|s| is_detailed && s.coverage(x, y) > 0) {
         let n = surface.normal(x, y);
         let about = format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
-        ui.label(RichText::new(about).monospace())
-            .on_hover_text("The surface's normal and depth under the pointer");
+        ui.label(RichText::new(tr_number(&about)).monospace())
+            .on_hover_text(tr("The surface's normal and depth under the pointer"));
     }
 }
 
@@ -122,11 +130,16 @@ fn show_measurements(
     requests: &mut UiRequests,
 ) {
     let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
-    let took = if canvas.is_busy { "Painting…".to_owned() } else { took };
-    ui.weak(took).on_hover_text("Time of the last redraw");
+    let took = if canvas.is_busy { tr("Painting…").to_owned() } else { took };
+    ui.weak(took).on_hover_text(tr("Time of the last redraw"));
     let is_idle = !canvas.is_busy && !ui.input(|input| input.pointer.any_down());
     let used = memory.documents(session, kept_share, is_idle);
     memory_menu(ui, memory, kept_share, used, requests);
+}
+
+/// An amount of memory, as the language of the window writes numbers.
+fn memory_text(bytes: u64) -> String {
+    tr_number(&bytes_text(bytes)).into_owned()
 }
 
 /// How much may be kept for speed.
@@ -144,8 +157,8 @@ pub fn cache_limit(
         requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
     }
     let (limit, machine) =
-        (bytes_text(memory.limit(kept_share)), bytes_text(memory.machine_bytes()));
-    ui.weak(format!("{limit} of {machine} for caches, in all documents"));
+        (memory_text(memory.limit(kept_share)), memory_text(memory.machine_bytes()));
+    ui.weak(tr!("{limit} of {machine} for caches, in all documents", limit, machine));
 }
 
 /// The memory of the document in front; the menu lists it, and sets how much may be kept for speed.
@@ -157,7 +170,7 @@ fn memory_menu(
     requests: &mut UiRequests,
 ) {
     let MemoryUse { painted, pictures, maps, kept } = used.front;
-    let text = RichText::new(bytes_text(used.front.total())).weak();
+    let text = RichText::new(memory_text(used.front.total())).weak();
     let button = ui.menu_button(text, |ui| {
         ui.set_width(300.0);
         let rows = [
@@ -174,23 +187,23 @@ fn memory_menu(
                 .chain((others > 0).then_some(("Other documents", others)))
                 .chain(program);
             for (name, bytes) in rows {
-                ui.label(name);
-                ui.label(bytes_text(bytes));
+                ui.label(tr(name));
+                ui.label(memory_text(bytes));
                 ui.end_row();
             }
         });
         ui.separator();
         cache_limit(ui, memory, kept_share, requests);
     });
-    let about = format!(
-        "Memory of this document: {} painted, {} of pictures, {} of maps, {} of caches. Click for \
-         more",
-        bytes_text(painted),
-        bytes_text(pictures),
-        bytes_text(maps),
-        bytes_text(kept)
+    let about = tr!(
+        "Memory of this document: {painted} painted, {pictures} of pictures, {maps} of maps, {caches} \
+         of caches. Click for more",
+        painted = memory_text(painted),
+        pictures = memory_text(pictures),
+        maps = memory_text(maps),
+        caches = memory_text(kept)
     );
-    set_accessible_name(&button.response, "Memory of this document");
+    set_accessible_name(&button.response, tr("Memory of this document"));
     button.response.on_hover_text(about);
 }
 
@@ -198,7 +211,7 @@ fn memory_menu(
 fn say<W: JobWindow>(ui: &mut Ui, jobs: &Jobs<W>) -> bool {
     let said = jobs.success_message();
     if let Some(said) = said {
-        ui.label(said);
+        ui.label(tr_message(said));
         ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
     }
     said.is_some()

@@ -3,12 +3,14 @@
 
 use super::{attachment, colors, options};
 use crate::icons::{Icon, icon_button};
+use crate::language::tr;
 use crate::operators::{OPERATORS, OfferedOperator};
 use crate::paint::{Brush, Stroke};
 use crate::requests::UiRequests;
 use crate::session::actions::{HandAction, StrokeAction, Style};
 use crate::session::{Action, LayerPath, Session};
 use crate::tools::ToolKind;
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange, swatch, title};
 use eframe::egui::{Button, ScrollArea, Ui, vec2};
 use std::sync::Arc;
@@ -25,11 +27,14 @@ pub fn show(
     requests: &mut UiRequests,
 ) {
     let n = strokes.len();
-    ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
+    ui.label(match n {
+        1 => tr("1 stroke").to_owned(),
+        _ => tr!("{count} strokes", count = n),
+    });
     let selected = session.active().map(|open| open.selected_strokes()).unwrap_or_default();
     list(ui, layer, strokes, &selected, requests);
     let Some(first) = selected.first().and_then(|&index| strokes.get(index)) else {
-        ui.weak("Select strokes here or on the canvas with the stroke tool (S).");
+        ui.weak(tr("Select strokes here or on the canvas with the stroke tool (S)."));
         return;
     };
     buttons(ui, layer, n, &selected, requests);
@@ -69,11 +74,12 @@ fn list(
             ui.horizontal(|ui| {
                 swatch(
                     ui,
-                    &format!("Color of stroke {}", index + 1),
+                    &tr!("Color of stroke {number}", number = index + 1),
                     stroke.color(),
                     vec2(18.0, height - 4.0),
                 );
-                let name = format!("Stroke {} · {:.0} px", index + 1, stroke.brush().size);
+                let size = format!("{:.0}", stroke.brush().size);
+                let name = tr!("Stroke {number} · {size} px", number = index + 1, size);
                 let row = Button::selectable(is_on, name).min_size(vec2(ui.available_width(), 0.0));
                 if ui.add(row).clicked() {
                     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
@@ -117,26 +123,28 @@ fn buttons(
             }
             let hint = "Takes over its brush, bending and color";
             if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Use its brush", false)
-                .on_hover_text(hint)
+                .on_hover_text(tr(hint))
                 .clicked()
             {
                 act(StrokeAction::Take { layer: layer(), stroke });
             }
         }
         if icon_button(ui, Icon::Duplicate, "Duplicate strokes", false)
-            .on_hover_text("Duplicate")
+            .on_hover_text(tr("Duplicate"))
             .clicked()
         {
             act(StrokeAction::Duplicate { layer: layer(), strokes: strokes() });
         }
         let hint = "Turns them into pixels on a paint layer of their own";
         if icon_button(ui, Icon::Bake, "Turn strokes into pixels", false)
-            .on_hover_text(hint)
+            .on_hover_text(tr(hint))
             .clicked()
         {
             act(StrokeAction::Bake { layer: layer(), strokes: strokes() });
         }
-        if icon_button(ui, Icon::Delete, "Delete strokes", false).on_hover_text("Delete").clicked()
+        if icon_button(ui, Icon::Delete, "Delete strokes", false)
+            .on_hover_text(tr("Delete"))
+            .clicked()
         {
             act(StrokeAction::Delete { layer: layer(), strokes: strokes() });
         }
@@ -148,7 +156,7 @@ fn buttons(
             done: true,
         };
         if icon_button(ui, Icon::Tool(ToolKind::Brush), "Apply current brush", false)
-            .on_hover_text(hint)
+            .on_hover_text(tr(hint))
             .clicked()
         {
             act(restyle);
@@ -179,7 +187,7 @@ fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
     ui.horizontal_wrapped(|ui| {
         for OfferedOperator { label, begins, hint } in OPERATORS {
             let is_on = stroke.operator().is_like(begins);
-            if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
+            if ui.selectable_label(is_on, tr(label)).on_hover_text(tr(hint)).clicked() && !is_on {
                 give(Some(ValueChange { to: Style::Operator { operator: begins }, done: true }));
             }
         }

@@ -1,23 +1,33 @@
 //! The surface: its maps and what is derived from them, shown over the picture. Floor 7.
 
 use crate::document::view::{SurfaceView, available};
+use crate::language::tr;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session};
+use crate::tr;
 use crate::widgets::{NumberField, sentence, title};
 use eframe::egui::{Button, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(document) = session.shown_document() else {
-        ui.weak("No document is open.");
+        ui.weak(tr("No document is open."));
         return;
     };
     let Some(surface) = &document.surface else {
-        ui.label("This document has no surface: marks stay flat.");
-        if ui.button("Give it a shape…").on_hover_text("Of what the drawing covers").clicked() {
+        ui.label(tr("This document has no surface: marks stay flat."));
+        if ui
+            .button(tr("Give it a shape…"))
+            .on_hover_text(tr("Of what the drawing covers"))
+            .clicked()
+        {
             requests.request(WindowRequest::ShapeDialog);
         }
-        if ui.button("Add maps…").on_hover_text("Normals, depth or both, from files").clicked() {
+        if ui
+            .button(tr("Add maps…"))
+            .on_hover_text(tr("Normals, depth or both, from files"))
+            .clicked()
+        {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
         return;
@@ -25,15 +35,15 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     title(ui, "Shown over the picture");
     let is_off = session.overlay.is_none();
     ui.horizontal_wrapped(|ui| {
-        if ui.add(Button::selectable(is_off, "Nothing")).clicked() {
+        if ui.add(Button::selectable(is_off, tr("Nothing"))).clicked() {
             requests.act(Action::View(ViewAction::Overlay { view: None }));
         }
         let views = available(document, session.layer().map(|layer| &**layer));
         for &view in &views {
             let is_on = session.overlay.as_deref() == Some(view.name());
             if ui
-                .add(Button::selectable(is_on, sentence(view.name())))
-                .on_hover_text(describe(view))
+                .add(Button::selectable(is_on, tr(&sentence(view.name()))))
+                .on_hover_text(tr(describe(view)))
                 .clicked()
             {
                 requests.act(Action::View(ViewAction::Overlay { view: Some(view.name().into()) }));
@@ -42,7 +52,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     });
     let hint =
         "The picture sways by its depth, as if you moved your head; any key or click stops it";
-    if ui.button("Wobble").on_hover_text(hint).clicked() {
+    if ui.button(tr("Wobble")).on_hover_text(tr(hint)).clicked() {
         requests.request(WindowRequest::Wobble);
     }
     if !is_off {
@@ -54,24 +64,21 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     title(ui, "Maps");
     if let Some(source) = &document.surface_source {
         let name = |file: &str| file.rsplit(['/', '\\']).next().unwrap_or(file).to_owned();
-        for (part, file) in [
-            ("Normals", source.normal.as_ref().map(|map| name(&map.file))),
-            ("Depth", source.depth.as_ref().map(|map| name(&map.file))),
-        ] {
-            ui.label(format!(
-                "{part}: {}",
-                file.unwrap_or_else(|| "derived from the other".into())
-            ));
-        }
+        let derived = || tr("derived from the other").to_owned();
+        let normals = source.normal.as_ref().map_or_else(derived, |map| name(&map.file));
+        let depth = source.depth.as_ref().map_or_else(derived, |map| name(&map.file));
+        ui.label(tr!("Normals: {file}", file = normals));
+        ui.label(tr!("Depth: {file}", file = depth));
     }
-    ui.weak(format!("{} pixels, {:.0} px deep", surface.size(), surface.depth_range_px()));
+    let depth = format!("{:.0}", surface.depth_range_px());
+    ui.weak(tr!("{size} pixels, {depth} px deep", size = surface.size(), depth));
     ui.horizontal_wrapped(|ui| {
         let hint = "Live layers bend over the new shape: the same painting on another object or in \
              another pose";
-        if ui.button("Replace maps…").on_hover_text(hint).clicked() {
+        if ui.button(tr("Replace maps…")).on_hover_text(tr(hint)).clicked() {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
-        if ui.button("New from maps…").clicked() {
+        if ui.button(tr("New from maps…")).clicked() {
             requests.request(WindowRequest::OpenMapsDialog);
         }
     });

@@ -5,12 +5,14 @@ use super::colors;
 use super::setter::LayerSetter;
 use crate::document::{Content, LayerId};
 use crate::io::text;
+use crate::language::tr;
 use crate::paint::{Text, TextAlign, TextPath, TextStyle};
 use crate::panel_layout::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, Property, Session, Writing};
 use crate::tools::ToolKind;
+use crate::tr;
 use crate::typed_range::{TypedRange, typed_range};
 use crate::widgets::{NumberField, check, name, set_accessible_name};
 use eframe::egui::text::{CCursor, CCursorRange};
@@ -30,8 +32,8 @@ pub fn show(ui: &mut Ui, layer: LayerId, words: &Text, setter: &mut LayerSetter)
     if !lost.is_empty() {
         let lost = lost.join("”, “");
         let hint = "The text keeps its outlines until you change it; then another font is used";
-        ui.colored_label(ui.visuals().warn_fg_color, format!("“{lost}” is not installed here"))
-            .on_hover_text(hint);
+        let about = tr!("“{fonts}” is not installed here", fonts = lost);
+        ui.colored_label(ui.visuals().warn_fg_color, about).on_hover_text(tr(hint));
     }
     // What is changed: the selected letters, or all of them.
     let all = range.is_empty();
@@ -86,7 +88,7 @@ fn lines(ui: &mut Ui, words: &Text, setter: &mut LayerSetter) {
         name(ui, "Lines");
         for (align, label) in TextAlign::LABELS {
             let is_on = words.align == align;
-            if ui.selectable_label(is_on, label).clicked() && !is_on {
+            if ui.selectable_label(is_on, tr(label)).clicked() && !is_on {
                 setter.set(changed(&|text| text.align = align), true);
             }
         }
@@ -117,12 +119,12 @@ fn along_path(ui: &mut Ui, path: &TextPath, words: &Text, setter: &mut LayerSett
     setter.take(shift.map(|c| c.map(|shift| worded(Some(TextPath { shift, ..path.clone() })))));
     ui.horizontal(|ui| {
         let hint = "The text runs the other way, on the other side of its path";
-        if ui.button("Other side").on_hover_text(hint).clicked() {
+        if ui.button(tr("Other side")).on_hover_text(tr(hint)).clicked() {
             let line = path.line.reversed();
             setter.set(worded(Some(TextPath { line, shift: 0.0 })), true);
         }
         let hint = "Lines are straight again";
-        if ui.button("Take off the path").on_hover_text(hint).clicked() {
+        if ui.button(tr("Take off the path")).on_hover_text(tr(hint)).clicked() {
             setter.set(worded(None), true);
         }
     });
@@ -159,7 +161,7 @@ fn field(
     let mut string = words.string();
     let edit = TextEdit::multiline(&mut string).id(id).desired_rows(2).desired_width(f32::INFINITY);
     let output = edit.show(ui);
-    set_accessible_name(&output.response, label);
+    set_accessible_name(&output.response, tr(label));
     let byte =
         |letters: usize| string.char_indices().nth(letters).map_or(string.len(), |(byte, _)| byte);
     let range = output.cursor_range.map(|range| {
@@ -209,12 +211,12 @@ fn family(ui: &mut Ui, layer: LayerId, current: &str) -> Option<String> {
     let mut chosen = None;
     ui.horizontal(|ui| {
         name(ui, "Font");
-        let shown = if current.is_empty() { "Sans-serif" } else { current };
+        let shown = if current.is_empty() { tr("Sans-serif") } else { current };
         let response = ComboBox::from_id_salt(("font", layer))
             .selected_text(shown)
             .width(170.0)
             .show_ui(ui, |ui| {
-                if ui.selectable_label(current.is_empty(), "Sans-serif").clicked() {
+                if ui.selectable_label(current.is_empty(), tr("Sans-serif")).clicked() {
                     chosen = Some(String::new());
                 }
                 for family in families(ui).iter() {
@@ -223,7 +225,7 @@ fn family(ui: &mut Ui, layer: LayerId, current: &str) -> Option<String> {
                     }
                 }
             });
-        set_accessible_name(&response.response, "Font");
+        set_accessible_name(&response.response, tr("Font"));
     });
     chosen
 }

@@ -3,6 +3,7 @@
 
 use crate::icons::{Icon, add_sized_button};
 use crate::keymap::{KeyTarget, Keymap, key_text};
+use crate::language::tr;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
@@ -127,7 +128,8 @@ fn button(
         .of(KeyTarget::Tool(tool))
         .first()
         .map_or_else(String::new, |&keys| format!(" ({})", key_text(ui.ctx(), keys)));
-    if response.on_hover_text(format!("{}{keys}\n{}", tool.label(), tool.hint())).clicked() {
+    if response.on_hover_text(format!("{}{keys}\n{}", tr(tool.label()), tr(tool.hint()))).clicked()
+    {
         requests.act(Action::Hand(HandAction::Tool { tool }));
     }
 }
@@ -168,7 +170,7 @@ fn colors(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         let mut corner =
             ui.new_child(UiBuilder::new().max_rect(square(at, BUTTON_PT)).layout(layout));
         if add_sized_button(&mut corner, icon, label, false, BUTTON_PT)
-            .on_hover_text(hint)
+            .on_hover_text(tr(hint))
             .clicked()
         {
             requests.act(Action::Hand(action));

@@ -3,6 +3,7 @@
 
 use crate::commands::TRANSFORMS;
 use crate::document::LayerLock;
+use crate::language::{tr, tr_number};
 use crate::math::Vec2;
 use crate::raster::Resampling;
 use crate::requests::UiRequests;
@@ -10,8 +11,9 @@ use crate::session::actions::{HandAction, LayerAction, PartAction};
 use crate::session::{Action, Property, Session};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{GizmoNumbers, PIVOTS};
+use crate::tr;
 use crate::widgets::{choice, choice_row, more, set_accessible_name};
-use eframe::egui::{Button, DragValue, Ui};
+use eframe::egui::{Button, DragValue, Ui, emath};
 use std::ops::RangeInclusive;
 
 /// What is transformed, the gizmo in numbers, and a mesh; the rest is behind *More*.
@@ -19,9 +21,9 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     target(ui, session, requests);
     gizmo(ui, session, requests);
     if let Some(apply) = TRANSFORMS.first() {
-        let button = ui.add_enabled((apply.can)(session), Button::new("Apply"));
-        set_accessible_name(&button, apply.name);
-        if button.on_hover_text(format!("{} (Enter)", apply.hint)).clicked() {
+        let button = ui.add_enabled((apply.can)(session), Button::new(tr("Apply")));
+        set_accessible_name(&button, tr(apply.name));
+        if button.on_hover_text(tr!("{hint} (Enter)", hint = tr(apply.hint))).clicked() {
             (apply.run)(session, requests);
         }
     }
@@ -65,8 +67,9 @@ fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             ui.separator();
             continue;
         }
-        let entry = ui.add_enabled((command.can)(session), Button::new(command.name).frame(false));
-        if entry.on_hover_text(command.hint).clicked() {
+        let entry =
+            ui.add_enabled((command.can)(session), Button::new(tr(command.name)).frame(false));
+        if entry.on_hover_text(tr(command.hint)).clicked() {
             (command.run)(session, requests);
             ui.close();
         }
@@ -92,11 +95,14 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         .as_ref()
         .and_then(|own| own.mesh())
         .map(|mesh| [mesh.columns(), mesh.rows()]);
-    let known = now.map_or("Mesh".to_owned(), |[columns, rows]| format!("Mesh {columns} × {rows}"));
+    let known = match now {
+        Some([columns, rows]) => tr!("Mesh {columns} × {rows}", columns, rows),
+        None => tr("Mesh").to_owned(),
+    };
     let menu = ui.menu_button(known, |ui| {
         for side in [2, 3, 4, 5, 6, 8, 12] {
             if ui
-                .selectable_label(now == Some([side, side]), format!("{side} × {side} points"))
+                .selectable_label(now == Some([side, side]), tr!("{side} × {side} points", side))
                 .clicked()
             {
                 let layer = session.layer_paths();
@@ -107,7 +113,7 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     });
     let hint = "Lays a grid over the layer: drag its points; Shift selects several. Enter applies \
                 it";
-    menu.response.on_hover_text(hint);
+    menu.response.on_hover_text(tr(hint));
 }
 
 /// The gizmo in numbers; sides and angles change about the pivot.
@@ -118,21 +124,21 @@ fn gizmo(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let locked = |id| open.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
     let selected = open.outermost_selected();
     if selected.is_empty() && !of_shape {
-        return drop(ui.weak("Select layers to move, scale and turn them"));
+        return drop(ui.weak(tr("Select layers to move, scale and turn them")));
     }
     if !of_shape && selected.iter().any(|id| locked(*id)) {
-        return drop(ui.weak("Locked layers cannot be transformed"));
+        return drop(ui.weak(tr("Locked layers cannot be transformed")));
     }
     let (Some(gizmo), Some(before)) = (
         open.gizmo(session.tools.transform.target),
         open.gizmo_before(session.tools.transform.target),
     ) else {
-        return drop(ui.weak("There is nothing on this layer to transform"));
+        return drop(ui.weak(tr("There is nothing on this layer to transform")));
     };
     let (Some(was), Some(before)) = (GizmoNumbers::of(&gizmo), GizmoNumbers::of(&before)) else {
-        return drop(ui.weak(
+        return drop(ui.weak(tr(
             "In perspective: drag the corners with Ctrl, or remove the transform to type numbers",
-        ));
+        )));
     };
     let Some(edited) = numbers(ui, was) else { return };
     let to =
@@ -155,6 +161,22 @@ struct EditedNumbers {
     done: bool,
 }
 
+/// A number as the language of the window writes it.
+fn format_number(value: f64, decimals: RangeInclusive<usize>) -> String {
+    tr_number(&emath::format_with_decimals_in_range(value, decimals)).into_owned()
+}
+
+/// A typed number, with a point or a comma.
+fn parse_number(text: &str) -> Option<f64> {
+    let letters = text.chars().filter(|letter| !letter.is_whitespace());
+    let plain = letters.map(|letter| match letter {
+        '−' => '-',
+        ',' => '.',
+        other => other,
+    });
+    plain.collect::<String>().parse().ok()
+}
+
 fn numbers(ui: &mut Ui, was: GizmoNumbers) -> Option<EditedNumbers> {
     let mut to = was;
     let (mut moved, mut changed, mut done) = (false, false, false);
@@ -163,12 +185,13 @@ fn numbers(ui: &mut Ui, was: GizmoNumbers) -> Option<EditedNumbers> {
             // The share of a side follows it, without a name of its own for screen readers.
             let is_share = suffix == " %";
             if !is_share {
-                ui.label(name);
+                ui.label(tr(name));
             }
             let field =
                 DragValue::new(value).range(range).max_decimals(2).speed(0.5).suffix(suffix);
+            let field = field.custom_formatter(format_number).custom_parser(parse_number);
             let response = ui.add(field);
-            set_accessible_name(&response, name);
+            set_accessible_name(&response, tr(name));
             done |= response.changed() && !response.dragged() || response.drag_stopped();
             response.changed() || response.drag_stopped()
         };
@@ -188,4 +211,23 @@ fn numbers(ui: &mut Ui, was: GizmoNumbers) -> Option<EditedNumbers> {
     changed |= number(ui, "Angle", &mut to.angle, -360.0..=360.0, "°");
     changed |= number(ui, "Skew", &mut to.skew, GizmoNumbers::SKEW, "°");
     (moved || changed).then_some(EditedNumbers { to, keeps_pivot: changed, done })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::language::{Language, set_language};
+
+    #[test]
+    fn a_number_is_read_back_as_each_language_writes_it() {
+        for (language, written) in [(Language::English, "-12.5"), (Language::German, "-12,5")] {
+            set_language(language);
+            assert_eq!(format_number(-12.5, 0..=2), written);
+            assert_eq!(parse_number(written), Some(-12.5));
+        }
+        set_language(Language::English);
+        assert_eq!(parse_number(" 1 000.25 "), Some(1000.25));
+        assert_eq!(parse_number("−3"), Some(-3.0));
+        assert_eq!(parse_number("wide"), None);
+    }
 }

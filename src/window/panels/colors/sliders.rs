@@ -1,9 +1,11 @@
 //! Lightness, chroma and hue (OKLCH) as three bars. Each shows the colors that it leads to; where
 //! sRGB ends, the bar is dim, and a line is drawn. Floor 7.
 
+use crate::language::tr;
 use crate::math::oklch::{self, MOST_CHROMA};
 use crate::math::srgb::{Color, quantize};
 use crate::theme::color32;
+use crate::tr;
 use crate::widgets::{NumberField, ValueChange};
 use eframe::egui::{
     Id, Mesh, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
@@ -89,7 +91,7 @@ fn color_of(lch: Lch) -> Color {
 fn bar(ui: &mut Ui, row: &SliderRow, i: usize, now: Lch) -> Option<ValueChange<f32>> {
     let width = (ui.available_width() - NUMBER_PT - 8.0).max(40.0);
     let (rect, response) = ui.allocate_exact_size(vec2(width, BAR_PT), Sense::click_and_drag());
-    let name = format!("{} of the color", row.name);
+    let name = tr!("{name} of the color", name = tr(row.name));
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, name.clone()));
     if ui.is_rect_visible(rect) {
         draw(ui, rect, |share| {

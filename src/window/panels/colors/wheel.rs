@@ -3,7 +3,9 @@
 
 use super::srgb;
 use crate::harmony::Harmony;
+use crate::language::tr;
 use crate::theme::color32;
+use crate::tr;
 use crate::widgets::ValueChange;
 use eframe::egui::{
     self, Color32, Mesh, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui,
@@ -28,11 +30,14 @@ pub fn square_and_bar(ui: &mut Ui, label: &str, now: Hsv, size: Vec2) -> Option<
         ui.spacing_mut().item_spacing.x = GAP_PT;
         let side = vec2((size.x - BAR_PT - GAP_PT).max(40.0), size.y);
         let (rect, response) = ui.allocate_exact_size(side, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::ColorWell, true, label));
+        response.widget_info(|| WidgetInfo::labeled(Role::ColorWell, true, tr(label)));
         draw_square(ui.painter(), rect, now);
         let chosen = pick(&response, rect).map(|c| c.map(|[x, y]| [h, x, 1.0 - y]));
         let (bar, response) = ui.allocate_exact_size(vec2(BAR_PT, size.y), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("Hue of {label}")));
+        response.widget_info(|| {
+            let name = tr!("Hue of {name}", name = tr(label));
+            WidgetInfo::labeled(Role::Slider, true, name)
+        });
         draw_bar(ui.painter(), bar, h);
         chosen.or(pick(&response, bar).map(|c| c.map(|[_, y]| [y.min(0.9999), s, v])))
     })
@@ -50,7 +55,7 @@ pub fn wheel(
     let [h, s, v] = now;
     let radius = 0.5 * size.x.min(size.y);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::ColorWell, true, label));
+    response.widget_info(|| WidgetInfo::labeled(Role::ColorWell, true, tr(label)));
     let (center, painter) = (rect.center(), ui.painter());
     draw_ring(painter, center, radius);
     let middle = 0.5 * (1.0 + RING) * radius;

@@ -4,8 +4,11 @@
 use super::color_of;
 use crate::document::{Content, Document, Layer, LayerId, LayerLabel};
 use crate::icons::{BUTTON_PT, Icon, icon_button};
+use crate::language::tr;
+use crate::panels::words::translate_within;
 use crate::session::Session;
-use crate::widgets::set_accessible_name;
+use crate::tr;
+use crate::widgets::{sentence, set_accessible_name};
 use eframe::egui::{self, Button, Id, RichText, TextEdit, Ui};
 use std::sync::Arc;
 
@@ -81,20 +84,21 @@ pub fn show(ui: &mut Ui, session: &Session) {
     let mut filter = current(ui);
     let buttons = if filter.is_empty() { 1.0 } else { 2.0 };
     let field = TextEdit::singleline(&mut filter.text)
-        .hint_text("Filter")
+        .hint_text(tr("Filter"))
         .desired_width(ui.available_width() - buttons * (BUTTON_PT + 2.0) - 10.0);
     let field = ui.add(field);
-    set_accessible_name(&field, "Filter layers");
+    set_accessible_name(&field, tr("Filter layers"));
     if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
         filter = LayerFilter::default();
     }
     let is_narrowed = filter.kind.is_some() || filter.label.is_some();
     let menu = icon_button(ui, Icon::Dots, "Kinds of layers", is_narrowed);
     egui::Popup::menu(&menu).show(|ui| kinds(ui, document, &mut filter));
-    menu.on_hover_text("Shows only layers of a kind or a label");
+    menu.on_hover_text(tr("Shows only layers of a kind or a label"));
     if !filter.is_empty() {
         let hint = "Shows all layers again (Escape)";
-        if icon_button(ui, Icon::Close, "Show all layers", false).on_hover_text(hint).clicked() {
+        if icon_button(ui, Icon::Close, "Show all layers", false).on_hover_text(tr(hint)).clicked()
+        {
             filter = LayerFilter::default();
         }
     }
@@ -106,17 +110,17 @@ fn kinds(ui: &mut Ui, document: &Document, filter: &mut LayerFilter) {
     let all = document.walk();
     let mut kinds: Vec<&'static str> =
         all.iter().map(|(_, layer)| label_of(&layer.content)).collect();
-    kinds.sort_unstable();
+    kinds.sort_unstable_by_key(|kind| (tr(kind), *kind));
     kinds.dedup();
     if ui
-        .add(Button::selectable(filter.kind.is_none() && filter.label.is_none(), "all kinds"))
+        .add(Button::selectable(filter.kind.is_none() && filter.label.is_none(), tr("all kinds")))
         .clicked()
     {
         (filter.kind, filter.label) = (None, None);
         ui.close();
     }
     for kind in kinds {
-        if ui.add(Button::selectable(filter.kind == Some(kind), kind)).clicked() {
+        if ui.add(Button::selectable(filter.kind == Some(kind), tr(kind))).clicked() {
             (filter.kind, filter.label) = (Some(kind), None);
             ui.close();
         }
@@ -127,7 +131,8 @@ fn kinds(ui: &mut Ui, document: &Document, filter: &mut LayerFilter) {
         else {
             continue;
         };
-        let text = RichText::new(format!("{name} label")).color(color);
+        let text = RichText::new(tr!("{color} label", color = translate_within(&sentence(name))));
+        let text = text.color(color);
         if ui.add(Button::selectable(filter.label == Some(label), text)).clicked() {
             (filter.kind, filter.label) = (None, Some(label));
             ui.close();

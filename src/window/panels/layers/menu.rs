@@ -2,9 +2,12 @@
 
 use super::{color_of, set};
 use crate::document::{Layer, LayerLabel};
+use crate::language::tr;
+use crate::panels::words::translate_within;
 use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
+use crate::widgets::sentence;
 use eframe::egui::{Button, Id, Ui};
 
 pub fn show(
@@ -28,29 +31,29 @@ pub fn show(
         ("Clear", |layer| LayerAction::Clear { layer }),
         ("Delete", |layer| LayerAction::Delete { layer }),
     ];
-    if ui.button("Rename").clicked() {
+    if ui.button(tr("Rename")).clicked() {
         ui.data_mut(|data| {
             data.insert_temp(Id::unique("renaming layer"), (layer.id, layer.name.clone()))
         });
         ui.close();
     }
     for (label, make) in entries {
-        if ui.button(label).clicked() {
+        if ui.button(tr(label)).clicked() {
             requests.act(Action::Layer(make(paths.clone())));
             ui.close();
         }
     }
-    if ui.button("Paint on a mask").clicked() {
+    if ui.button(tr("Paint on a mask")).clicked() {
         requests.act(Action::Layer(LayerAction::PaintMask { layer: path.clone(), hides: false }));
         ui.close();
     }
-    if ui.button(if layer.visible { "Hide" } else { "Show" }).clicked() {
+    if ui.button(tr(if layer.visible { "Hide" } else { "Show" })).clicked() {
         set(requests, &paths, Property::Visible { on: !layer.visible }, true);
         ui.close();
     }
-    ui.menu_button("Label", |ui| {
+    ui.menu_button(tr("Label"), |ui| {
         for (label, name) in LayerLabel::ALL {
-            let text = eframe::egui::RichText::new(name);
+            let text = eframe::egui::RichText::new(translate_within(&sentence(name)));
             let text = color_of(label).map_or(text.clone(), |color| text.strong().color(color));
             if ui.add(Button::selectable(layer.label == label, text)).clicked() {
                 set(requests, &paths, Property::Labeled { label }, true);

@@ -4,6 +4,7 @@
 use super::{color_of, drag, kind_icon, menu, set};
 use crate::document::{Document, Layer, LayerId, LayerLock, MaskKind};
 use crate::icons::{Icon, quiet_button};
+use crate::language::tr;
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, SelectionAction};
@@ -12,6 +13,7 @@ use crate::session::{Action, LayerPath, OpenDocument, Property, Session};
 use crate::theme::{ACCENT, CHECKER, strengthen_hints};
 use crate::thumbnails::Thumbnails;
 use crate::tools::ModifierKeys;
+use crate::tr;
 use eframe::egui::{
     self, Align2, Color32, Id, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextEdit,
     TextStyle, Ui, pos2, vec2,
@@ -60,7 +62,10 @@ impl LayerRow<'_> {
         let (_, rect) = ui.allocate_space(vec2(ui.available_width(), ROW_PT));
         let response = ui.interact(rect, row_id(layer.id), Sense::click_and_drag());
         let is_selected = open.is_selected(layer.id);
-        let label = format!("Layer {}{}", layer.name, if is_selected { ", selected" } else { "" });
+        let label = match is_selected {
+            true => tr!("Layer {name}, selected", name = layer.name),
+            false => tr!("Layer {name}", name = layer.name),
+        };
         response.widget_info(|| {
             egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label)
         });
@@ -150,8 +155,10 @@ impl LayerRow<'_> {
     fn switches(&self, ui: &mut Ui, requests: &mut UiRequests) {
         let layer = self.layer;
         let eye = if layer.visible { Icon::Shown } else { Icon::Hidden };
-        let eye = quiet_button(ui, eye, &format!("Show {}", layer.name), layer.visible, 22.0);
-        if eye.on_hover_text("Show or hide; with Alt this layer alone, or all again").clicked() {
+        let eye =
+            quiet_button(ui, eye, &tr!("Show {name}", name = layer.name), layer.visible, 22.0);
+        if eye.on_hover_text(tr("Show or hide; with Alt this layer alone, or all again")).clicked()
+        {
             if ui.input(|input| input.modifiers.alt) {
                 requests.act(Action::Layer(LayerAction::Solo { layer: self.path.clone() }));
             } else {
@@ -166,7 +173,8 @@ impl LayerRow<'_> {
         if layer.content.group().is_some() {
             let is_folded = is_folded(ui, layer.id);
             let icon = if is_folded { Icon::Closed } else { Icon::Opened };
-            if quiet_button(ui, icon, &format!("Fold {}", layer.name), true, 18.0).clicked() {
+            if quiet_button(ui, icon, &tr!("Fold {name}", name = layer.name), true, 18.0).clicked()
+            {
                 ui.data_mut(|data| data.insert_temp(folded_id(layer.id), !is_folded));
             }
         }
@@ -184,7 +192,7 @@ impl LayerRow<'_> {
             .active()
             .is_some_and(|open| open.on_mask && open.active_layer == Some(self.layer.id));
         let (rect, response) = ui.allocate_exact_size(vec2(MASK_PT, MASK_PT), Sense::click());
-        let label = format!("Mask of {}", self.layer.name);
+        let label = tr!("Mask of {name}", name = self.layer.name);
         response
             .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, &label));
         ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x18));
@@ -208,7 +216,7 @@ impl LayerRow<'_> {
             ui.painter().rect_stroke(rect, 3.0, Stroke::new(2.0, ACCENT), StrokeKind::Outside);
         }
         let hint = "Click to paint on the mask; Shift-click to disable it";
-        if !response.on_hover_text(hint).clicked() {
+        if !response.on_hover_text(tr(hint)).clicked() {
             return;
         }
         let is_picture = matches!(mask.kind, MaskKind::File { .. });
@@ -274,7 +282,7 @@ fn name(
     if let Some((id, mut text)) = typed {
         let response =
             ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 24.0));
-        crate::widgets::set_accessible_name(&response, "Layer name");
+        crate::widgets::set_accessible_name(&response, tr("Layer name"));
         if response.lost_focus() {
             ui.data_mut(|data| data.remove::<(LayerId, String)>(renaming));
             let is_kept =
@@ -313,14 +321,14 @@ fn name(
     let mode = if layer.blend == BlendMode::Normal {
         String::new()
     } else {
-        format!(" · {}", layer.blend.label())
+        format!(" · {}", tr(layer.blend.label()))
     };
     let opacity = if layer.opacity < 1.0 {
         format!(" · {:.0} %", layer.opacity * 100.0)
     } else {
         String::new()
     };
-    let about = format!("{}{mode}{opacity}", layer.content.label());
+    let about = format!("{}{mode}{opacity}", tr(layer.content.label()));
     let font = TextStyle::Small.resolve(ui.style());
     let weak = ui.visuals().weak_text_color();
     let line = at.bottom() - 13.0;

@@ -4,6 +4,7 @@
 
 use crate::commands::MENUS;
 use crate::keymap::{KeyTarget, Keymap};
+use crate::language::tr;
 use eframe::egui::containers::menu::{MenuState, SubMenu};
 use eframe::egui::{
     Context, Event, FocusDirection, Id, Key, KeyboardShortcut, Modifiers, Popup, Response, Ui,
@@ -102,7 +103,7 @@ impl MenuKeys {
             return;
         }
         for (index, (title, _)) in MENUS.iter().enumerate() {
-            let Some(key) = title.get(..1).and_then(Key::from_name) else { continue };
+            let Some(key) = tr(title).get(..1).and_then(Key::from_name) else { continue };
             let is_pressed =
                 ctx.input(|input| input.modifiers == Modifiers::ALT && input.key_pressed(key));
             let keys = KeyboardShortcut::new(Modifiers::ALT, key);

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::document::Inflation;
+use crate::language::tr;
 use crate::widgets::{NumberField, ValueChange, sentence};
 use eframe::egui::{Button, Ui};
 
@@ -56,8 +57,9 @@ pub fn presets(ui: &mut Ui, now: Inflation) -> Option<Inflation> {
     let mut chosen = None;
     ui.horizontal_wrapped(|ui| {
         for (preset, word) in Inflation::PRESETS {
-            let chip = Button::selectable(preset == now, sentence(word)).corner_radius(10);
-            if ui.add(chip).on_hover_text(describe(word)).clicked() {
+            let (word, hint) = (sentence(word), describe(word));
+            let chip = Button::selectable(preset == now, tr(&word)).corner_radius(10);
+            if ui.add(chip).on_hover_text(tr(hint)).clicked() {
                 chosen = Some(preset);
             }
         }

@@ -4,10 +4,12 @@
 use super::fields::{degrees, length, number};
 use crate::canvas::ball;
 use crate::document::parts::ProfilePicture;
+use crate::language::tr;
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::paint::Curve;
 use crate::panels::curve;
 use crate::shape::{Bevel, BevelCurve, Detail, LineForm, Lines};
+use crate::tr;
 use crate::widgets::{ValueChange, choice_row, set_accessible_name};
 use eframe::egui::{self, Sense, Ui};
 
@@ -93,13 +95,13 @@ pub fn lines(ui: &mut Ui, now: Lines) -> Option<ValueChange<Lines>> {
     let reach =
         length("Spread", &Lines::REACH, hint, now.reach).show(ui, |reach| Lines { reach, ..now });
     ui.weak(match now.form {
-        LineForm::Ridge => "The form falls away on both sides of a line.",
-        LineForm::Valley => "The form rises on both sides of a line.",
+        LineForm::Ridge => tr("The form falls away on both sides of a line."),
+        LineForm::Valley => tr("The form rises on both sides of a line."),
         LineForm::Over => {
-            "The inner side of a line's bend turns away at it, in front of what is behind."
+            tr("The inner side of a line's bend turns away at it, in front of what is behind.")
         }
         LineForm::Under => {
-            "The outer side of a line's bend turns away at it, in front of what is behind."
+            tr("The outer side of a line's bend turns away at it, in front of what is behind.")
         }
     });
     form.or(angle).or(reach)
@@ -107,7 +109,7 @@ pub fn lines(ui: &mut Ui, now: Lines) -> Option<ValueChange<Lines>> {
 
 /// The light of each shading.
 pub fn profiles(ui: &mut Ui, now: &[ProfilePicture]) -> Option<ValueChange<Vec<ProfilePicture>>> {
-    ui.weak("Where the light comes from in each shading: drag the ball.");
+    ui.weak(tr("Where the light comes from in each shading: drag the ball."));
     let mut changed = None;
     for (i, shading) in now.iter().enumerate() {
         let with = |light: Vec3| {
@@ -116,12 +118,13 @@ pub fn profiles(ui: &mut Ui, now: &[ProfilePicture]) -> Option<ValueChange<Vec<P
             next
         };
         ui.horizontal(|ui| {
-            let label = format!("Light of shading {}", i + 1);
+            let number = i + 1;
+            let label = tr!("Light of shading {number}", number);
             changed = light(ui, &label, shading.light).map(|to| to.map(with)).or(changed.take());
             let [right, up] = [shading.light.x, shading.light.y]
-                .map(|v| v.max(-1.0).min(1.0).asin().to_degrees());
-            ui.label(format!("Shading {}", i + 1));
-            ui.weak(format!("{right:.0}° right, {up:.0}° up"));
+                .map(|v| format!("{:.0}", v.max(-1.0).min(1.0).asin().to_degrees()));
+            ui.label(tr!("Shading {number}", number));
+            ui.weak(tr!("{right}° right, {up}° up", right, up));
         });
     }
     changed

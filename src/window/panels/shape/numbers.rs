@@ -4,8 +4,10 @@ use super::fields::{NumberRow, degrees, length, number, presets};
 use super::kinds;
 use crate::document::parts::OutlineSource;
 use crate::document::{Inflation, Part, PartKind};
+use crate::language::tr;
 use crate::math::{Vec2, Vec3};
 use crate::shape::{Body, Combine, Primitive};
+use crate::tr;
 use crate::widgets::{ValueChange, choice_row, name};
 use eframe::egui::Ui;
 use std::path::Path;
@@ -19,13 +21,17 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
     }
     let stands = stands(ui, part);
     let source = part.outline().map(|outline| match outline {
-        OutlineSource::Layer { layer, color: None } => format!("Follows the layer “{layer}”"),
-        OutlineSource::Layer { layer, color: Some(flat) } => {
-            let one = if flat.at.is_some() { "one area of " } else { "" };
-            format!("Follows {one}the color {} of “{layer}”", flat.color)
+        OutlineSource::Layer { layer, color: None } => {
+            tr!("Follows the layer “{layer}”", layer)
         }
-        OutlineSource::Object(object) => format!("Follows object {object} of the maps"),
-        _ => "Uses the outline that was selected".to_owned(),
+        OutlineSource::Layer { layer, color: Some(flat) } => match flat.at.is_some() {
+            true => {
+                tr!("Follows one area of the color {color} of “{layer}”", color = flat.color, layer)
+            }
+            false => tr!("Follows the color {color} of “{layer}”", color = flat.color, layer),
+        },
+        OutlineSource::Object(object) => tr!("Follows object {object} of the maps", object),
+        _ => tr("Uses the outline that was selected").to_owned(),
     });
     if let Some(source) = source {
         ui.weak(source);
@@ -55,7 +61,7 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
         PartKind::Lathe { outline, axis, puff: value } => puff(*value)
             .show(ui, |puff| PartKind::Lathe { outline: outline.clone(), axis: *axis, puff }),
         PartKind::Sweep { balls, puff: value } => {
-            ui.weak(format!("{} balls along a stroke", balls.len()));
+            ui.weak(tr!("{count} balls along a stroke", count = balls.len()));
             puff(*value).show(ui, |puff| PartKind::Sweep { balls: balls.clone(), puff })
         }
         PartKind::Relief { on, picture, detail } => kinds::relief(ui, *detail).map(|changed| {
@@ -79,7 +85,7 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
                 .flatten()
                 .map(|file| Path::new(file).file_name().unwrap_or_default());
             let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
-            ui.weak(format!("Maps that were made elsewhere: {}", names.join(", ")));
+            ui.weak(tr!("Maps that were made elsewhere: {files}", files = names.join(", ")));
             None
         }
         other => show_hand_made(ui, other),
@@ -88,18 +94,24 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
 
 /// What the pen made on a part; its marks are changed on the canvas.
 fn show_hand_made(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
-    let count = |n: usize, of: &str| format!("{n} {of}{}", if n == 1 { "" } else { "s" });
     match kind {
         PartKind::Touches { touches, .. } => {
-            let n = count(touches.len(), "touch").replace("touchs", "touches");
-            ui.weak(format!("{n}. The tool Touch (N) adds, moves and removes them."));
+            ui.weak(match touches.len() {
+                1 => tr("1 touch. The tool Touch (N) adds, moves and removes them.").to_owned(),
+                count => {
+                    tr!("{count} touches. The tool Touch (N) adds, moves and removes them.", count)
+                }
+            });
             None
         }
         PartKind::Sculpt { on, strokes } => {
-            ui.weak(format!("{}. The tool Sculpt (U) adds more.", count(strokes.len(), "stroke")));
+            ui.weak(match strokes.len() {
+                1 => tr("1 stroke. The tool Sculpt (U) adds more.").to_owned(),
+                count => tr!("{count} strokes. The tool Sculpt (U) adds more.", count),
+            });
             let (_, rest) = strokes.split_last()?;
             let made = || PartKind::Sculpt { on: on.clone(), strokes: rest.to_vec() };
-            ui.button("Without the last stroke")
+            ui.button(tr("Without the last stroke"))
                 .clicked()
                 .then(|| ValueChange { to: made(), done: true })
         }
@@ -215,7 +227,7 @@ fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
         ui.horizontal(|ui| {
             name(ui, "Moved");
             let hint = "Back to where its outline was drawn, not turned and not scaled";
-            let clicked = ui.button("Reset position").on_hover_text(hint).clicked();
+            let clicked = ui.button(tr("Reset position")).on_hover_text(tr(hint)).clicked();
             let to = || Part { matrix: crate::math::Affine2::IDENTITY, ..part.clone() };
             clicked.then(|| ValueChange { to: to(), done: true })
         })

@@ -4,12 +4,15 @@
 use super::{act, forms, set};
 use crate::document::{Document, Part, PartKind};
 use crate::icons::{Icon, add_sized_button};
+use crate::language::tr;
+use crate::panels::words::translate_within;
 use crate::part_pictures::PartPictures;
 use crate::requests::UiRequests;
 use crate::session::Session;
 use crate::session::actions::PartAction;
 use crate::theme::ACCENT;
 use crate::theme::strengthen_hints;
+use crate::tr;
 use crate::widgets::{ValueChange, sentence, set_accessible_name};
 use eframe::egui::{
     self, Align2, Color32, Id, Rect, Response, Sense, Stroke, TextEdit, TextStyle, Ui, pos2, vec2,
@@ -37,7 +40,7 @@ pub fn show(
     if is_selected {
         show_once(ui, &response, &part.id);
     }
-    let label = format!("Part {}", part.name);
+    let label = tr!("Part {name}", name = part.name);
     response
         .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label));
     let fill = match (is_selected, response.hovered()) {
@@ -54,9 +57,14 @@ pub fn show(
     }
     inner.add_space(2.0 + if lies_on { INDENT_PT } else { 0.0 });
     let eye = if part.visible { Icon::Shown } else { Icon::Hidden };
-    let eye =
-        add_sized_button(&mut inner, eye, &format!("Show part {}", part.name), part.visible, 22.0);
-    if eye.on_hover_text("Show or hide").clicked() {
+    let eye = add_sized_button(
+        &mut inner,
+        eye,
+        &tr!("Show part {name}", name = part.name),
+        part.visible,
+        22.0,
+    );
+    if eye.on_hover_text(tr("Show or hide")).clicked() {
         act(requests, PartAction::Visible { part: part.id.clone(), on: !part.visible });
     }
     if !lies_on {
@@ -69,7 +77,7 @@ pub fn show(
     if response.clicked() {
         act(requests, PartAction::Select { part: part.id.clone() });
     }
-    response.on_hover_text("Drag it up to bring it forward; double-click to rename it");
+    response.on_hover_text(tr("Drag it up to bring it forward; double-click to rename it"));
 }
 
 /// Brings a part's row into sight when the part becomes the selected one, as by a click on the
@@ -106,7 +114,7 @@ fn name(ui: &mut Ui, part: &Part, row: &Response, requests: &mut UiRequests) {
     if let Some((id, mut text)) = typed {
         let response =
             ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 8.0));
-        set_accessible_name(&response, "Part name");
+        set_accessible_name(&response, tr("Part name"));
         if response.lost_focus() {
             ui.data_mut(|data| data.remove::<(String, String)>(renaming));
             let is_kept =
@@ -133,13 +141,13 @@ fn name(ui: &mut Ui, part: &Part, row: &Response, requests: &mut UiRequests) {
     ui.painter().galley(pos2(at.left() + 3.0, at.top() + 2.0), galley, color);
     let combine = match part.combine.name() {
         "over" => String::new(),
-        other => format!(" · {other}"),
+        other => format!(" · {}", translate_within(&sentence(other))),
     };
     let kind = match part.kind {
         PartKind::Inflate { .. } => "Puffed up".to_owned(),
         _ => sentence(part.kind.name()),
     };
-    let about = format!("{kind}{combine}");
+    let about = format!("{}{combine}", tr(&kind));
     let font = TextStyle::Small.resolve(ui.style());
     let corner = pos2(at.left() + 3.0, at.bottom() - 3.0);
     ui.painter().text(corner, Align2::LEFT_BOTTOM, about, font, ui.visuals().weak_text_color());
