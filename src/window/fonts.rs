@@ -100,7 +100,7 @@ impl FallbackFonts {
     /// of all languages are listed, in those of the others.
     pub fn follow(&mut self, ctx: &Context, language: Language, has_list: bool) {
         let mut wanted = Vec::new();
-        if language.needs_han() {
+        if language.is_written_in_han() {
             wanted.extend(find_language_font(language));
         }
         // The font of one has the letters in the name of the other, too, if it is not Japanese.

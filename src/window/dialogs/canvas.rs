@@ -174,7 +174,8 @@ impl ImageSizeDialog {
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 360.0);
         ui.heading(tr("Image size"));
-        ui.weak(tr("Paint is resampled; strokes, images, gradients and the shape are rendered again, as sharp as before."));
+        ui.weak(tr("Paint is resampled; strokes, images, gradients and the shape are rendered again, as sharp as \
+             before."));
         self.sides.show(ui);
         ui.horizontal(|ui| {
             ui.label(tr("Paint is sampled"));

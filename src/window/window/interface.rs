@@ -27,7 +27,7 @@ impl MainWindow {
     /// Speaks the language that the user chose, or else the system's, if its letters can be shown.
     pub(super) fn follow_language(&mut self, ctx: &egui::Context) {
         let wanted = self.settings.language.or(self.system_language).unwrap_or_default();
-        let can = !wanted.needs_han() || find_language_font(wanted).is_some();
+        let can = !wanted.is_written_in_han() || find_language_font(wanted).is_some();
         let language = if can { wanted } else { Language::default() };
         set_language(language);
         let has_list = matches!(self.dialogs.last(), Some(Dialog::Preferences(_)));
