@@ -8,9 +8,12 @@
 #![warn(missing_docs)]
 
 mod columns;
+mod installed;
 mod lines;
 mod markup;
 mod shaped;
+
+pub use installed::{InstalledFont, find_font};
 
 use super::{Budget, svg};
 use crate::Result;

@@ -42,7 +42,7 @@ impl Language {
     }
 
     /// Whether its letters are not among those of the window's own font.
-    pub fn needs_han(self) -> bool {
+    pub fn is_written_in_han(self) -> bool {
         matches!(self, Self::Japanese | Self::Chinese)
     }
 

@@ -1,19 +1,20 @@
 //! Errors as the window shows them: the sentence, and what the user can do about it in the window.
 //! Floor 7. Not here: the advice of the command line (`cli`).
 
+use crate::language::{tr, tr_message};
 use crate::{Error, Remedy};
 
-/// The sentence of an error, with the menu or control that would help.
+/// The sentence of an error in the language of the window, with the menu or control that would help.
 pub fn with_advice(error: &Error) -> String {
     let advice = match error.remedy() {
         Some(Remedy::LongerSides | Remedy::MorePixels) => {
-            ". A smaller version of the picture can be opened"
+            tr("A smaller version of the picture can be opened")
         }
-        Some(Remedy::MoreMemory) => ". Close other drawings (File, Close) and programs",
-        Some(Remedy::Background) => ". Tick “Lay it on white” in File, Export…",
-        None => "",
+        Some(Remedy::MoreMemory) => tr("Close other drawings (File, Close) and programs"),
+        Some(Remedy::Background) => tr("Tick “Lay it on white” in File, Export…"),
+        None => return tr_message(&error.to_string()).into_owned(),
     };
-    format!("{error}{advice}")
+    format!("{}. {advice}", tr_message(&error.to_string()))
 }
 
 #[cfg(test)]

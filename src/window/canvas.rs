@@ -36,6 +36,7 @@ use super::theme;
 use crate::Error;
 use crate::document::Document;
 use crate::io::proof::ProofTable;
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::session::actions::ViewAction;
@@ -191,7 +192,7 @@ impl Canvas {
             whole.max,
         );
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, tr("Canvas")));
         self.area_pt = vec2(rect.width(), rect.height());
         ui.painter().rect_filled(rect, 0.0, theme::surround(ui.visuals()));
         let Some(open) = session.active() else { return self.hand.overhear(ui) };

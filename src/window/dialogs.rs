@@ -34,6 +34,7 @@ use super::usage::MemoryMeter;
 use crate::document::SurfaceSource;
 use crate::io::maps::ImportedSurface;
 use crate::io::recovery::LostSession;
+use crate::language::tr;
 use crate::math::Vec2;
 use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
@@ -205,14 +206,15 @@ fn close(ui: &mut Ui) -> DialogAnswer {
     ui.add_space(4.0);
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     let right = egui::Layout::right_to_left(egui::Align::Center);
-    let closed = ui.allocate_ui_with_layout(row, right, |ui| ui.button("Close").clicked()).inner;
+    let closed =
+        ui.allocate_ui_with_layout(row, right, |ui| ui.button(tr("Close")).clicked()).inner;
     // Enter on a control belongs to the control.
     let is_free = ui.memory(|memory| memory.focused().is_none());
     let is_accepted = is_free && ui.input(|i| i.key_pressed(egui::Key::Enter));
     if closed || is_accepted { DialogAnswer::Close } else { DialogAnswer::Open }
 }
 
-/// The two buttons at a dialog's foot, the affirmative one last; true for it, false for the other.
+/// The two buttons at a dialog's foot, named in English, the affirmative one last; true for it, false for the other.
 fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
     answers(ui, yes, "Cancel", can)
 }
@@ -224,12 +226,12 @@ fn answers(ui: &mut Ui, yes: &str, no: &str, can: bool) -> Option<bool> {
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let enter = ui.input(|i| i.key_pressed(egui::Key::Enter));
-        let strong = egui::Button::new(egui::RichText::new(yes).strong())
+        let strong = egui::Button::new(egui::RichText::new(tr(yes)).strong())
             .fill(ui.visuals().selection.bg_fill);
         if ui.add_enabled(can, strong).clicked() || (enter && can) {
             answer = Some(true);
         }
-        if ui.button(no).clicked() {
+        if ui.button(tr(no)).clicked() {
             answer = Some(false);
         }
     });

@@ -8,6 +8,7 @@ mod system;
 
 use super::file_purpose::FilePurpose;
 use super::jobs::{JobKind, JobResult, JobWindow, Jobs};
+use crate::language::{language, set_language, tr};
 #[cfg(target_family = "wasm")]
 use page::system_dialog;
 use std::path::PathBuf;
@@ -33,7 +34,10 @@ pub fn request<W: JobWindow>(
     then: impl FnOnce(&mut W, FileAnswer) + Send + 'static,
 ) {
     let name = name.to_owned();
-    jobs.start(purpose.title().into(), JobKind::Asking, move |_| {
+    // The dialog's thread has a language of its own.
+    let spoken = language();
+    jobs.start(tr(purpose.title()).into(), JobKind::Asking, move |_| {
+        set_language(spoken);
         let answer = if by_itself { FileAnswer::Nowhere } else { system_dialog(purpose, &name) };
         JobResult::then(|window, _| then(window, answer))
     });

@@ -3,6 +3,7 @@
 
 use crate::document::Progress;
 use crate::io::platform::{self, Instant};
+use crate::language::{tr, tr_message};
 use crate::math::Vec2;
 use crate::memory;
 use crate::session::actions::PasteTo;
@@ -137,8 +138,8 @@ impl RunningJob {
     /// Its description, and what it does now if that has a name of its own.
     pub fn title(&self) -> String {
         match self.progress.stage() {
-            "" => self.name.clone(),
-            stage => format!("{}: {stage}", self.name),
+            "" => tr_message(&self.name).into_owned(),
+            stage => format!("{}: {}", tr_message(&self.name), tr(stage)),
         }
     }
 
@@ -194,7 +195,7 @@ impl<W: JobWindow> Jobs<W> {
 
     /// Shows a success message for a while.
     pub fn say(&mut self, sentence: String) {
-        self.said = Some((sentence, Instant::now()));
+        self.said = Some((tr_message(&sentence).into_owned(), Instant::now()));
     }
 
     /// The current success message.

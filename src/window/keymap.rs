@@ -6,6 +6,7 @@ mod presets;
 pub use presets::KeyPreset;
 
 use super::commands::{self, MenuCommand};
+use crate::language::tr;
 use crate::tools::ToolKind;
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde_json::{Map, Value};
@@ -171,14 +172,20 @@ impl Keymap {
     }
 }
 
-/// A key for display: “Ctrl+[”, with the system's names of modifiers.
+/// A key for display: “Ctrl+[”, with the system's names of modifiers, in the language of the window.
 pub fn key_text(ctx: &Context, keys: KeyboardShortcut) -> String {
     let (text, key) = (ctx.format_shortcut(&keys), keys.logical_key);
+    let Some(held) = text.strip_suffix(key.name()) else { return text };
     // The toolkit writes “OpenBracket”; its arrows are not in every font.
-    match text.strip_suffix(key.name()) {
-        Some(held) if key.symbol_or_name().is_ascii() => format!("{held}{}", key.symbol_or_name()),
-        _ => text,
-    }
+    let symbol = key.symbol_or_name();
+    let shown = if symbol.is_ascii() { symbol } else { key.name() };
+    // Letters and digits are the same in all languages.
+    let shown = if shown.len() > 1 { tr(shown) } else { shown };
+    let held = held.split_inclusive('+').map(|word| match word.strip_suffix('+') {
+        Some(word) => format!("{}+", tr(word)),
+        None => tr(word).to_owned(),
+    });
+    held.chain([shown.to_owned()]).collect()
 }
 
 /// “Ctrl+Shift+Z”, the same on every system.

@@ -17,6 +17,7 @@ mod export_memory;
 mod file_pictures;
 mod file_purpose;
 mod files;
+mod fonts;
 mod harmony;
 mod icons;
 mod jobs;

@@ -3,6 +3,7 @@
 
 use super::icons::{Icon, quiet_button};
 use super::widgets::set_accessible_name;
+use crate::language::{tr, tr_message};
 use eframe::egui::{Align, Area, Context, Frame, Id, Layout, Order, Rect, ScrollArea, Vec2, pos2};
 
 /// A message, and the key of the open document that it belongs to.
@@ -72,18 +73,21 @@ impl Messages {
                         let room = Vec2::new(ui.available_width(), 0.0);
                         ui.allocate_ui_with_layout(room, layout, |ui| {
                             let close = quiet_button(ui, Icon::Close, "Dismiss", true, 20.0);
-                            if close.on_hover_text("Dismiss").clicked() {
+                            if close.on_hover_text(tr("Dismiss")).clicked() {
                                 read = Some(i);
                             }
                             ui.with_layout(Layout::top_down(Align::Min), |ui| {
-                                ui.colored_label(ui.visuals().warn_fg_color, &message.text);
+                                ui.colored_label(
+                                    ui.visuals().warn_fg_color,
+                                    tr_message(&message.text),
+                                );
                             });
                         });
                     }
                 });
                 if count > 2 {
-                    let button = ui.button("Dismiss all");
-                    set_accessible_name(&button, "Dismiss all");
+                    let button = ui.button(tr("Dismiss all"));
+                    set_accessible_name(&button, tr("Dismiss all"));
                     all_read = button.clicked();
                 }
             });

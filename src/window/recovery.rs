@@ -8,8 +8,10 @@ use crate::Error;
 use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::io::recovery::LostSession;
+use crate::language::tr;
 use crate::session::Autosave;
 use crate::session::autosave::RestoredDocument;
+use crate::tr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
@@ -22,7 +24,7 @@ impl MainWindow {
         // The window opens whatever is in that folder.
         let look = move || catch_unwind(AssertUnwindSafe(|| lost.list())).unwrap_or_default();
         self.jobs.start(
-            "Looking for unsaved drawings".into(),
+            tr("Looking for unsaved drawings").into(),
             JobKind::Working,
             move |_: &Progress| {
                 let lost = look();
@@ -43,7 +45,7 @@ impl MainWindow {
             let Some(autosave) = &self.session.autosave else { return };
             let (bring, title) = (autosave.find_lost_sessions(), one.title.clone());
             self.jobs.start(
-                format!("Recovering {title}"),
+                tr!("Recovering {title}", title),
                 JobKind::Working,
                 move |progress: &Progress| {
                     let found = catch_unwind(AssertUnwindSafe(|| bring.bring_back(one, progress)));

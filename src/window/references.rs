@@ -4,9 +4,11 @@
 use super::file_pictures::{FilePictures, PictureState};
 use super::requests::UiRequests;
 use super::theme::ACCENT;
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::session::Action;
 use crate::session::actions::HandAction;
+use crate::tr;
 use eframe::egui::{
     Align2, Area, Color32, ColorImage, Context, CursorIcon, Id, Order, Pos2, Rect, Response, Role,
     Sense, Slider, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo, pos2, vec2,
@@ -183,7 +185,7 @@ fn place_of(pin: &ReferencePin, state: &PictureState, area: Rect) -> Rect {
 fn draw(ui: &mut Ui, pin: &ReferencePin, state: &PictureState, place: Rect) -> Response {
     let response = ui.allocate_rect(place, Sense::click_and_drag());
     let name = pin.name();
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Reference {name}")));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr!("Reference {name}", name)));
     let painter = ui.painter();
     match state {
         PictureState::Made(texture, _) => {
@@ -194,7 +196,7 @@ fn draw(ui: &mut Ui, pin: &ReferencePin, state: &PictureState, place: Rect) -> R
         PictureState::Awaited | PictureState::Missing => {
             painter.rect_filled(place, 0.0, ui.visuals().panel_fill);
             let text = match state {
-                PictureState::Missing => format!("{name}\ncannot be shown"),
+                PictureState::Missing => tr!("{name}\ncannot be shown", name),
                 _ => name,
             };
             let font = TextStyle::Body.resolve(ui.style());
@@ -277,13 +279,13 @@ fn show_menu(response: &Response, pin: &mut ReferencePin) -> Option<PinRequest> 
     let mut asked = None;
     response.context_menu(|ui| {
         ui.label(pin.name());
-        ui.add(Slider::new(&mut pin.opacity, OPACITY).text("Opacity"));
-        ui.checkbox(&mut pin.is_mirrored, "Mirrored");
-        if ui.button("To the front").clicked() {
+        ui.add(Slider::new(&mut pin.opacity, OPACITY).text(tr("Opacity")));
+        ui.checkbox(&mut pin.is_mirrored, tr("Mirrored"));
+        if ui.button(tr("To the front")).clicked() {
             asked = Some(PinRequest::Front);
             ui.close();
         }
-        if ui.button("Remove reference").clicked() {
+        if ui.button(tr("Remove reference")).clicked() {
             asked = Some(PinRequest::Remove);
             ui.close();
         }

@@ -16,9 +16,11 @@ use crate::document::Progress;
 use crate::io::fs::Disk;
 use crate::io::platform::{self, Instant};
 use crate::io::replace::{Overwrite, replace};
+use crate::language::Language;
 use crate::math::srgb::Color;
 use crate::session::replay::ReplayValue;
 use crate::tools::snap::ViewAids;
+use crate::tr;
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -37,6 +39,8 @@ pub struct Settings {
     /// Newest first.
     pub recent: Vec<PathBuf>,
     pub look: Look,
+    /// The language of the window; the system's, if none was chosen.
+    pub language: Option<Language>,
     /// The scale of the interface, if it was chosen.
     pub scale: Option<f32>,
     pub layout: PanelLayout,
@@ -69,6 +73,7 @@ impl Default for Settings {
         Self {
             recent: Vec::new(),
             look: Look::default(),
+            language: None,
             scale: None,
             layout: PanelLayout::default(),
             keymap: Keymap::default(),
@@ -112,6 +117,7 @@ impl Settings {
         json!({
             "recent": paths(&self.recent),
             "look": self.look.name(),
+            "language": self.language.map(Language::name),
             "scale": self.scale,
             "hint done": self.is_hint_done,
             "panels": {
@@ -190,6 +196,7 @@ impl Settings {
         let old = if flag(value, "light") { Look::Light } else { Look::default() };
         let look =
             value.get("look").and_then(Value::as_str).and_then(Look::from_name).unwrap_or(old);
+        let language = value.get("language").and_then(Value::as_str).and_then(Language::from_name);
         let is_hint_done = flag(value, "hint done");
         let share = value
             .get("kept share")
@@ -208,6 +215,7 @@ impl Settings {
         Self {
             recent,
             look,
+            language,
             scale,
             layout,
             keymap,
@@ -299,7 +307,7 @@ impl SettingsFile {
             Ok(settings) => (settings, None),
             Err(error) => (
                 Settings::default(),
-                Some(format!("{error}; the window starts with its default settings")),
+                Some(tr!("{error}; the window starts with its default settings", error)),
             ),
         };
         let keeper = Self { file, written: settings.clone(), looked: Instant::now() };
@@ -357,6 +365,7 @@ mod tests {
         let (colors, bookmarks) = (vec![Color::WHITE], vec![PathBuf::from("/pictures")]);
         let mut settings = Settings {
             look: Look::Gray,
+            language: Some(Language::Japanese),
             layout,
             is_hint_done: true,
             aids,

@@ -19,6 +19,7 @@ use super::canvas::{Canvas, SecondView};
 use super::clipboard::{self, Clipboard, ClipboardSource};
 use super::dialogs::import::MapsRead;
 use super::dialogs::{Dialog, DialogAnswer, DialogContext, export, maps, unwrapped};
+use super::fonts::FallbackFonts;
 use super::jobs::{JobKind, JobResult, JobWindow, Jobs};
 use super::messages::Messages;
 use super::panel_layout::PanelKind;
@@ -36,12 +37,14 @@ use super::thumbnails::Thumbnails;
 use crate::Error;
 use crate::advice::with_advice;
 use crate::document::{Progress, SurfaceSource};
+use crate::language::{Language, tr};
 use crate::session::actions::{self, GuideAction};
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
 use crate::surface::Surface;
 use crate::surface::operator::UnwrapSettings;
 use crate::tools::snap::ViewAids;
+use crate::tr;
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
 use std::path::PathBuf;
@@ -81,6 +84,9 @@ pub struct MainWindow {
     unwrapping: Option<(Arc<Surface>, UnwrapSettings)>,
     /// The purpose of the open system dialog.
     title: String,
+    /// The language of the system, if the window speaks it; tests have none.
+    system_language: Option<Language>,
+    fonts: FallbackFonts,
     /// Whether the stored theme was applied.
     has_first_scale: bool,
     /// The user agreed to leave.
@@ -124,7 +130,7 @@ impl MainWindow {
         let mut session = Session::default().with_aids(settings.aids);
         session.tools.presses_by_speed = settings.preferences.presses_by_speed;
         session.recent_colors.clone_from(&settings.colors);
-        Self {
+        let mut window = Self {
             session,
             canvas: Canvas::new(ctx),
             second_view: SecondView::default(),
@@ -147,6 +153,8 @@ impl MainWindow {
             unwrapped: unwrapped::UnwrappedDialog::default(),
             unwrapping: None,
             title: String::new(),
+            system_language: None,
+            fonts: FallbackFonts::default(),
             has_first_scale: false,
             leaving: false,
             after_saving: None,
@@ -156,7 +164,9 @@ impl MainWindow {
             handed_out: None,
             busy: typing::BusyInput::default(),
             recorded: None,
-        }
+        };
+        window.follow_language(ctx);
+        window
     }
 
     /// The window of a user, with what is stored for them, and these files, or the start screen if
@@ -166,6 +176,9 @@ impl MainWindow {
     pub fn of_user(ctx: &egui::Context, tablet: SharedTablet, files: Vec<PathBuf>) -> Self {
         theme::install(ctx);
         let mut window = Self::remembering(ctx, settings::file());
+        let locale = crate::io::platform::locale();
+        window.system_language = locale.and_then(|locale| Language::from_locale(&locale));
+        window.follow_language(ctx);
         window.draw_on(tablet);
         if let Some(folder) = crate::io::recovery::folder() {
             window.keep_recovery_in(folder);
@@ -174,7 +187,10 @@ impl MainWindow {
         let crashed = crashed.and_then(|folder| crate::io::crash_report::take_unread(&folder));
         window.messages.extend(crashed.map(|report| {
             let report = report.display();
-            format!("Rilievo crashed. A report is in {report}; please send it. Nothing was sent.")
+            tr!(
+                "Rilievo crashed. A report is in {report}; please send it. Nothing was sent.",
+                report
+            )
         }));
         if let Some(folder) = settings::brushes() {
             window.keep_brushes_in(folder);
@@ -241,7 +257,7 @@ impl MainWindow {
 
     fn open_sample(&mut self, index: usize) {
         let Some(sample) = SAMPLES.get(index) else { return };
-        self.jobs.start("Opening the sample".into(), JobKind::Working, |_| {
+        self.jobs.start(tr("Opening the sample").into(), JobKind::Working, |_| {
             JobResult::of(sample.open(), |window: &mut Self, opened| {
                 window.add_opened(None, opened);
                 window.begin_tour(sample.tour);
@@ -255,6 +271,7 @@ impl MainWindow {
         let mut requests = UiRequests::default();
         self.tell_front();
         self.apply_first_scale(ui.ctx());
+        self.follow_language(ui.ctx());
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
         self.unwrap_ahead();

@@ -20,6 +20,7 @@ self.host = {
   remove: (path) => send({ kind: "remove", path }),
   handOut: (path, bytes) => send({ kind: "handOut", path }, bytes),
   ask: (number, question, details, bytes) => send({ kind: "ask", number, question, details }, bytes),
+  locale: () => navigator.language ?? "",
   pageId: () => id,
   setCursor: (name) => send({ kind: "cursor", name }),
   setTitle: (title) => send({ kind: "title", title }),

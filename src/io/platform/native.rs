@@ -44,6 +44,11 @@ pub fn process_id() -> u32 {
     std::process::id()
 }
 
+/// The locale that the user chose for the system, such as `de-AT`.
+pub fn locale() -> Option<String> {
+    sys_locale::get_locale()
+}
+
 /// The user's own folder.
 pub fn home_folder() -> Option<PathBuf> {
     etcetera::home_dir().ok()

@@ -87,6 +87,11 @@ pub fn process_id() -> u32 {
     host::page_id()
 }
 
+/// The locale that the user chose for the browser, such as `de-AT`.
+pub fn locale() -> Option<String> {
+    Some(host::locale())
+}
+
 /// The user's own folder.
 pub fn home_folder() -> Option<PathBuf> {
     Some(DOCUMENTS.into())

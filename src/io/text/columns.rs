@@ -130,7 +130,7 @@ fn font_of(fonts: &Database, known: &mut Vec<ID>, style: &TextStyle, letter: cha
     })
 }
 
-fn has_letter(fonts: &Database, font: ID, letter: char) -> bool {
+pub(super) fn has_letter(fonts: &Database, font: ID, letter: char) -> bool {
     glyph_of(fonts, font, letter).is_some()
 }
 

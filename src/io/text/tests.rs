@@ -225,3 +225,11 @@ fn japanese_columns_have_the_forms_that_the_font_has_for_them() {
     let [left, top, right, bottom] = box_in_column("ー", FAMILY);
     assert!(bottom - top > 2.0 * (right - left), "{left} {top} {right} {bottom}");
 }
+
+#[test]
+fn a_font_is_found_by_its_letters_and_a_preferred_family_comes_first() {
+    let (bytes, index) = find_font("Aß", &["No such family", "Hack"]).unwrap().read().unwrap();
+    assert_eq!((bytes.as_slice(), index), (epaint_default_fonts::HACK_REGULAR, 0));
+    assert!(find_font("Aß", &["No such family"]).is_some());
+    assert_eq!(find_font("A\u{10fffd}", &["Hack"]), None, "no font has that letter");
+}

@@ -5,6 +5,7 @@ use super::marks::anchor_color;
 use crate::document::view::{SurfaceView, draw};
 use crate::document::{Content, Document, Layer};
 use crate::jobs;
+use crate::language::tr;
 use crate::raster::Picture;
 use crate::session::Session;
 use crate::{Error, Result};
@@ -162,7 +163,7 @@ fn inset(painter: &Painter, texture: &TextureHandle, anchors: usize) {
     let name = painter.text(
         rect.left_top() + vec2(5.0, 3.0),
         Align2::LEFT_TOP,
-        "Weights",
+        tr("Weights"),
         FontId::proportional(10.5),
         Color32::WHITE,
     );

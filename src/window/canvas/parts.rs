@@ -5,6 +5,7 @@
 use crate::document::Part;
 use crate::document::parts::FormArea;
 use crate::document::parts::forms::nearest_at;
+use crate::language::tr_message;
 use crate::math::{Affine2, Vec2, Vec3, vec2};
 use crate::part_pictures::PartPictures;
 use crate::raster::coverage::contour::{self, Run};
@@ -105,7 +106,7 @@ impl PartMarks {
                 let described =
                     under.and_then(|at| Some((at, gizmo.handle_at(at)?.describe(part)?)));
                 if let Some((at, text)) = described {
-                    hint(painter, to_screen(at), &text);
+                    hint(painter, to_screen(at), &tr_message(&text));
                 }
             }
         }

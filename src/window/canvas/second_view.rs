@@ -7,6 +7,7 @@ use super::pointer::PointerState;
 use super::{Canvas, guides, marks, to_screen, tool_keys, visible_rect, words};
 use crate::keymap::Keymap;
 use crate::keys;
+use crate::language::tr;
 use crate::math::{Affine2, Vec2, vec2};
 use crate::pen::SharedTablet;
 use crate::preferences::Preferences;
@@ -14,6 +15,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::theme;
+use crate::tr;
 use eframe::egui::{
     CentralPanel, Context, Id, Painter, Response, Role, Sense, Ui, ViewportBuilder, ViewportId,
     WidgetInfo,
@@ -66,7 +68,7 @@ impl SecondView {
         }
         let title = session.active().map_or_else(String::new, |open| open.title());
         let builder = ViewportBuilder::default()
-            .with_title(format!("{title} – second view"))
+            .with_title(tr!("{title} – second view", title))
             .with_inner_size(SIZE_PT);
         let id = ViewportId::from_hash_of("second view");
         ctx.show_viewport_immediate(id, builder, |ui, _| {
@@ -93,7 +95,7 @@ impl SecondView {
     ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.interact(rect, Id::unique("second view"), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Second view"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr("Second view")));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, theme::surround(ui.visuals()));
         let Some(open) = session.active() else { return self.hand.overhear(ui) };

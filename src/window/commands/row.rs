@@ -2,9 +2,11 @@
 //! with. Floor 7.
 
 use crate::document::Content;
+use crate::language::tr;
 use crate::panel_layout::PanelLayout;
 use crate::requests::UiRequests;
 use crate::session::Session;
+use crate::tr;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A command.
@@ -45,14 +47,14 @@ impl MenuCommand {
         Self { is_on: Some(is_on), ..self }
     }
 
-    /// Why it cannot be done now, for the user; its hint says what it would do.
+    /// Why it cannot be done now, in the language of the window; its hint says what it would do.
     pub fn refusal(&self, session: &Session) -> String {
-        let why = match (session.active(), session.layer()) {
-            (None, _) => "there is no document",
-            (_, None) => "no layer is selected",
-            _ => "there is nothing here to apply it to",
-        };
-        format!("{}: {why}.", self.name)
+        let command = tr(self.name);
+        match (session.active(), session.layer()) {
+            (None, _) => tr!("{command}: there is no document.", command),
+            (_, None) => tr!("{command}: no layer is selected.", command),
+            _ => tr!("{command}: there is nothing here to apply it to.", command),
+        }
     }
 
     pub const fn is_line(&self) -> bool {

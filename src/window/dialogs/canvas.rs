@@ -3,11 +3,13 @@
 
 use super::{Dialog, DialogAnswer, buttons, set_width};
 use crate::document::canvas_change::{CanvasAnchor, CanvasChange};
+use crate::language::{tr, tr_number};
 use crate::math::Size;
 use crate::raster::Resampling;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::CanvasAction;
+use crate::tr;
 use crate::widgets::{begin_with, check_box, choice};
 use eframe::egui::{Button, DragValue, Grid, Ui};
 
@@ -49,6 +51,7 @@ impl CanvasSides {
         let (mut wider, mut taller) = (false, false);
         Grid::new("sides").num_columns(3).show(ui, |ui| {
             for (i, name) in ["Width", "Height"].into_iter().enumerate() {
+                let name = tr(name);
                 let label = ui.label(name);
                 let side = if i == 0 { &mut self.width } else { &mut self.height };
                 let px = DragValue::new(side).range(SIDE).suffix(" px");
@@ -59,8 +62,9 @@ impl CanvasSides {
                 let mut is_other = px.changed();
                 let share =
                     DragValue::new(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
-                let share =
-                    ui.add(share).on_hover_text(format!("{name}, relative to the present size"));
+                let share = ui
+                    .add(share)
+                    .on_hover_text(tr!("{side}, relative to the present size", side = name));
                 if share.changed() {
                     *side = held([w, h][i] * percent[i] / 100.0);
                     is_other = true;
@@ -70,8 +74,9 @@ impl CanvasSides {
             }
         });
         let hint = "Changing one side changes the other";
-        let locked =
-            check_box(ui, &mut self.keeps_aspect, "Keep the aspect").on_hover_text(hint).changed();
+        let locked = check_box(ui, &mut self.keeps_aspect, "Keep the aspect")
+            .on_hover_text(tr(hint))
+            .changed();
         if self.keeps_aspect && (wider || locked) {
             self.height = held(self.width as f32 * h / w);
         } else if self.keeps_aspect && taller {
@@ -86,8 +91,15 @@ fn describe(from: Size, to: Size) -> String {
     let cm = |px: u32| px as f32 / PRINT_PPI * 2.54;
     let millions = to.area() as f32 / 1e6;
     let (w, h) = (cm(to.width), cm(to.height));
-    format!(
-        "{from} to {to} px, {millions:.1} megapixels; {w:.1} × {h:.1} cm printed at {PRINT_PPI} px an inch"
+    let tenths = |value: f32| tr_number(&format!("{value:.1}")).into_owned();
+    tr!(
+        "{from} to {to} px, {millions} megapixels; {width} × {height} cm printed at {resolution} px an inch",
+        from,
+        to,
+        millions = tenths(millions),
+        width = tenths(w),
+        height = tenths(h),
+        resolution = PRINT_PPI,
     )
 }
 
@@ -117,13 +129,14 @@ impl CanvasSizeDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 360.0);
-        ui.heading("Canvas size");
-        ui.weak("Moves the borders. Paint beyond them is kept; masks of layers are cut.");
+        ui.heading(tr("Canvas size"));
+        ui.weak(tr("Moves the borders. Paint beyond them is kept; masks of layers are cut."));
         self.sides.show(ui);
         Grid::new("anchor").spacing([2.0, 2.0]).show(ui, |ui| {
             for (i, (anchor, hint)) in ANCHORS.into_iter().enumerate() {
                 let button =
                     Button::selectable(self.anchor == anchor, "").min_size([30.0, 26.0].into());
+                let hint = tr(hint);
                 let response = ui.add(button).on_hover_text(hint);
                 let is_on = self.anchor == anchor;
                 response.widget_info(|| {
@@ -160,11 +173,12 @@ impl ImageSizeDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 360.0);
-        ui.heading("Image size");
-        ui.weak("Paint is resampled; strokes, images, gradients and the shape are rendered again, as sharp as before.");
+        ui.heading(tr("Image size"));
+        ui.weak(tr("Paint is resampled; strokes, images, gradients and the shape are rendered again, as sharp as \
+             before."));
         self.sides.show(ui);
         ui.horizontal(|ui| {
-            ui.label("Paint is sampled");
+            ui.label(tr("Paint is sampled"));
             self.filter = choice(ui, "How paint is sampled", self.filter, &Resampling::ALL)
                 .unwrap_or(self.filter);
         });
@@ -186,12 +200,12 @@ impl TurnDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 360.0);
-        ui.heading("Turn canvas");
-        ui.weak(
+        ui.heading(tr("Turn canvas"));
+        ui.weak(tr(
             "Counter-clockwise. Paint gets a transform, so it can be turned back without loss.",
-        );
+        ));
         ui.horizontal(|ui| {
-            let label = ui.label("Angle");
+            let label = ui.label(tr("Angle"));
             let angle =
                 DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
             begin_with(&ui.add(angle).labelled_by(label.id));

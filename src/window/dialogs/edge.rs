@@ -1,9 +1,11 @@
 //! Asks by how much to change the edge of the selection. Floor 7.
 
 use super::{DialogAnswer, buttons, set_width};
+use crate::language::tr;
 use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, SelectionAction};
+use crate::tr;
 use crate::widgets::begin_with;
 use eframe::egui::{DragValue, Ui};
 
@@ -19,10 +21,10 @@ impl EdgeDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 300.0);
-        ui.heading(self.change.label());
-        ui.weak(self.change.hint());
+        ui.heading(tr(self.change.label()));
+        ui.weak(tr(self.change.hint()));
         ui.horizontal(|ui| {
-            let label = ui.label("Pixels");
+            let label = ui.label(tr("Pixels"));
             let range = self.change.range();
             let px = DragValue::new(&mut self.px).range(range).speed(0.1).suffix(" px");
             begin_with(&ui.add(px).labelled_by(label.id));
@@ -56,13 +58,13 @@ impl KeepDialog {
         requests: &mut UiRequests,
     ) -> DialogAnswer {
         set_width(ui, 320.0);
-        ui.heading("Keep selection");
-        ui.weak(
+        ui.heading(tr("Keep selection"));
+        ui.weak(tr(
             "Saved under a name with the document. If the name is taken, its selection is \
              replaced.",
-        );
+        ));
         ui.horizontal(|ui| {
-            let label = ui.label("Name of selection");
+            let label = ui.label(tr("Name of selection"));
             let field = ui.text_edit_singleline(&mut self.name).labelled_by(label.id);
             if !std::mem::replace(&mut self.is_begun, true) {
                 field.request_focus();
@@ -71,7 +73,7 @@ impl KeepDialog {
         for name in kept {
             ui.horizontal(|ui| {
                 ui.label(name);
-                if ui.small_button(format!("Forget {name}")).clicked() {
+                if ui.small_button(tr!("Forget {name}", name)).clicked() {
                     requests.act(Action::Selection(SelectionAction::Forget { name: name.clone() }));
                 }
             });

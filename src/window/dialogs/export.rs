@@ -7,10 +7,12 @@ use super::{DialogAnswer, buttons, set_width};
 use crate::document::Document;
 use crate::export_memory::{ExportMemory, ExportPreset};
 use crate::io::export::ExportFormat;
+use crate::language::{tr, tr_message};
 use crate::math::{Size, srgb::Color};
 use crate::requests::WindowRequest;
 use crate::session::{ExportSettings, ExportSize, ExportedFile, Session};
 use crate::theme;
+use crate::tr;
 use crate::widgets::{NumberField, check_box, radio, segment, segments, set_accessible_name};
 use eframe::egui::{
     Button, Color32, ComboBox, Id, Rect, Role, Sense, Slider, TextEdit, TextureId, Ui, Vec2,
@@ -86,7 +88,7 @@ impl ExportDialog {
         preview: Option<TextureId>,
     ) -> DialogAnswer {
         set_width(ui, 340.0);
-        ui.heading("Export the picture");
+        ui.heading(tr("Export the picture"));
         self.presets(ui, memory);
         let document = session.shown_document();
         if let (Some(preview), Some(document)) = (preview, document) {
@@ -104,7 +106,7 @@ impl ExportDialog {
         ui.add_enabled_ui(can_choose, |ui| check_box(ui, &mut opaque, "Lay it on white"));
         self.settings.background = opaque.then_some(Color::WHITE);
         ui.add_enabled_ui(self.extension == "jpg", |ui| {
-            ui.add(Slider::new(&mut self.settings.quality, 1..=100).text("Quality"));
+            ui.add(Slider::new(&mut self.settings.quality, 1..=100).text(tr("Quality")));
         });
         if let Some(document) = document.filter(|_| MEASURED.contains(&self.extension)) {
             self.bytes(ui, document);
@@ -123,7 +125,7 @@ impl ExportDialog {
         ui.horizontal(|ui| {
             let mut chosen = None;
             ui.add_enabled_ui(!memory.presets.is_empty(), |ui| {
-                let list = ComboBox::from_id_salt("export presets").selected_text("Presets");
+                let list = ComboBox::from_id_salt("export presets").selected_text(tr("Presets"));
                 let list = list.width(96.0).show_ui(ui, |ui| {
                     for preset in &memory.presets {
                         if ui.button(&preset.name).clicked() {
@@ -131,24 +133,24 @@ impl ExportDialog {
                         }
                     }
                 });
-                set_accessible_name(&list.response, "Presets");
+                set_accessible_name(&list.response, tr("Presets"));
             });
             if let Some(preset) = chosen {
                 self.take_extension(&preset.extension);
                 self.settings = preset.settings;
                 name = preset.name;
             }
-            let field = TextEdit::singleline(&mut name).hint_text("Name").desired_width(96.0);
-            set_accessible_name(&ui.add(field.char_limit(40)), "Name of the preset");
+            let field = TextEdit::singleline(&mut name).hint_text(tr("Name")).desired_width(96.0);
+            set_accessible_name(&ui.add(field.char_limit(40)), tr("Name of the preset"));
             let trimmed = name.trim().to_owned();
-            let keep = ui.add_enabled(!trimmed.is_empty(), Button::new("Keep"));
-            if keep.on_hover_text("Keeps these settings as a preset").clicked() {
+            let keep = ui.add_enabled(!trimmed.is_empty(), Button::new(tr("Keep")));
+            if keep.on_hover_text(tr("Keeps these settings as a preset")).clicked() {
                 let (extension, settings) = (self.extension.to_owned(), self.settings);
                 memory.keep(ExportPreset { name: trimmed.clone(), extension, settings });
             }
             let is_known = memory.presets.iter().any(|preset| preset.name == trimmed);
-            let remove = ui.add_enabled(is_known, Button::new("Remove"));
-            if remove.on_hover_text("Removes the preset of this name").clicked() {
+            let remove = ui.add_enabled(is_known, Button::new(tr("Remove")));
+            if remove.on_hover_text(tr("Removes the preset of this name")).clicked() {
                 memory.remove(&trimmed);
             }
         });
@@ -160,7 +162,7 @@ impl ExportDialog {
         let settings = &mut self.settings;
         let pixels = settings.pixels(document);
         ui.horizontal(|ui| {
-            ui.label("Size");
+            ui.label(tr("Size"));
             segments(ui, |ui| {
                 for (factor, label, hint) in SCALES {
                     let is_on = settings.size == ExportSize::Scale(factor);
@@ -173,7 +175,7 @@ impl ExportDialog {
             if let Some(changed) = field.field(ui, pixels.width as f32) {
                 settings.size = ExportSize::Width(changed.to as u32);
             }
-            ui.weak(format!("{pixels} pixels"));
+            ui.weak(tr!("{size} pixels", size = pixels));
         });
         let can_choose = document.active_selection.is_some() && self.extension != "psd";
         ui.add_enabled_ui(can_choose, |ui| {
@@ -186,9 +188,9 @@ impl ExportDialog {
         let ctx = ui.ctx().clone();
         let settings = ExportSettings { bits: None, ..self.settings };
         let text = match self.estimate.bytes(&ctx, document, self.extension, settings) {
-            Some(Ok(bytes)) => format!("File size {}", size_text(bytes)),
-            Some(Err(why)) => why,
-            None => "File size …".to_owned(),
+            Some(Ok(bytes)) => tr!("File size {size}", size = size_text(bytes)),
+            Some(Err(why)) => tr_message(&why).into_owned(),
+            None => tr("File size …").to_owned(),
         };
         ui.weak(text);
     }
@@ -212,12 +214,12 @@ impl ExportDialog {
         let usual = depths.first().copied();
         ui.add_enabled_ui(depths.len() > 1, |ui| {
             ui.horizontal(|ui| {
-                ui.label("Bits a channel");
+                ui.label(tr("Bits a channel"));
                 for &depth in depths {
                     let is_chosen =
                         self.settings.bits.filter(|bits| depths.contains(bits)).or(usual)
                             == Some(depth);
-                    if ui.radio(is_chosen, format!("{depth} bits")).clicked() {
+                    if ui.radio(is_chosen, tr!("{depth} bits", depth)).clicked() {
                         self.settings.bits = Some(depth);
                     }
                 }
@@ -231,7 +233,8 @@ impl ExportDialog {
         let side = vec2(canvas.width as f32, canvas.height as f32);
         let side = side * (ROOM_PT.x / side.x).min(ROOM_PT.y / side.y);
         let (room, response) = ui.allocate_exact_size(vec2(ROOM_PT.x, side.y), Sense::hover());
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Preview of the export"));
+        response
+            .widget_info(|| WidgetInfo::labeled(Role::Image, true, tr("Preview of the export")));
         let rect = Rect::from_center_size(room.center(), side);
         let painter = ui.painter_at(rect);
         painter.rect_filled(

@@ -1,6 +1,7 @@
 //! The numbers of the grid, and what the pen snaps to. Each change is shown at once. Floor 7.
 
 use super::{DialogAnswer, close, set_width};
+use crate::language::tr;
 use crate::requests::UiRequests;
 use crate::session::actions::GuideAction;
 use crate::session::{Action, Session};
@@ -10,7 +11,7 @@ use eframe::egui::{DragValue, Key, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
     set_width(ui, 320.0);
-    ui.heading("Grid and snapping");
+    ui.heading(tr("Grid and snapping"));
     let mut aids = session.tools.aids;
     grid(ui, &mut aids.grid);
     ui.separator();
@@ -44,7 +45,7 @@ const CHOICES: [(&str, &str, Choice); 6] = [
 fn grid(ui: &mut Ui, grid: &mut CanvasGrid) {
     let mut number = |label: &str, value: &mut f32, range: std::ops::RangeInclusive<f32>| {
         let row = ui.horizontal(|ui| {
-            let label = ui.label(label);
+            let label = ui.label(tr(label));
             ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px"))
                 .labelled_by(label.id)
         });
@@ -54,7 +55,7 @@ fn grid(ui: &mut Ui, grid: &mut CanvasGrid) {
     number("Offset x", &mut grid.offset.x, crate::math::COORDINATE);
     number("Offset y", &mut grid.offset.y, crate::math::COORDINATE);
     ui.horizontal(|ui| {
-        let label = ui.label("Subdivisions");
+        let label = ui.label(tr("Subdivisions"));
         ui.add(DragValue::new(&mut grid.subdivisions).range(CanvasGrid::SUBDIVISIONS).speed(0.05))
             .labelled_by(label.id);
     });

@@ -14,8 +14,10 @@ use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
 use crate::file_purpose::FilePurpose;
 use crate::io::maps::{self, ImportedSurface};
 use crate::io::platform;
+use crate::language::{tr, tr_message};
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedFile};
+use crate::tr;
 use crate::widgets::{check_box, choice_row, sentence, set_accessible_name};
 use eframe::egui::{
     self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2,
@@ -165,14 +167,14 @@ impl ImportDialog {
         set_width(ui, 560.0);
         // What is done stands beside the title, so that no control moves when it ends.
         ui.horizontal(|ui| {
-            ui.heading(match self.becomes {
+            ui.heading(tr(match self.becomes {
                 MapsBecome::Document => "New document from maps",
                 MapsBecome::ItsMaps => "Other maps for this document",
                 MapsBecome::ItsPart => "Maps as a part of the shape",
-            });
+            }));
             if self.is_reading {
                 ui.spinner();
-                ui.label("Reading the maps…");
+                ui.label(tr("Reading the maps…"));
             }
         });
         let mut ask = None;
@@ -201,14 +203,14 @@ impl ImportDialog {
         if is_doubtful {
             ui.colored_label(
                 ui.visuals().warn_fg_color,
-                "This does not look like a normal map: its colors are not directions.",
+                tr("This does not look like a normal map: its colors are not directions."),
             );
             check_box(ui, &mut self.is_sure, "Use it as a normal map anyway");
         }
         if let Some((name, _)) = &self.picture
             && self.becomes == MapsBecome::Document
         {
-            let text = format!("Begin with the picture in the file, “{name}”");
+            let text = tr!("Begin with the picture in the file, “{name}”", name);
             check_box(ui, &mut self.takes_picture, text);
         }
         let is_ready =
@@ -248,21 +250,20 @@ impl ImportDialog {
             ("Mask", FilePurpose::MaskMap, mask),
         ];
         for (label, purpose, file) in rows {
+            let map = label.to_lowercase();
+            let map = tr(&map);
             ui.horizontal(|ui| {
                 crate::widgets::name(ui, label);
-                let response = ui.button("Choose…");
-                set_accessible_name(&response, &format!("Choose {}", label.to_lowercase()));
+                let response = ui.button(tr("Choose…"));
+                set_accessible_name(&response, &tr!("Choose {map}", map));
                 if response.clicked() {
                     *ask = Some(purpose);
                 }
                 match &file {
                     Some(file) => {
                         ui.label(name(file)).on_hover_text(file);
-                        let response = ui.small_button("Leave out");
-                        set_accessible_name(
-                            &response,
-                            &format!("Leave out {}", label.to_lowercase()),
-                        );
+                        let response = ui.small_button(tr("Leave out"));
+                        set_accessible_name(&response, &tr!("Leave out {map}", map));
                         if response.clicked() {
                             match purpose {
                                 FilePurpose::DepthMap => self.source.depth = None,
@@ -271,11 +272,11 @@ impl ImportDialog {
                             }
                         }
                     }
-                    None => drop(ui.weak(if purpose == FilePurpose::MaskMap {
+                    None => drop(ui.weak(tr(if purpose == FilePurpose::MaskMap {
                         "found from the maps"
                     } else {
                         "derived from the other map"
-                    })),
+                    }))),
                 }
             });
         }
@@ -313,28 +314,25 @@ impl ImportDialog {
         let Some(Ok(maps::ImportedSurface { surface, findings: found, .. })) = &self.found else {
             return;
         };
-        ui.weak(format!(
-            "{} pixels, about {:.0} px deep",
-            surface.size(),
-            surface.depth_range_px()
-        ));
-        ui.collapsing("Detected", |ui| {
+        let depth = format!("{:.0}", surface.depth_range_px());
+        ui.weak(tr!("{size} pixels, about {depth} px deep", size = surface.size(), depth));
+        ui.collapsing(tr("Detected"), |ui| {
             ScrollArea::vertical().max_height(150.0).show(ui, |ui| {
                 egui::Grid::new("findings").num_columns(3).striped(true).show(ui, |ui| {
                     for choice in &found.choices {
                         let (name, words) = findings::describe(choice);
-                        ui.label(name);
-                        ui.label(words);
+                        ui.label(tr(name));
+                        ui.label(tr(&words));
                         ui.weak(format!(
                             "{}, {:.0} %",
-                            choice.how.name(),
+                            tr(choice.how.name()),
                             choice.confidence * 100.0
                         ));
                         ui.end_row();
                     }
                 });
                 for note in &found.notes {
-                    ui.label(note);
+                    ui.label(tr_message(note));
                 }
             });
         });
@@ -342,7 +340,7 @@ impl ImportDialog {
 
     /// The surface lit from above left, each way; a click corrects the map.
     fn pictures(&mut self, ui: &mut Ui) {
-        ui.label("Lit from above left. Choose the one whose bumps stand out:");
+        ui.label(tr("Lit from above left. Choose the one whose bumps stand out:"));
         let mut chosen = None;
         ui.horizontal(|ui| {
             for (i, (texture, (name, _))) in self.lit.iter().zip(self.ways()).enumerate() {
@@ -351,7 +349,7 @@ impl ImportDialog {
                         ui.allocate_exact_size(vec2(124.0, 124.0), Sense::click());
                     let is_chosen = i == self.clicked;
                     response.widget_info(|| {
-                        egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, *name)
+                        egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, tr(name))
                     });
                     let side = texture.size_vec2();
                     let scale = (rect.width() / side.x).min(rect.height() / side.y);
@@ -371,7 +369,7 @@ impl ImportDialog {
                             StrokeKind::Inside,
                         );
                     }
-                    let text = RichText::new(sentence(name));
+                    let text = RichText::new(tr(&sentence(name)));
                     ui.label(if is_chosen { text.strong() } else { text });
                     if response.clicked() {
                         chosen = Some(i);

@@ -2,10 +2,12 @@
 
 use super::{DialogAnswer, close, set_width};
 use crate::io::recipe::LiveLook;
+use crate::language::tr;
 use crate::look_pictures::{LookPictures, in_looks};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, Session};
+use crate::tr;
 use crate::widgets::set_accessible_name;
 use eframe::egui::{self, ScrollArea, Ui, vec2};
 
@@ -34,8 +36,8 @@ impl LooksDialog {
         requests: &mut UiRequests,
     ) -> DialogAnswer {
         set_width(ui, 640.0);
-        ui.heading("Looks");
-        ui.weak("A look is a group of live layers, which you can change afterwards.");
+        ui.heading(tr("Looks"));
+        ui.weak(tr("A look is a group of live layers, which you can change afterwards."));
         if let Some(open) = session.active() {
             self.pictures.follow(ui.ctx(), open.document());
         }
@@ -79,9 +81,9 @@ impl LooksDialog {
                     ui.add(egui::Button::new("…").min_size(side))
                 }
             };
-            let response = response.on_hover_text(&look.about);
-            set_accessible_name(&response, &format!("Look: {}", look.name));
-            ui.small(&look.name);
+            let response = response.on_hover_text(tr(&look.about));
+            set_accessible_name(&response, &tr!("Look: {name}", name = tr(&look.name)));
+            ui.small(tr(&look.name));
             response.clicked()
         });
         clicked.inner

@@ -2,6 +2,7 @@
 //! lost (`io::psd`).
 
 use super::{DialogAnswer, buttons, set_width};
+use crate::language::{tr, tr_message};
 use crate::pending::Saving;
 use crate::widgets::list;
 use eframe::egui::Ui;
@@ -19,14 +20,16 @@ impl Losses {
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         let Some(saving) = &self.saving else { return DialogAnswer::Close };
         set_width(ui, 420.0);
-        ui.heading("Save as a Photoshop file?");
-        ui.label("Other programs show live layers as pixels. A project (.ora) keeps everything.");
-        ui.label(
+        ui.heading(tr("Save as a Photoshop file?"));
+        ui.label(tr(
+            "Other programs show live layers as pixels. A project (.ora) keeps everything.",
+        ));
+        ui.label(tr(
             "When you open it here again, everything is live, unless another program has \
                   saved the file.",
-        );
+        ));
         let notes = saving.encoded.iter().flat_map(|encoded| &encoded.notes);
-        list(ui, 160.0).show(ui, |ui| notes.for_each(|note| drop(ui.label(note))));
+        list(ui, 160.0).show(ui, |ui| notes.for_each(|note| drop(ui.label(tr_message(note)))));
         match buttons(ui, "Save", true) {
             Some(true) => self.saving.take().map_or(DialogAnswer::Close, DialogAnswer::Lose),
             Some(false) => DialogAnswer::Close,

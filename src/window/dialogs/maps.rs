@@ -3,8 +3,10 @@
 
 use super::{DialogAnswer, buttons, set_width};
 use crate::io::export::shape::{ShapeMap, ShapeOptions};
+use crate::language::tr;
 use crate::requests::WindowRequest;
 use crate::session::Session;
+use crate::tr;
 use crate::widgets::{check_box, radio};
 use eframe::egui::Ui;
 
@@ -36,19 +38,19 @@ impl MapsDialog {
 
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         set_width(ui, 340.0);
-        ui.heading("Export maps of the shape");
+        ui.heading(tr("Export maps of the shape"));
         let Some(surface) = session.shown_document().and_then(|document| document.surface.as_ref())
         else {
-            ui.label("This document has no shape. Make one (Layer, Give it a shape…).");
+            ui.label(tr("This document has no shape. Make one (Layer, Give it a shape…)."));
             return super::close(ui);
         };
-        ui.weak(format!("{} pixels; the coverage is kept as alpha", surface.size()));
+        ui.weak(tr!("{size} pixels; the coverage is kept as alpha", size = surface.size()));
         for ((map, suffix), on) in ShapeMap::ALL.into_iter().zip(&mut self.chosen) {
-            check_box(ui, on, format!("{} ({suffix})", label(map)));
+            check_box(ui, on, format!("{} ({suffix})", tr(label(map))));
         }
         let options = &mut self.options;
         ui.horizontal(|ui| {
-            ui.label("Green points");
+            ui.label(tr("Green points"));
             radio(ui, &mut options.is_directx, false, "up (OpenGL)");
             radio(ui, &mut options.is_directx, true, "down (DirectX)");
         });

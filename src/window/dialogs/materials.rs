@@ -6,6 +6,7 @@ use super::{DialogAnswer, close, set_width};
 use crate::document::Document;
 use crate::document::parts::forms::visible_place;
 use crate::io::recipe::PartMaterial;
+use crate::language::tr;
 use crate::look_pictures::{LookPictures, in_materials};
 use crate::math::Vec2;
 use crate::math::srgb::Color;
@@ -13,6 +14,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
 use crate::session::drawing::color_at;
 use crate::session::{Action, OpenDocument, Session};
+use crate::tr;
 use crate::widgets::set_accessible_name;
 use eframe::egui::{self, ComboBox, ScrollArea, Ui, vec2};
 
@@ -40,12 +42,13 @@ impl Target {
         if has_parts && document.active_selection.is_none() { Self::Clicked } else { Self::All }
     }
 
+    /// Its name in the language of the window.
     fn name(&self, document: &Document) -> String {
         match self {
-            Self::Clicked => "The part that you click".to_owned(),
+            Self::Clicked => tr("The part that you click").to_owned(),
             Self::Part(id) => document.parts.part(id).map_or(id.clone(), |part| part.name.clone()),
-            Self::All if document.active_selection.is_some() => "What is selected".to_owned(),
-            Self::All => "Everything".to_owned(),
+            Self::All if document.active_selection.is_some() => tr("What is selected").to_owned(),
+            Self::All => tr("Everything").to_owned(),
         }
     }
 }
@@ -94,8 +97,10 @@ impl MaterialsDialog {
         requests: &mut UiRequests,
     ) -> DialogAnswer {
         set_width(ui, IN_A_ROW as f32 * (SHOWN_PT + 20.0));
-        ui.heading("Materials");
-        ui.weak("A material is a group of live layers on a part, which you can change afterwards.");
+        ui.heading(tr("Materials"));
+        ui.weak(tr(
+            "A material is a group of live layers on a part, which you can change afterwards.",
+        ));
         if let Some(open) = session.active() {
             self.choose_target(ui, open.document());
             self.color_balls(open.document());
@@ -129,7 +134,7 @@ impl MaterialsDialog {
             (None, _) => {}
         }
         if self.held.is_some() {
-            ui.label("Click a part of the drawing.");
+            ui.label(tr("Click a part of the drawing."));
         }
         close(ui)
     }
@@ -195,13 +200,13 @@ impl MaterialsDialog {
         let clicked = (!document.parts.list.is_empty()).then_some(Target::Clicked);
         let choices: Vec<Target> = clicked.into_iter().chain([Target::All]).chain(parts).collect();
         let name = self.target.name(document);
-        let shown = ComboBox::from_label("Part").selected_text(name).show_ui(ui, |ui| {
+        let shown = ComboBox::from_label(tr("Part")).selected_text(name).show_ui(ui, |ui| {
             for choice in choices {
                 let name = choice.name(document);
                 ui.selectable_value(&mut self.target, choice, name);
             }
         });
-        set_accessible_name(&shown.response, "Part");
+        set_accessible_name(&shown.response, tr("Part"));
     }
 
     /// Balls take the color that the part has.
@@ -235,9 +240,9 @@ impl MaterialsDialog {
                     ui.add(egui::Button::new("…").min_size(side))
                 }
             };
-            let response = response.on_hover_text(&material.about);
-            set_accessible_name(&response, &format!("Material: {}", material.name));
-            ui.small(&material.name);
+            let response = response.on_hover_text(tr(&material.about));
+            set_accessible_name(&response, &tr!("Material: {name}", name = tr(&material.name)));
+            ui.small(tr(&material.name));
             response
         });
         shown.inner

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use super::{DialogAnswer, buttons, set_width};
+use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
@@ -31,16 +32,16 @@ impl Default for NewDialog {
 impl NewDialog {
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 340.0);
-        ui.heading("New document");
-        ui.label("To paint on an object, begin with its normal map, depth map or both. Or begin with a picture.");
+        ui.heading(tr("New document"));
+        ui.label(tr("To paint on an object, begin with its normal map, depth map or both. Or begin with a picture."));
         let mut begins = None;
         ui.horizontal(|ui| {
-            if ui.button("From maps…").clicked() {
+            if ui.button(tr("From maps…")).clicked() {
                 begins = Some(WindowRequest::OpenMapsDialog);
             }
             if ui
-                .button("From a picture…")
-                .on_hover_text("As large as the picture, which is its first layer")
+                .button(tr("From a picture…"))
+                .on_hover_text(tr("As large as the picture, which is its first layer"))
                 .clicked()
             {
                 begins = Some(WindowRequest::OpenDialog);
@@ -50,12 +51,12 @@ impl NewDialog {
             return DialogAnswer::Ask(begins);
         }
         ui.separator();
-        ui.label("An empty canvas");
+        ui.label(tr("An empty canvas"));
         ui.horizontal(|ui| {
-            let label = ui.label("Width");
+            let label = ui.label(tr("Width"));
             let width = DragValue::new(&mut self.width).range(1..=16384).suffix(" px");
             begin_with(&ui.add(width).labelled_by(label.id));
-            let label = ui.label("Height");
+            let label = ui.label(tr("Height"));
             ui.add(DragValue::new(&mut self.height).range(1..=16384).suffix(" px"))
                 .labelled_by(label.id);
         });
@@ -67,7 +68,7 @@ impl NewDialog {
             }
         });
         ui.horizontal(|ui| {
-            ui.label("Background");
+            ui.label(tr("Background"));
             for (choice, name) in [
                 (CanvasBackground::White, "White"),
                 (CanvasBackground::Dark, "Dark"),

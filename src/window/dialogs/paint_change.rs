@@ -2,6 +2,7 @@
 
 use super::{DialogAnswer, buttons, set_width};
 use crate::file_purpose::FilePurpose;
+use crate::language::tr;
 use crate::paint::ColorAdjustment;
 use crate::panels::adjustment;
 use crate::requests::{PaintChange, UiRequests, WindowRequest};
@@ -54,8 +55,8 @@ impl PaintChangeDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 300.0);
-        ui.heading(self.change.label());
-        ui.weak("The paint of the selected layers, within the selection");
+        ui.heading(tr(self.change.label()));
+        ui.weak(tr("The paint of the selected layers, within the selection"));
         let is_new = !std::mem::replace(&mut self.is_begun, true);
         let changed = self.change.show(ui, requests);
         if changed.is_some() || is_new {

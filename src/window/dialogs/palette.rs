@@ -5,10 +5,12 @@ mod find;
 
 use super::{DialogAnswer, set_width};
 use crate::keymap::{KeyTarget, Keymap, key_text};
+use crate::language::tr;
 use crate::panel_layout::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
+use crate::tr;
 use crate::widgets::{list, set_accessible_name};
 use eframe::egui::{Button, Key, TextEdit, Ui};
 use find::PaletteEntry;
@@ -31,10 +33,10 @@ impl CommandPalette {
         set_width(ui, 420.0);
         let field = ui.add(
             TextEdit::singleline(&mut self.typed)
-                .hint_text("Command, tool or setting")
+                .hint_text(tr("Command, tool or setting"))
                 .desired_width(f32::INFINITY),
         );
-        set_accessible_name(&field, "Command");
+        set_accessible_name(&field, tr("Command"));
         field.request_focus();
         if field.changed() {
             self.at = 0;
@@ -52,7 +54,7 @@ impl CommandPalette {
         self.at = self.at.min(found.len().saturating_sub(1));
         let mut chosen = enter.then(|| found.get(self.at)).flatten().copied();
         if found.is_empty() {
-            ui.weak(format!("Nothing found for “{}”", self.typed.trim()));
+            ui.weak(tr!("Nothing found for “{typed}”", typed = self.typed.trim()));
         }
         list(ui, 360.0).auto_shrink([false, true]).show(ui, |ui| {
             for (i, entry) in found.iter().enumerate() {
@@ -60,7 +62,7 @@ impl CommandPalette {
                 if (up || down) && i == self.at {
                     response.scroll_to_me(None);
                 }
-                if response.on_hover_text(entry.hint()).clicked() {
+                if response.on_hover_text(tr(entry.hint())).clicked() {
                     chosen = Some(*entry);
                 }
             }
@@ -84,8 +86,8 @@ fn row(
         PaletteEntry::Panel(_) | PaletteEntry::Setting(..) => None,
     };
     let keys = keys.map(|keys| key_text(ui.ctx(), keys)).unwrap_or_default();
-    let beside = [entry.kind(), &keys].join("  ");
-    let button = Button::selectable(is_next, entry.name()).shortcut_text(beside.trim());
+    let beside = [tr(entry.kind()), &keys].join("  ");
+    let button = Button::selectable(is_next, tr(entry.name())).shortcut_text(beside.trim());
     ui.add_enabled(can_be_done(entry, session), button.min_size([400.0, 0.0].into()))
 }
 

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use super::{DialogAnswer, buttons, set_width};
+use crate::language::{tr, tr_message};
 use crate::math::{Vec2, vec2};
 use crate::paint::{Figure, PanelSettings};
 use crate::panels::comic::{show_look, show_numbers};
@@ -9,6 +10,7 @@ use crate::requests::UiRequests;
 use crate::session::actions::PanelAction;
 use crate::session::{Action, LayerPath, Session};
 use crate::tools::path::{self, along};
+use crate::tr;
 use eframe::egui::{Color32, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2 as size_of};
 
 /// The sketch of the page at most, points.
@@ -53,12 +55,12 @@ impl PanelsDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 380.0);
-        ui.heading("Panels");
-        ui.label(match (&self.layer, self.within) {
+        ui.heading(tr("Panels"));
+        ui.label(tr(match (&self.layer, self.within) {
             (Some(_), _) => "The shape of the selected path becomes panels.",
             (None, Some(_)) => "The box around the selection becomes panels.",
             (None, None) => "The page becomes panels.",
-        });
+        }));
         let divided = self.find_panels();
         self.sketch(ui, divided.as_deref().unwrap_or_default());
         let all: Vec<&str> = PanelSettings::SETTINGS.iter().map(|setting| setting.name).collect();
@@ -69,7 +71,7 @@ impl PanelsDialog {
         });
         show_look(ui, &mut self.settings);
         if let Err(why) = &divided {
-            ui.weak(format!("There are no panels: {why}."));
+            ui.weak(tr!("There are no panels: {why}.", why = tr_message(why)));
         }
         match buttons(ui, "Create", divided.is_ok()) {
             Some(true) => {

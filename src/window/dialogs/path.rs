@@ -5,6 +5,7 @@ use super::{DialogAnswer, DialogContext, buttons, set_width};
 use crate::file_pictures::FilePictures;
 use crate::file_purpose::FilePurpose;
 use crate::io::platform;
+use crate::language::tr;
 use crate::settings::Settings;
 use crate::widgets::{set_accessible_name, title};
 use eframe::egui::{
@@ -63,7 +64,7 @@ impl PathDialog {
 
     pub fn show(&mut self, ui: &mut Ui, context: &mut DialogContext) -> DialogAnswer {
         set_width(ui, 640.0);
-        ui.heading(self.purpose.title());
+        ui.heading(tr(self.purpose.title()));
         if self.listed.folder != self.folder {
             self.listed = FolderListing::of(&self.folder, self.purpose);
         }
@@ -89,7 +90,7 @@ impl PathDialog {
             && (is_folder || self.purpose.is_saving() || platform::is_file(&typed));
         let is_warned = self.replaces.as_ref() == Some(&typed);
         if is_warned {
-            ui.colored_label(ui.visuals().warn_fg_color, "This file already exists.");
+            ui.colored_label(ui.visuals().warn_fg_color, tr("This file already exists."));
         }
         let yes = match self.purpose.is_saving() && !is_folder {
             true if is_warned => "Replace",
@@ -121,12 +122,12 @@ impl PathDialog {
     fn show_folder(&mut self, ui: &mut Ui, settings: &mut Settings) {
         ui.horizontal(|ui| {
             let up = self.folder.parent().map(Path::to_owned);
-            if ui.add_enabled(up.is_some(), Button::new("Up")).clicked() {
+            if ui.add_enabled(up.is_some(), Button::new(tr("Up"))).clicked() {
                 self.go_to(up.unwrap_or_default());
             }
             let mut is_marked = settings.bookmarks.contains(&self.folder);
-            let mark = ui.toggle_value(&mut is_marked, "Bookmark");
-            if mark.on_hover_text("Lists this folder among the bookmarks").changed() {
+            let mark = ui.toggle_value(&mut is_marked, tr("Bookmark"));
+            if mark.on_hover_text(tr("Lists this folder among the bookmarks")).changed() {
                 settings.bookmarks.retain(|known| *known != self.folder);
                 settings.bookmarks.extend(is_marked.then(|| self.folder.clone()));
             }
@@ -198,7 +199,7 @@ impl PathDialog {
                 }
             }
             if all == 0 {
-                ui.weak("Nothing here that can be opened");
+                ui.weak(tr("Nothing here that can be opened"));
             }
         });
         if let Some(folder) = entered {
@@ -210,12 +211,12 @@ impl PathDialog {
     /// The field for the name. What is typed up to a separator is a folder, which is shown.
     fn field(&mut self, ui: &mut Ui) {
         let field = ui.horizontal(|ui| {
-            let label = ui.label("File");
+            let label = ui.label(tr("File"));
             ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY))
                 .labelled_by(label.id)
         });
         let field = field.inner;
-        set_accessible_name(&field, "File name");
+        set_accessible_name(&field, tr("File name"));
         if !std::mem::replace(&mut self.is_begun, true) {
             field.request_focus();
         }
@@ -292,8 +293,8 @@ fn row(ui: &mut Ui, file: &str, is_on: bool, path: &Path, pictures: &mut FilePic
 fn places() -> Vec<(String, PathBuf)> {
     let Some(home) = platform::home_folder() else { return Vec::new() };
     let within = ["Desktop", "Documents", "Pictures", "Downloads"];
-    let mut places = vec![("Home".to_owned(), home.clone())];
-    places.extend(within.map(|name| (name.to_owned(), home.join(name))));
+    let mut places = vec![(tr("Home").to_owned(), home.clone())];
+    places.extend(within.map(|name| (tr(name).to_owned(), home.join(name))));
     places.retain(|(_, folder)| platform::is_folder(folder));
     places
 }

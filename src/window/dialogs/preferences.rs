@@ -9,6 +9,7 @@ mod memory;
 mod pen;
 
 use super::{DialogAnswer, DialogContext, close, set_width};
+use crate::language::tr;
 use crate::preferences::{PreferencePage, Preferences};
 use crate::widgets::{NumberField, check};
 use eframe::egui::{Align, Layout, Ui, vec2};
@@ -31,7 +32,7 @@ impl PreferencesDialog {
 
     pub fn show(&mut self, ui: &mut Ui, context: &mut DialogContext) -> DialogAnswer {
         set_width(ui, WIDTH_PT);
-        ui.heading("Preferences");
+        ui.heading(tr("Preferences"));
         let height = PAGE_PT.min((ui.ctx().content_rect().height() - 140.0).max(160.0));
         ui.allocate_ui_with_layout(
             vec2(WIDTH_PT, height),
@@ -40,7 +41,7 @@ impl PreferencesDialog {
                 ui.vertical(|ui| {
                     ui.set_width(NAMES_PT);
                     for (page, name) in PreferencePage::ALL {
-                        ui.selectable_value(&mut self.page, page, name);
+                        ui.selectable_value(&mut self.page, page, tr(name));
                     }
                 });
                 ui.separator();

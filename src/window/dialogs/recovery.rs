@@ -4,6 +4,8 @@
 use super::{DialogAnswer, set_width};
 use crate::io::platform::SystemTime;
 use crate::io::recovery::LostSession;
+use crate::language::tr;
+use crate::tr;
 use crate::widgets::list;
 use eframe::egui::{RichText, Ui};
 use std::time::Duration;
@@ -25,20 +27,20 @@ impl RecoveryDialog {
     /// Closing it leaves everything for the next start.
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         set_width(ui, 460.0);
-        ui.heading("Recover unsaved drawings?");
-        ui.label("Rilievo ended unexpectedly. What is recovered opens as a new drawing; no file is replaced.");
+        ui.heading(tr("Recover unsaved drawings?"));
+        ui.label(tr("Rilievo ended unexpectedly. What is recovered opens as a new drawing; no file is replaced."));
         let (mut recover, mut delete) = (None, None);
         list(ui, 320.0).show(ui, |ui| {
             for (i, (lost, is_asked)) in self.lost.iter_mut().enumerate() {
                 ui.separator();
-                let title = if lost.title.is_empty() { "Unnamed" } else { &lost.title };
+                let title = if lost.title.is_empty() { tr("Unnamed") } else { &lost.title };
                 ui.label(RichText::new(title).strong());
                 ui.label(describe(lost));
                 ui.horizontal(|ui| {
-                    if ui.button(format!("Recover {title}")).clicked() {
+                    if ui.button(tr!("Recover {title}", title)).clicked() {
                         recover = Some(i);
                     }
-                    let word = if *is_asked { "Delete permanently" } else { "Delete…" };
+                    let word = if *is_asked { tr("Delete permanently") } else { tr("Delete…") };
                     if ui.button(word).clicked() {
                         delete = Some(i).filter(|_| *is_asked);
                         *is_asked = true;
@@ -53,14 +55,14 @@ impl RecoveryDialog {
             // Enter recovers, as long as no button of the dialog has the focus.
             let enter = ui.input(|i| i.key_pressed(eframe::egui::Key::Enter))
                 && ui.memory(|m| m.focused().is_none());
-            if ui.add_enabled(can, eframe::egui::Button::new("Recover all")).clicked()
+            if ui.add_enabled(can, eframe::egui::Button::new(tr("Recover all"))).clicked()
                 || (can && enter)
             {
                 answer = DialogAnswer::Recover(
                     self.lost.extract_if(.., |(lost, _)| !lost.has_failed).map(first).collect(),
                 );
             }
-            if ui.button("Later").clicked() {
+            if ui.button(tr("Later")).clicked() {
                 answer = DialogAnswer::Close;
             }
         });
@@ -78,12 +80,12 @@ fn first((lost, _): (LostSession, bool)) -> LostSession {
 /// When the session began, its file, and a warning if recovery failed before.
 fn describe(lost: &LostSession) -> String {
     let age = lost.start_time().and_then(|begun| SystemTime::now().duration_since(begun).ok());
-    let begun = age.map(|age| format!("Started {} ago", format_age(age)));
-    let place = lost
-        .file
-        .as_ref()
-        .map_or("never saved".into(), |file| format!("last saved as {}", file.display()));
-    let failed = lost.has_failed.then(|| "recovering it failed before".into());
+    let begun = age.map(|age| tr!("Started {age} ago", age = format_age(age)));
+    let place = lost.file.as_ref().map_or_else(
+        || tr("never saved").into(),
+        |file| tr!("last saved as {file}", file = file.display()),
+    );
+    let failed = lost.has_failed.then(|| tr("recovering it failed before").into());
     begun.into_iter().chain([place]).chain(failed).collect::<Vec<String>>().join(" · ")
 }
 
@@ -92,13 +94,12 @@ fn format_age(time: Duration) -> String {
     const MINUTE: u64 = 60;
     const HOUR: u64 = 60 * MINUTE;
     let secs = time.as_secs();
-    let (n, unit) = match secs {
-        0..120 => (secs, "seconds"),
-        120..7200 => (secs / MINUTE, "minutes"),
-        7200..172_800 => (secs / HOUR, "hours"),
-        _ => (secs / (24 * HOUR), "days"),
-    };
-    format!("{n} {unit}")
+    match secs {
+        0..120 => tr!("{count} seconds", count = secs),
+        120..7200 => tr!("{count} minutes", count = secs / MINUTE),
+        7200..172_800 => tr!("{count} hours", count = secs / HOUR),
+        _ => tr!("{count} days", count = secs / (24 * HOUR)),
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 use super::{DialogAnswer, buttons, set_width};
 use crate::jobs::short;
+use crate::language::tr_message;
 use crate::pending::Pending;
+use crate::tr;
 use eframe::egui::Ui;
 
 pub struct Replace {
@@ -21,10 +23,10 @@ impl Replace {
         let Some(pending) = &self.pending else { return DialogAnswer::Close };
         set_width(ui, 380.0);
         let name = short(pending.file());
-        ui.heading(format!("Replace “{name}”?"));
-        ui.label(format!("{}: {}.", pending.file().display(), self.reason));
+        ui.heading(tr!("Replace “{file}”?", file = name));
+        ui.label(format!("{}: {}.", pending.file().display(), tr_message(&self.reason)));
         if matches!(pending, Pending::Save(_)) {
-            ui.weak(format!("Its present content is kept as “{name}~”."));
+            ui.weak(tr!("Its present content is kept as “{file}~”.", file = name));
         }
         match buttons(ui, "Replace", true) {
             Some(true) => self.pending.take().map_or(DialogAnswer::Close, DialogAnswer::Replace),

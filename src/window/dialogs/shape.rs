@@ -6,10 +6,12 @@ use crate::document::parts::drawing::{DrawingTraits, FigureBackground};
 use crate::document::parts::from_flats::PartFor;
 use crate::document::{Content, Document, Inflation, Layer, LayerId};
 use crate::io::svg;
+use crate::language::tr;
 use crate::panels::shape::presets;
 use crate::requests::UiRequests;
 use crate::session::actions::parts::{InflationPreset, PartAction};
 use crate::session::{Action, LayerPath, OpenDocument, Session, drawing};
+use crate::tr;
 use crate::widgets::radio;
 use eframe::egui::Ui;
 use std::path::PathBuf;
@@ -102,31 +104,31 @@ impl ShapeDialog {
         let Some((index, open)) = open.map(|index| (index, &session.open_documents[index])) else {
             return DialogAnswer::Close;
         };
-        ui.heading(if self.is_first {
+        ui.heading(tr(if self.is_first {
             "A drawing without a shape"
         } else {
             "A shape for this drawing"
-        });
+        }));
         if let Some(why) = self.refusal() {
-            ui.label(why);
+            ui.label(tr(why));
             return super::close(ui);
         }
         ui.label(
-            "With a shape, light falls on the drawing, and strokes, gradients and photos bend over it. Every number \
-             can be changed later, in the panel Shape.",
+            tr("With a shape, light falls on the drawing, and strokes, gradients and photos bend over it. Every number \
+             can be changed later, in the panel Shape."),
         );
         if let Some(paths) = &mut self.paths {
             let hint =
                 "Exact outlines from the file, also beneath other paths; the paths stay paths";
             let text = "A part for each path of the file";
-            radio(ui, &mut paths.is_on, true, text).on_hover_text(hint);
+            radio(ui, &mut paths.is_on, true, text).on_hover_text(tr(hint));
             radio(ui, &mut paths.is_on, false, "Parts by what is seen");
         }
         let reads_paths = self.paths.as_ref().is_some_and(|paths| paths.is_on);
         ui.add_enabled_ui(!reads_paths, |ui| self.show_seen(ui));
         self.preset = presets(ui, self.preset).unwrap_or(self.preset);
         if matches!(self.traits.background, FigureBackground::Flat(_)) && !reads_paths {
-            ui.weak("Its one-colored background becomes a separate layer below.");
+            ui.weak(tr("Its one-colored background becomes a separate layer below."));
         }
         let no = if self.is_first { "Only paint" } else { "Cancel" };
         match answers(ui, "Give it a shape", no, true) {
@@ -144,14 +146,15 @@ impl ShapeDialog {
         radio(ui, &mut self.each, PartFor::Layer, "One part");
         let text = match self.traits.colors {
             0 | 1 => "A part for each color".to_owned(),
-            n => format!("A part for each color ({n})"),
+            n => tr!("A part for each color ({count})", count = n),
         };
         ui.add_enabled_ui(self.traits.colors > 1, |ui| {
             radio(ui, &mut self.each, PartFor::Color, text)
         });
         ui.add_enabled_ui(self.traits.colors > 0, |ui| {
             let hint = "Separate areas of one color, such as two eyes, become separate parts";
-            radio(ui, &mut self.each, PartFor::Area, "A part for each area").on_hover_text(hint);
+            radio(ui, &mut self.each, PartFor::Area, "A part for each area")
+                .on_hover_text(tr(hint));
         });
     }
 

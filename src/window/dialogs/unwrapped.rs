@@ -3,9 +3,11 @@
 use super::{DialogAnswer, buttons, set_width};
 use crate::document::Highlights;
 use crate::document::view::UnwrapOptions;
+use crate::language::tr;
 use crate::requests::WindowRequest;
 use crate::session::Session;
 use crate::surface::operator::UnwrapSettings;
+use crate::tr;
 use crate::widgets::{check_box, radio};
 use eframe::egui::Ui;
 
@@ -34,12 +36,15 @@ impl UnwrappedDialog {
 
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         set_width(ui, 320.0);
-        ui.heading("Export the unwrapped surface");
-        ui.weak("Paint over it in another program and import it unwrapped: it returns to its place on the surface.");
+        ui.heading(tr("Export the unwrapped surface"));
+        ui.weak(tr("Paint over it in another program and import it unwrapped: it returns to its place on the surface."));
         for scale in UnwrapOptions::SCALE.filter(|scale| scale.is_power_of_two()) {
             let about = match scale {
                 1 => "As large as on the surface".to_owned(),
-                more => format!("{more} pixels to one of the surface: keeps fine strokes sharp"),
+                more => tr!(
+                    "{count} pixels to one of the surface: keeps fine strokes sharp",
+                    count = more
+                ),
             };
             radio(ui, &mut self.scale, scale, about);
         }

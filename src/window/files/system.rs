@@ -4,6 +4,7 @@
 use super::FileAnswer;
 use crate::file_purpose::FilePurpose;
 use crate::io::platform::Instant;
+use crate::language::tr;
 use std::time::Duration;
 
 /// A dialog that returns this soon without a result was never shown, because there is no portal.
@@ -17,9 +18,9 @@ pub fn system_dialog(purpose: FilePurpose, name: &str) -> FileAnswer {
     if !is_own && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none() {
         return FileAnswer::Nowhere;
     }
-    let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
+    let mut dialog = rfd::FileDialog::new().set_title(tr(purpose.title()));
     for (label, extensions) in purpose.filters() {
-        dialog = dialog.add_filter(label, &extensions);
+        dialog = dialog.add_filter(tr(label), &extensions);
     }
     let asked = Instant::now();
     let file = if purpose.is_saving() {

@@ -2,6 +2,7 @@
 //! away. Floor 7. Not here: where they are in a wide one (`layout`).
 
 use super::MainWindow;
+use crate::language::tr;
 use crate::panel_layout::PanelSide;
 use crate::requests::UiRequests;
 use eframe::egui::{
@@ -49,8 +50,8 @@ impl MainWindow {
         let sign = if self.is_drawer_open == is_left { "‹" } else { "›" };
         let handle = Area::new(Id::unique("drawer's handle")).order(Order::Middle);
         handle.constrain(false).fixed_pos(at).show(ctx, |ui| {
-            let button = ui.add_sized(HANDLE_PT, Button::new(sign)).on_hover_text("Panels");
-            crate::widgets::set_accessible_name(&button, "Panels");
+            let button = ui.add_sized(HANDLE_PT, Button::new(sign)).on_hover_text(tr("Panels"));
+            crate::widgets::set_accessible_name(&button, tr("Panels"));
             if button.clicked() {
                 self.is_drawer_open = !self.is_drawer_open;
             }

@@ -12,6 +12,7 @@ use crate::io::palette::PaletteFormat;
 use crate::io::platform;
 use crate::io::{Budget, Overwrite};
 use crate::jobs::{JobKind, JobResult, PastePlace, PictureUse, PinPosition, short};
+use crate::language::tr;
 use crate::math::Vec2;
 use crate::paint::ColorAdjustment;
 use crate::paint::adjustment::ColorLookup;
@@ -24,6 +25,7 @@ use crate::session::actions::{palettes, pictures};
 use crate::session::script::{self, PlayedScript};
 use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
 use crate::session::{Action, PaletteShelf, PicturePart, Property, Session, brushes};
+use crate::tr;
 use eframe::egui;
 use std::path::{Path, PathBuf};
 
@@ -41,8 +43,8 @@ impl MainWindow {
     /// pictures; absent: they open as documents.
     pub(super) fn open_files(&mut self, files: Vec<PathBuf>, use_of: Option<PictureUse>) {
         let name = match &files[..] {
-            [file] => format!("Opening {}", short(file)),
-            files => format!("Opening {} files", files.len()),
+            [file] => tr!("Opening {file}", file = short(file)),
+            files => tr!("Opening {count} files", count = files.len()),
         };
         self.jobs.start(name, JobKind::Working, move |_| {
             let (mut known, mut done) = (Vec::new(), Vec::new());
@@ -81,7 +83,7 @@ impl MainWindow {
     }
 
     fn read_document(&mut self, file: PathBuf) {
-        let name = format!("Opening {}", short(&file));
+        let name = tr!("Opening {file}", file = short(&file));
         self.jobs.start(name, JobKind::Working, move |_| {
             let opened = storage::open(&file);
             JobResult::of(opened, |window: &mut Self, opened| window.add_opened(Some(file), opened))
@@ -91,7 +93,7 @@ impl MainWindow {
 
     /// Plays a script; the documents that it leaves open come in front.
     fn play_script(&mut self, file: PathBuf) {
-        let name = format!("Playing {}", short(&file));
+        let name = tr!("Playing {file}", file = short(&file));
         self.jobs.start(name, JobKind::Working, move |progress| {
             match script::play(&file, progress) {
                 Ok(Some(played)) => JobResult::then(move |window: &mut Self, _| {
@@ -108,7 +110,7 @@ impl MainWindow {
         played.open_documents.into_iter().for_each(|open| self.session.add_document(open));
         self.messages.extend(played.notes);
         if played.skipped > 0 {
-            self.jobs.say(format!("{} was played, without writing files", short(file)));
+            self.jobs.say(tr!("{file} was played, without writing files", file = short(file)));
         }
     }
 
@@ -132,7 +134,7 @@ impl MainWindow {
 
     /// Reads a picture that becomes a layer.
     fn read_layer(&mut self, file: PathBuf, use_of: PictureUse) {
-        self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
+        self.jobs.start(tr!("Reading {file}", file = short(&file)), JobKind::Working, move |_| {
             let read = read_picture(&file);
             JobResult::of(read, move |window: &mut Self, (name, picture)| match use_of {
                 PictureUse::Pasted(place) => {
@@ -166,7 +168,7 @@ impl MainWindow {
     /// The user's own brushes are kept here from now on; existing ones are added to the list.
     pub fn keep_brushes_in(&mut self, folder: PathBuf) {
         self.session.brush_folder = Some(folder.clone());
-        self.jobs.start("Reading brushes".into(), JobKind::Working, move |_| {
+        self.jobs.start(tr("Reading brushes").into(), JobKind::Working, move |_| {
             let (presets, notes) = brushes::load_brushes(&folder);
             JobResult::then(|window: &mut Self, _| {
                 brushes::adopt(&mut window.session, presets);
@@ -177,7 +179,7 @@ impl MainWindow {
 
     /// The user's own palettes are kept here from now on; existing ones are added to the list.
     pub fn keep_palettes_in(&mut self, folder: PathBuf) {
-        self.jobs.start("Reading palettes".into(), JobKind::Working, move |_| {
+        self.jobs.start(tr("Reading palettes").into(), JobKind::Working, move |_| {
             let (shelf, notes) = PaletteShelf::load(&folder);
             JobResult::then(|window: &mut Self, _| {
                 window.session.palettes = shelf;
@@ -193,7 +195,7 @@ impl MainWindow {
         else {
             return;
         };
-        self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
+        self.jobs.start(tr!("Reading {file}", file = short(&file)), JobKind::Working, move |_| {
             let read = pictures::read(part, &file);
             JobResult::of(read, move |window: &mut Self, read| {
                 let all = &mut window.session.open_documents;

@@ -4,12 +4,14 @@
 use super::{MainWindow, drawer};
 use crate::jobs::JobKind;
 use crate::keys;
+use crate::language::tr;
 use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
 use crate::panels;
 use crate::panels::start::StartPictures;
 use crate::requests::UiRequests;
 use crate::theme::ACCENT;
+use crate::tr;
 use crate::widgets::{tab, tab_width_pt};
 use eframe::egui::{
     self, CentralPanel, Frame, Id, Margin, Panel, Ui, ViewportBuilder, ViewportId, WindowLevel,
@@ -228,10 +230,11 @@ impl MainWindow {
             ui.spacing_mut().item_spacing.x = 0.0;
             let room_pt = ui.available_width();
             let needed = |has_icon| -> f32 {
-                strip.iter().map(|(_, name)| tab_width_pt(ui, has_icon, name)).sum()
+                strip.iter().map(|(_, name)| tab_width_pt(ui, has_icon, tr(name))).sum()
             };
             let (fits_icons, fits) = (needed(true) <= room_pt, needed(false) <= room_pt);
             for &(choice, name) in strip {
+                let name = tr(name);
                 let is_on = choice == front;
                 let icon = Some(choice.icon()).filter(|_| fits_icons || !fits);
                 let open = tab(ui, icon, name, fits || is_on, is_on);
@@ -239,9 +242,9 @@ impl MainWindow {
                     front = choice;
                 }
                 let open =
-                    open.on_hover_text(format!("{name}\nRight-click for a window of its own"));
+                    open.on_hover_text(tr!("{name}\nRight-click for a window of its own", name));
                 open.context_menu(|ui| {
-                    if ui.button("In a window of its own").clicked() {
+                    if ui.button(tr("In a window of its own")).clicked() {
                         gone = Some(choice);
                         ui.close();
                     }
@@ -331,7 +334,8 @@ impl ApartWindow {
     fn show(self, ctx: &egui::Context, is_open: &mut bool, mut add: impl FnMut(&mut Ui, bool)) {
         let ApartWindow { name, size_pt, place, is_enabled } = self;
         if ctx.embed_viewports() {
-            let window = egui::Window::new(name).id(Id::unique(("panel", name))).constrain(true);
+            let window =
+                egui::Window::new(tr(name)).id(Id::unique(("panel", name))).constrain(true);
             let window = window.default_size(size_pt).min_size(Self::LEAST_PT).default_pos(place);
             window.open(is_open).show(ctx, |ui| add(ui, false));
             return;
@@ -340,7 +344,7 @@ impl ApartWindow {
         let is_used = ctx.input(|i| i.raw.viewports.values().any(|one| one.focused == Some(true)));
         let level = if is_used { WindowLevel::AlwaysOnTop } else { WindowLevel::Normal };
         let builder = ViewportBuilder::default()
-            .with_title(name)
+            .with_title(tr(name))
             .with_inner_size(size_pt)
             .with_min_inner_size(Self::LEAST_PT)
             .with_minimize_button(false)
@@ -363,9 +367,12 @@ fn show_hovered(ui: &Ui, area: egui::Rect, has_document: bool) {
     if ui.input(|i| i.raw.hovered_files.is_empty()) {
         return;
     }
-    let picture =
-        if has_document { "a picture becomes a layer at the pointer" } else { "a picture opens" };
-    let text = format!("Drop: {picture}, maps become a new document, a project opens");
+    let text = match has_document {
+        true => tr(
+            "Drop: a picture becomes a layer at the pointer, maps become a new document, a project opens",
+        ),
+        false => tr("Drop: a picture opens, maps become a new document, a project opens"),
+    };
     let painter = ui.painter_at(area);
     painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(90));
     painter.rect_stroke(

@@ -9,6 +9,7 @@ use crate::io::picture;
 use crate::io::platform::{SystemTime, UNIX_EPOCH, files};
 use crate::io::replace::{Overwrite, replace};
 use crate::jobs::{JobKind, JobResult};
+use crate::language::tr;
 use crate::requests::UiRequests;
 use crate::tools::ToolKind;
 use crate::{Error, Result};
@@ -30,7 +31,7 @@ impl MainWindow {
     /// Shows what is in the clipboard over the canvas: its files, or its picture.
     pub(super) fn paste_reference(&mut self) {
         let (read, folder) = (self.clipboard_source, self.reference_folder.clone());
-        self.jobs.start("Pasting".into(), JobKind::Working, move |_| {
+        self.jobs.start(tr("Pasting").into(), JobKind::Working, move |_| {
             let files = read().and_then(|pasted| files_of(pasted, folder.as_deref()));
             JobResult::of(files, |window: &mut Self, files: Vec<PathBuf>| {
                 files.into_iter().for_each(|file| window.pin_reference(file));

@@ -2,6 +2,7 @@
 //! what they are (`tour`).
 
 use super::MainWindow;
+use crate::language::tr;
 use crate::requests::UiRequests;
 use crate::tour::{self, Tour, TourStep};
 use eframe::egui::{Align2, Area, Frame, Id, RichText, TextStyle, Ui, vec2};
@@ -49,7 +50,7 @@ impl MainWindow {
         area.show(ui.ctx(), |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_width(WIDTH_PT);
-                ui.label(RichText::new(progress.tour.title).strong());
+                ui.label(RichText::new(tr(progress.tour.title)).strong());
                 for (i, (step, is_done)) in
                     progress.tour.steps.iter().zip(&progress.done).enumerate()
                 {
@@ -61,11 +62,12 @@ impl MainWindow {
                 ui.add_space(4.0);
                 ui.horizontal(|ui| {
                     let show = next.and_then(|i| progress.tour.steps[i].show);
-                    if show.is_some() && ui.button("Show me").clicked() {
+                    if show.is_some() && ui.button(tr("Show me")).clicked() {
                         show.into_iter().for_each(|show| show(&self.session, requests));
                     }
-                    is_put_away =
-                        ui.button(if next.is_none() { "Done" } else { "Not now" }).clicked();
+                    is_put_away = ui
+                        .button(if next.is_none() { tr("Done") } else { tr("Not now") })
+                        .clicked();
                 });
             });
         });
@@ -81,11 +83,11 @@ fn how(ui: &mut Ui, step: &TourStep) {
     ui.scope(|ui| {
         let line_pt = ui.text_style_height(&TextStyle::Small);
         ui.set_min_height(3.0 * line_pt);
-        ui.label(RichText::new(step.how).small());
+        ui.label(RichText::new(tr(step.how)).small());
     });
 }
 
 fn name(ui: &mut Ui, index: usize, step: &TourStep, is_done: bool) {
-    let name = RichText::new(format!("{}  {}", index + 1, step.name));
+    let name = RichText::new(format!("{}  {}", index + 1, tr(step.name)));
     ui.label(if is_done { name.weak().strikethrough() } else { name.strong() });
 }

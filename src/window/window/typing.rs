@@ -13,6 +13,7 @@ use super::MainWindow;
 use crate::document::{Document, LayerId};
 use crate::jobs::JobResult;
 use crate::keys;
+use crate::language::tr;
 use crate::requests::UiRequests;
 use crate::session::{Action, OpenDocument};
 use eframe::egui::{Context, Event, Id, InputState, Key};
@@ -212,7 +213,7 @@ impl MainWindow {
             match self.session.active().is_some_and(is_meant) {
                 true => requests.act(action),
                 false => self.jobs.say(
-                    "A setting from the meantime was dropped, since the layers have changed."
+                    tr("A setting from the meantime was dropped, since the layers have changed.")
                         .into(),
                 ),
             }

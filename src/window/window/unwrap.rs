@@ -10,6 +10,7 @@ use crate::session::actions::{FileAction, ViewAction, unwrapped};
 use crate::surface::Surface;
 use crate::surface::operator::UnwrapSettings;
 use crate::surface::unwrap::SOLVES;
+use crate::tr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -95,7 +96,7 @@ impl MainWindow {
     pub(super) fn import_unwrapped(&mut self, file: PathBuf) {
         let settings = self.session.unwrap_settings();
         let surface = self.session.active().and_then(|open| open.document().surface.clone());
-        self.jobs.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| {
+        self.jobs.start(tr!("Reading {file}", file = short(&file)), JobKind::Working, move |_| {
             let read = read_picture(&file);
             if read.is_ok() {
                 // The window must not wait for it.

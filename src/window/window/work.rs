@@ -9,6 +9,7 @@ use crate::file_purpose::FilePurpose;
 use crate::io::replace::FileStamp;
 use crate::io::{Budget, Overwrite, Terms};
 use crate::jobs::{JobKind, JobResult, JobWindow, PastePlace, PictureUse, short};
+use crate::language::tr;
 use crate::math::Size;
 use crate::pending::{AfterUnsaved, Exporting, ExportingMaps, Pending, Saving};
 use crate::raster::Picture;
@@ -18,6 +19,7 @@ use crate::session::actions::canvas::forget_places;
 use crate::session::actions::parts::FirstShape;
 use crate::session::actions::{ClipboardAction, PartAction, PasteTo};
 use crate::session::{Action, Edit, ExportSettings, ExportedFile, storage};
+use crate::tr;
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
 use std::path::{Path, PathBuf};
@@ -74,9 +76,9 @@ impl MainWindow {
     pub(super) fn put(&mut self, pending: Pending) {
         let name = short(pending.file());
         let name = match &pending {
-            Pending::Save(_) => format!("Saving {name}"),
-            Pending::Maps(_) => format!("Exporting maps {name}"),
-            Pending::Export(_) => format!("Exporting {name}"),
+            Pending::Save(_) => tr!("Saving {file}", file = name),
+            Pending::Maps(_) => tr!("Exporting maps {file}", file = name),
+            Pending::Export(_) => tr!("Exporting {file}", file = name),
         };
         self.jobs.start(name, JobKind::Working, move |progress| {
             let result = pending.run(progress);
@@ -93,14 +95,18 @@ impl MainWindow {
                 self.dialogs.push(Dialog::Losses(losses::Losses::new(saving)));
             }
             WriteResult::Exported(exporting, notes) => {
-                self.jobs.say(format!("Exported {}", exporting.file.display()));
+                self.jobs.say(tr!("Exported {file}", file = exporting.file.display()));
                 self.messages.extend(notes);
                 self.remember_export(*exporting);
             }
             WriteResult::ExportedMaps(files) => {
                 let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
                 let names: Vec<String> = files.iter().map(|file| short(file)).collect();
-                self.jobs.say(format!("Exported {} to {}", names.join(", "), folder.display()));
+                self.jobs.say(tr!(
+                    "Exported {files} to {folder}",
+                    files = names.join(", "),
+                    folder = folder.display()
+                ));
             }
             WriteResult::Refused(pending, reason) => {
                 self.dialogs.push(Dialog::Replace(replace::Replace::new(pending, reason)));
@@ -116,7 +122,7 @@ impl MainWindow {
             open.mark_saved(document, file.clone(), stamp);
             open.knows_losses = true;
         }
-        self.jobs.say(format!("Saved {}", file.display()));
+        self.jobs.say(tr!("Saved {file}", file = file.display()));
         self.recent_is(Some(file));
         if let Some(then) = then {
             self.proceed(ctx, then, false);
@@ -219,11 +225,11 @@ impl MainWindow {
         let put = move |_: &Progress| match clipboard::put(size, &rgba) {
             Ok(clipboard) => JobResult::then(|window: &mut Self, _| {
                 window.clipboard = Some(clipboard);
-                window.jobs.say("The picture is in the clipboard".into());
+                window.jobs.say(tr("The picture is in the clipboard").into());
             }),
             Err(_) => JobResult::nothing(),
         };
-        self.jobs.start("Copying".into(), JobKind::Working, put);
+        self.jobs.start(tr("Copying").into(), JobKind::Working, put);
     }
 
     /// Pastes the system's picture, or what was copied here if that is the same, or there is none;
@@ -232,7 +238,7 @@ impl MainWindow {
         let own = self.session.copied.as_ref().map(|copied| copied.rgba.clone());
         let (place, read) = (PastePlace { to, at: self.canvas.under }, self.clipboard_source);
         let paste_own = move |window: &mut Self, _: &egui::Context| window.paste_own(place);
-        self.jobs.start("Pasting".into(), JobKind::Working, move |_| match (read(), own) {
+        self.jobs.start(tr("Pasting").into(), JobKind::Working, move |_| match (read(), own) {
             (Ok(PastedContent::Picture(pasted)), Some(own)) if is_own(&pasted.picture, &own) => {
                 JobResult::then(paste_own)
             }
@@ -363,7 +369,7 @@ impl MainWindow {
             })
             .in_front()
         };
-        self.jobs.start("Looking at the drawing".into(), JobKind::Looking, look);
+        self.jobs.start(tr("Looking at the drawing").into(), JobKind::Looking, look);
     }
 
     /// A drawing was given a shape. `from`: the document before.
@@ -391,7 +397,7 @@ impl MainWindow {
             ui.heading(job.title());
             bar(ui, job.share(), 280.0);
             let escape = ui.input(|input| input.key_pressed(egui::Key::Escape));
-            ui.button("Cancel").clicked() || (escape && !ctx.text_edit_focused())
+            ui.button(tr("Cancel")).clicked() || (escape && !ctx.text_edit_focused())
         };
         // A modal would take the keyboard from what is being typed.
         let is_canceled = match ctx.text_edit_focused() {

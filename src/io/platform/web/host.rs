@@ -29,6 +29,10 @@ extern "C" {
     #[wasm_bindgen(js_namespace = host)]
     pub fn ask(number: u32, question: &str, details: &str, bytes: &[u8]);
 
+    /// The locale of the browser.
+    #[wasm_bindgen(js_namespace = host)]
+    pub fn locale() -> String;
+
     /// The page's number.
     #[wasm_bindgen(js_namespace = host, js_name = pageId)]
     pub fn page_id() -> u32;

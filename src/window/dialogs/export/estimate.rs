@@ -5,7 +5,9 @@ use crate::document::{Document, Progress};
 use crate::io::Budget;
 use crate::io::export::high_depth::encode_document;
 use crate::jobs;
+use crate::language::tr_number;
 use crate::session::{ExportSettings, is_same};
+use crate::tr;
 use eframe::egui::Context;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -101,10 +103,10 @@ impl Asked {
 /// Bytes as people read them.
 pub fn size_text(bytes: usize) -> String {
     match bytes as f64 {
-        b if b < 1e3 => format!("{b:.0} bytes"),
-        b if b < 1e5 => format!("{:.1} kB", b / 1e3),
+        b if b < 1e3 => tr!("{count} bytes", count = format!("{b:.0}")),
+        b if b < 1e5 => tr_number(&format!("{:.1} kB", b / 1e3)).into_owned(),
         b if b < 1e6 => format!("{:.0} kB", b / 1e3),
-        b => format!("{:.1} MB", b / 1e6),
+        b => tr_number(&format!("{:.1} MB", b / 1e6)).into_owned(),
     }
 }
 

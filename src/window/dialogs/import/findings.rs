@@ -3,6 +3,7 @@
 
 use crate::document::source::{Near, NormalEncoding};
 use crate::io::maps::Finding;
+use crate::language::tr;
 
 /// How normals are stored, in words.
 pub const ENCODINGS: [(NormalEncoding, &str); NormalEncoding::ALL.len()] = [
@@ -62,7 +63,7 @@ fn words_of<T: PartialEq>(meant: T, words: &[(T, &'static str)]) -> &'static str
 
 const FLIPPED: &[(&str, &str)] = &[("false", "as it is"), ("true", "flipped")];
 
-/// The channels that letters mean.
+/// The channels that letters mean, in the language of the window.
 fn channels(letters: &str) -> String {
     let word = |letter: char| match letter {
         'r' => "red",
@@ -70,7 +71,7 @@ fn channels(letters: &str) -> String {
         'b' => "blue",
         _ => "alpha",
     };
-    letters.chars().map(word).collect::<Vec<_>>().join(", ")
+    letters.chars().map(word).map(tr).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! Not here: the dialog (the module above).
 
 use crate::commands::{self, MenuCommand};
+use crate::language::tr;
 use crate::paint::settings::SETTINGS;
 use crate::panel_layout::PanelKind;
 use crate::tools::ToolKind;
@@ -155,14 +156,21 @@ impl PaletteEntry {
         }
     }
 
-    /// How well it fits what was typed, smaller is better: its name begins so, every word is in
-    /// its name, or words of other programs mean it. `typed` is in lower case.
+    /// How well it fits what was typed, smaller is better, by its name in the language of the window
+    /// or in English. `typed` is in lower case.
     fn rank(self, typed: &str) -> Option<u8> {
-        let name = self.name().to_lowercase();
+        let names = [tr(self.name()), self.name()];
+        names.iter().filter_map(|name| self.rank_name(&name.to_lowercase(), typed)).min()
+    }
+
+    /// The same by one name, in lower case: it begins so, every word is in it, or words of other
+    /// programs mean it.
+    fn rank_name(self, name: &str, typed: &str) -> Option<u8> {
         if name.starts_with(typed) {
             return Some(0);
         }
-        let is_in = |word: &str| name.contains(word) || self.kind() == word;
+        let kind = self.kind();
+        let is_in = |word: &str| name.contains(word) || kind == word || tr(kind) == word;
         if typed.split_whitespace().all(is_in) {
             return Some(1);
         }

@@ -2,6 +2,8 @@
 //! key is reassigned. Presets have the keys of other programs. Floor 7.
 
 use crate::keymap::{KeyPreset, KeyTarget, Keymap, key_text};
+use crate::language::tr;
+use crate::tr;
 use crate::widgets::{choice, list, name, set_accessible_name};
 use eframe::egui::{Event, Grid, Key, KeyboardShortcut, Modifiers, RichText, TextEdit, Ui};
 
@@ -36,25 +38,28 @@ impl KeysPage {
     pub fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         self.presets(ui, keymap);
         let field = ui.add(
-            TextEdit::singleline(&mut self.filter).hint_text("Find").desired_width(f32::INFINITY),
+            TextEdit::singleline(&mut self.filter)
+                .hint_text(tr("Find"))
+                .desired_width(f32::INFINITY),
         );
-        set_accessible_name(&field, "Find a shortcut");
+        set_accessible_name(&field, tr("Find a shortcut"));
         self.listen(ui, keymap);
         self.request(ui, keymap);
         let wanted = self.filter.to_lowercase();
-        let shown = |name: &str| name.to_lowercase().contains(&wanted);
+        let is_in = |name: &str| name.to_lowercase().contains(&wanted);
+        let shown = |name: &str| is_in(tr(name)) || is_in(name);
         list(ui, super::PAGE_PT - 76.0).auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(
                 ui,
                 |ui| {
                     for keyed in KeyTarget::all().filter(|keyed| shown(keyed.name())) {
-                        ui.label(keyed.name()).on_hover_text(keyed.hint());
+                        ui.label(tr(keyed.name())).on_hover_text(tr(keyed.hint()));
                         ui.horizontal(|ui| self.keys(ui, keymap, keyed));
                         ui.end_row();
                     }
                     for (what, how) in ON_CANVAS.iter().filter(|(what, _)| shown(what)) {
-                        ui.label(*what);
-                        ui.label(*how);
+                        ui.label(tr(what));
+                        ui.label(tr(how));
                         ui.end_row();
                     }
                 },
@@ -72,8 +77,12 @@ impl KeysPage {
                 self.preset = Some(preset);
             }
             if keymap.is_changed() && self.preset.is_none() {
-                ui.weak("with your own keys");
-                if ui.button("Drop them").on_hover_text("All keys as in the preset").clicked() {
+                ui.weak(tr("with your own keys"));
+                if ui
+                    .button(tr("Drop them"))
+                    .on_hover_text(tr("All keys as in the preset"))
+                    .clicked()
+                {
                     *keymap = Keymap::with_preset(keymap.preset());
                 }
             }
@@ -86,13 +95,13 @@ impl KeysPage {
             return self.preset = None;
         }
         ui.horizontal_wrapped(|ui| {
-            let text = "The preset replaces the keys that you chose yourself.";
+            let text = tr("The preset replaces the keys that you chose yourself.");
             ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
-            if ui.button("Replace them").clicked() {
+            if ui.button(tr("Replace them")).clicked() {
                 *keymap = Keymap::with_preset(preset);
                 self.preset = None;
             }
-            if ui.button("Keep mine").clicked() {
+            if ui.button(tr("Keep mine")).clicked() {
                 self.preset = None;
             }
         });
@@ -105,22 +114,22 @@ impl KeysPage {
         for &one in &keys {
             let text = key_text(ui.ctx(), one);
             let response =
-                ui.button(RichText::new(&text).monospace()).on_hover_text("Click to remove it");
-            set_accessible_name(&response, &format!("{text} of {name}"));
+                ui.button(RichText::new(&text).monospace()).on_hover_text(tr("Click to remove it"));
+            set_accessible_name(&response, &tr!("{keys} of {name}", keys = text, name = tr(name)));
             if response.clicked() {
                 keymap.set(keyed, keys.iter().copied().filter(|known| *known != one).collect());
             }
         }
         let is_waiting = self.waiting == Some(name);
         let response =
-            ui.selectable_label(is_waiting, if is_waiting { "Press a key…" } else { "+" });
-        set_accessible_name(&response, &format!("Add a key to {name}"));
-        if response.on_hover_text("Then press the key; Escape cancels").clicked() {
+            ui.selectable_label(is_waiting, if is_waiting { tr("Press a key…") } else { "+" });
+        set_accessible_name(&response, &tr!("Add a key to {name}", name = tr(name)));
+        if response.on_hover_text(tr("Then press the key; Escape cancels")).clicked() {
             (self.waiting, self.conflict) = (Some(name), None);
         }
         if keymap.is_custom(keyed) {
-            let response = ui.small_button("Reset").on_hover_text("The keys of the preset");
-            set_accessible_name(&response, &format!("Reset {name}"));
+            let response = ui.small_button(tr("Reset")).on_hover_text(tr("The keys of the preset"));
+            set_accessible_name(&response, &tr!("Reset {name}", name = tr(name)));
             if response.clicked() {
                 keymap.reset(keyed);
             }
@@ -166,13 +175,17 @@ impl KeysPage {
         let Some(keyed) = find_target(name) else { return };
         let Some(other) = keymap.conflict(keys, keyed) else { return self.conflict = None };
         ui.horizontal_wrapped(|ui| {
-            let text = format!("{} belongs to “{}”.", key_text(ui.ctx(), keys), other.name());
+            let text = tr!(
+                "{keys} belongs to “{owner}”.",
+                keys = key_text(ui.ctx(), keys),
+                owner = tr(other.name())
+            );
             ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
-            if ui.button(format!("Give it to “{name}”")).clicked() {
+            if ui.button(tr!("Give it to “{name}”", name = tr(name))).clicked() {
                 keymap.take(keys, keyed);
                 self.conflict = None;
             }
-            if ui.button("Keep it").clicked() {
+            if ui.button(tr("Keep it")).clicked() {
                 self.conflict = None;
             }
         });

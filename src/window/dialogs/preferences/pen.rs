@@ -3,12 +3,14 @@
 
 use super::rows;
 use crate::dialogs::DialogContext;
+use crate::language::{tr, tr_number};
 use crate::paint::Curve;
 use crate::panels::curve;
 use crate::pen::{PenPhase, PenReport};
 use crate::preferences::PreferencePage;
 use crate::session::Action;
 use crate::session::actions::HandAction;
+use crate::tr;
 use crate::widgets::{set_accessible_name, title};
 use eframe::egui::{Grid, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -46,13 +48,13 @@ impl PenPage {
         ui.horizontal(|ui| {
             title(ui, "Pressure");
             let can = !preferences.is_pressed_as_reported();
-            let reset = ui.add_enabled(can, eframe::egui::Button::new("Reset").small());
-            set_accessible_name(&reset, "Reset the pressure");
-            if reset.on_hover_text("As the pen reports it").clicked() {
+            let reset = ui.add_enabled(can, eframe::egui::Button::new(tr("Reset")).small());
+            set_accessible_name(&reset, tr("Reset the pressure"));
+            if reset.on_hover_text(tr("As the pen reports it")).clicked() {
                 preferences.reset_pressure();
             }
         });
-        ui.weak("To the right: how hard you press. Upward: what that counts as.");
+        ui.weak(tr("To the right: how hard you press. Upward: what that counts as."));
         if let Some(changed) =
             curve::show(ui, "Curve of the pressure", &preferences.pressure, 112.0)
         {
@@ -70,7 +72,7 @@ impl PenPage {
     fn trial(&mut self, ui: &mut Ui, pens: &[PenReport], pressure: &Curve) {
         let size = vec2(ui.available_width(), 92.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        set_accessible_name(&response, "Place to try the pen");
+        set_accessible_name(&response, tr("Place to try the pen"));
         for report in pens {
             self.read_report(report, rect, pressure);
         }
@@ -88,7 +90,7 @@ impl PenPage {
         if self.drawn.is_empty() {
             let font = eframe::egui::TextStyle::Body.resolve(ui.style());
             let middle = eframe::egui::Align2::CENTER_CENTER;
-            painter.text(rect.center(), middle, "Draw here", font, visuals.weak_text_color());
+            painter.text(rect.center(), middle, tr("Draw here"), font, visuals.weak_text_color());
         }
     }
 
@@ -117,17 +119,22 @@ impl PenPage {
     /// What it reports now; without a pen, what can be done.
     fn readout(&self, ui: &mut Ui, pressure: &Curve) {
         if !self.has_pressure {
-            return drop(ui.weak(ADVICE));
+            return drop(ui.weak(tr(ADVICE)));
         }
         let Some(last) = self.last else { return };
         let pressed = last.pressure.unwrap_or(0.0);
         Grid::new("pen").num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
-            ui.label("Pressure");
-            ui.monospace(format!("{pressed:.3}, painted with as {:.3}", pressure.at(pressed)));
+            ui.label(tr("Pressure"));
+            let number = |value: f32| tr_number(&format!("{value:.3}")).into_owned();
+            let (pressure, painted) = (number(pressed), number(pressure.at(pressed)));
+            ui.monospace(tr!("{pressure}, painted with as {painted}", pressure, painted));
             ui.end_row();
-            ui.label("Tilt");
-            let end = if last.is_eraser { ", the other end" } else { "" };
-            ui.monospace(format!("{:.0}° right, {:.0}° down{end}", last.tilt.0, last.tilt.1));
+            ui.label(tr("Tilt"));
+            let [right, down] = [last.tilt.0, last.tilt.1].map(|tilt| format!("{tilt:.0}"));
+            ui.monospace(match last.is_eraser {
+                true => tr!("{right}° right, {down}° down, the other end", right, down),
+                false => tr!("{right}° right, {down}° down", right, down),
+            });
             ui.end_row();
         });
     }
