@@ -44,6 +44,11 @@ pub fn process_id() -> u32 {
     std::process::id()
 }
 
+/// A variable of the environment, if it is set to a text.
+pub fn environment_variable(name: &str) -> Option<String> {
+    std::env::var(name).ok().filter(|value| !value.is_empty())
+}
+
 /// The user's own folder.
 pub fn home_folder() -> Option<PathBuf> {
     etcetera::home_dir().ok()

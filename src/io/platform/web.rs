@@ -87,6 +87,11 @@ pub fn process_id() -> u32 {
     host::page_id()
 }
 
+/// A page has no environment.
+pub fn environment_variable(_name: &str) -> Option<String> {
+    None
+}
+
 /// The user's own folder.
 pub fn home_folder() -> Option<PathBuf> {
     Some(DOCUMENTS.into())
