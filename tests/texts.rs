@@ -22,7 +22,7 @@ use tokens::Token;
 #[ignore = "writes a file: run it with RILIEVO_TEXTS=FILE"]
 fn texts_are_listed() {
     let file = std::env::var("RILIEVO_TEXTS").expect("RILIEVO_TEXTS names the file to write");
-    let texts: Vec<String> = shown_texts().into_iter().map(|shown| shown.text).collect();
+    let texts: Vec<String> = shown_texts().iter().map(|shown| shown.text.clone()).collect();
     std::fs::write(file, serde_json::to_string_pretty(&texts).unwrap()).unwrap();
 }
 

@@ -41,9 +41,9 @@ fn every_text_is_a_row_of_every_catalog() {
 
 #[test]
 fn no_catalog_has_a_row_of_a_text_that_is_gone() {
-    let shown: BTreeSet<String> = shown_texts().into_iter().map(|shown| shown.text).collect();
+    let shown: BTreeSet<&str> = shown_texts().iter().map(|shown| shown.text.as_str()).collect();
     for (language, name) in languages() {
-        let gone = rows(language).into_keys().filter(|english| !shown.contains(*english));
+        let gone = rows(language).into_keys().filter(|english| !shown.contains(english));
         let gone: Vec<String> = gone.map(str::to_owned).collect();
         assert!(
             gone.is_empty(),
@@ -159,8 +159,7 @@ fn names_in_front_of_fields_fit() {
     const LETTER_PT: f32 = 12.5;
     const NAME_PT: f32 = 76.0;
     const BAR_PT: f32 = 140.0;
-    let shown: Vec<Shown> =
-        shown_texts().into_iter().filter(|shown| shown.room.is_some()).collect();
+    let shown: Vec<&Shown> = shown_texts().iter().filter(|shown| shown.room.is_some()).collect();
     let mut faults = Vec::new();
     egui_kittest::Harness::new_ui(|ui| {
         let width_pt = |text: &str| {

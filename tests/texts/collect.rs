@@ -9,6 +9,7 @@ use crate::lines::files;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// A text, and the file that it stands in.
 #[derive(Clone, Debug)]
@@ -75,8 +76,13 @@ pub struct Source {
     pub tokens: Vec<Token>,
 }
 
-/// The sources of the program without their tests, in order.
-pub fn sources() -> Vec<Source> {
+/// The sources of the program without their tests, in order; they are read once.
+pub fn sources() -> &'static [Source] {
+    static READ: OnceLock<Vec<Source>> = OnceLock::new();
+    READ.get_or_init(read_sources)
+}
+
+fn read_sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut found, mut of_tests) = (Vec::new(), BTreeSet::new());
     for name in CRATES {
@@ -105,11 +111,16 @@ pub fn sources() -> Vec<Source> {
 }
 
 /// Every text that can be shown, once, with the file that it first stands in.
-pub fn shown_texts() -> Vec<Shown> {
+pub fn shown_texts() -> &'static [Shown] {
+    static FOUND: OnceLock<Vec<Shown>> = OnceLock::new();
+    FOUND.get_or_init(find_texts)
+}
+
+fn find_texts() -> Vec<Shown> {
     let sources = sources();
-    let names = names_of_choices(&sources);
+    let names = names_of_choices(sources);
     let mut found: Vec<Shown> = Vec::new();
-    for source in &sources {
+    for source in sources {
         found.extend(texts_of(source));
         let shown = names.iter().filter(|(_, names)| names.file == source.file);
         found.extend(shown.flat_map(|(_, names)| {

@@ -46,9 +46,10 @@ fn next(rest: &str, first: char) -> (Option<Token>, usize) {
     if rest.starts_with("/*") {
         return (None, block_comment(rest));
     }
+    let is_literal = matches!(first, 'b' | 'c' | 'r' | '"');
     let prefixes =
         [("br", false), ("cr", false), ("r", true), ("b", false), ("c", false), ("", true)];
-    for (prefix, is_text) in prefixes {
+    for (prefix, is_text) in prefixes.into_iter().filter(|_| is_literal) {
         let Some(after) = rest.strip_prefix(prefix) else { continue };
         let hashes = after.len() - after.trim_start_matches('#').len();
         let is_raw = prefix.ends_with('r');

@@ -41,8 +41,8 @@ impl Template {
         self.pieces().flat_map(str::chars).filter(|c| c.is_alphabetic()).count()
     }
 
-    /// Whether its own letters are too few to know a text by. A text is of it only if its first
-    /// value is known as well.
+    /// Whether its own letters are too few to know a text by. A text is of it only if one of its
+    /// values is known as well.
     pub fn is_weak(&self) -> bool {
         self.letters() < MIN_LETTERS
     }

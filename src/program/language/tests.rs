@@ -12,8 +12,9 @@ fn a_text_is_translated_with_its_values_in_the_order_of_the_language() {
     assert_eq!(catalog.find_text("Brush"), None);
     assert_eq!(catalog.translate_message("a.png has no layer."), "a.png hat keine Ebene.");
     assert_eq!(catalog.translate_message("a.png has no name."), "a.png has no name.");
-    // “on” is too few letters to know a text by.
-    assert_eq!(catalog.translate_message("Gloss on beard"), "Gloss on beard");
+    // “on” is too few letters to know a text by, unless a value is known.
+    assert_eq!(catalog.translate_message("Shine on beard"), "Shine on beard");
+    assert_eq!(catalog.translate_message("Gloss on beard"), "Auf beard: Glanz");
 }
 
 /// Messages as the lower floors compose them, and what becomes of them.
