@@ -1,6 +1,9 @@
 //! The program as its users meet it: the real binary, its pictures, its exit codes and its
 //! sentences.
 
+use super::program::program;
+use rilievo_program::language::Language;
+use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -44,7 +47,7 @@ impl Desk {
 }
 
 pub fn rilievo(args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
+    let mut command = program();
     command.args(args);
     command
 }
@@ -357,4 +360,32 @@ fn a_part_whose_place_has_another_color_is_told_when_it_is_rendered() {
             "{cx}"
         );
     }
+}
+
+/// The language of the locale is for people: what programs read stays as it is.
+#[test]
+fn what_programs_read_is_the_same_in_every_language() {
+    let desk = Desk::with(MANY);
+    let output = |language: &str, args: &[&str]| {
+        let mut command = rilievo(args);
+        command.env_remove("RILIEVO_LANGUAGE").env("LC_ALL", language);
+        command.current_dir(desk.path("")).output().unwrap()
+    };
+    for args in [&["info", "r.json"][..], &["info", "--json", "r.json"]] {
+        let english = output("C", args);
+        for language in ["de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "ja_JP.UTF-8", "zh_CN.UTF-8"]
+        {
+            let other = output(language, args);
+            assert_eq!(english.stdout, other.stdout, "{language} {args:?}");
+        }
+    }
+    let german: HashMap<_, _> = Language::German.translated_texts().collect();
+    let usage = german.get("Usage:").copied().unwrap_or("Usage:");
+    for args in [&["--help"][..], &["render", "-h"], &["help", "view"]] {
+        let help = output("de_DE.UTF-8", args);
+        assert!(String::from_utf8_lossy(&help.stdout).contains(usage), "{args:?}: {help:?}");
+    }
+    let german = output("de_DE.UTF-8", &["info", "nowhere.json"]);
+    assert_eq!(german.status.code(), Some(1));
+    assert!(said(&german).starts_with("rilievo: nowhere.json"), "{}", said(&german));
 }

@@ -1,11 +1,12 @@
 //! The depth of pictures through the whole program: what a file of more than 8 bits holds comes out
 //! of it again.
 
+use super::program::program;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn rilievo(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rilievo")).current_dir(folder).args(args).output().unwrap()
+    program().current_dir(folder).args(args).output().unwrap()
 }
 
 fn said(output: &Output) -> String {

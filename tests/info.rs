@@ -1,17 +1,13 @@
 //! `rilievo info` as scripts meet it.
 
 use super::maps::{Ball, encode, exr_bytes, png};
+use super::program::program;
 use serde_json::Value;
 use std::fs;
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn info(folder: &std::path::Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rilievo"))
-        .arg("info")
-        .args(args)
-        .current_dir(folder)
-        .output()
-        .unwrap()
+    program().arg("info").args(args).current_dir(folder).output().unwrap()
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The command line converts, never over its own input; and other programs show our files as we do.
 //! Programs that are not installed are skipped, and said so.
 
+use super::program::program;
 use std::path::Path;
 use std::process::{Command, Output};
 
 fn rilievo(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rilievo")).args(args).current_dir(folder).output().unwrap()
+    program().args(args).current_dir(folder).output().unwrap()
 }
 
 fn done(folder: &Path, args: &[&str]) -> String {

@@ -1,6 +1,7 @@
 //! The real program, killed while it saves: the file is the old one or the new one, and opens.
 //! Killed while it paints: no finished stroke is lost.
 
+use super::program::{in_english, program};
 use rilievo::files::recipe;
 use rilievo::{Budget, Document, Progress, flatten};
 use rilievo_engine::math::hash::mix;
@@ -20,11 +21,8 @@ const CALLS: &str = "openat,read,write,pwrite64,statx,fsync,close,rename,renamea
                      link,linkat,unlink,unlinkat,fchmodat,chmod";
 
 fn convert(folder: &Path, from: &str, to: &str) {
-    let done = Command::new(PROGRAM)
-        .args(["convert", from, to, "--force"])
-        .current_dir(folder)
-        .output()
-        .unwrap();
+    let done =
+        program().args(["convert", from, to, "--force"]).current_dir(folder).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
 
@@ -66,7 +64,7 @@ fn injected(
     n: usize,
 ) -> Option<(String, bool)> {
     let inject = format!("inject={calls}:{what}:when={n}");
-    let run = Command::new("strace")
+    let run = in_english(Command::new("strace"))
         .args(["-f", "-o", "/dev/null", "-e", &format!("trace={calls}"), "-e", &inject, PROGRAM])
         // One of the files is set read-only.
         .args(["convert", "new.json", target, "--threads", "1", "--force"])
@@ -173,7 +171,7 @@ fn kill_while_saving(rounds: u32) {
     let mut new = 0;
     for round in 0..rounds {
         std::fs::copy(at("old.ora"), at("t.ora")).unwrap();
-        let mut child = Command::new(PROGRAM)
+        let mut child = program()
             .args(["convert", "new.json", "t.ora", "--force"])
             .current_dir(folder.path())
             .stderr(Stdio::null())
@@ -299,7 +297,7 @@ fn kill_while_painting(rounds: u32, story: &str) {
     let disk: Arc<dyn Fs> = Arc::new(Disk);
     for round in 0..rounds {
         let logs = folder.path().join(format!("logs-{round}"));
-        let mut child = Command::new(PROGRAM)
+        let mut child = program()
             .arg("replay")
             .arg(folder.path().join("story"))
             .arg("--recover-in")

@@ -22,10 +22,12 @@ mod maps;
 mod names;
 mod overwriting;
 mod performance;
+mod program;
 mod python;
 mod recipe;
 mod scripting;
 mod shape;
+mod texts;
 mod verbs;
 mod view;
 #[cfg(feature = "window-tests")]

@@ -1,9 +1,10 @@
 //! Commands never overwrite what they read, and nothing else without being told to. Runs the real
 //! program.
 
+use super::program::program;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 use tempfile::TempDir;
 
 /// A recipe made from a photo, a brush tip, a map and a mask, and links to some of them.
@@ -27,7 +28,7 @@ fn folder() -> TempDir {
 const SOURCES: [&str; 5] = ["r.json", "photo.png", "tip.png", "n.png", "m.png"];
 
 fn run(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rilievo")).args(args).current_dir(folder).output().unwrap()
+    program().args(args).current_dir(folder).output().unwrap()
 }
 
 fn done(folder: &Path, args: &[&str]) {

@@ -1,6 +1,7 @@
 //! The package of `dist/python` beside the program: its own tests, and the example of its page; and
 //! the add-on of `dist/blender`. Skipped, and said so, where there is no Python, or no Blender in it.
 
+use super::program::in_english;
 use std::path::Path;
 use std::process::Command;
 
@@ -11,7 +12,7 @@ fn python(folder: &Path, args: &[&str]) -> Option<()> {
         eprintln!("skipped: python3 is not installed, or cannot run here");
         return None;
     }
-    let output = Command::new("python3")
+    let output = in_english(Command::new("python3"))
         .args(args)
         .current_dir(folder)
         .env("RILIEVO", env!("CARGO_BIN_EXE_rilievo"))

@@ -1,10 +1,11 @@
 //! `rilievo view` as its users meet it: pictures of maps and recipes, and sentences where there is
 //! nothing to show.
 
+use super::program::program;
 use image::{DynamicImage, Rgb, Rgba};
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Output;
 use tempfile::TempDir;
 
 /// A folder with the maps of a ball (`ball_n.png`, `ball_depth.png`, `ball_mask.png`) and a recipe
@@ -53,7 +54,7 @@ impl Desk {
 
     /// `rilievo view FILES -o OUT …`
     fn view(&self, files: &[&str], out: &str, more: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
+        let mut command = program();
         command.args(["view", "--force"]).args(files.iter().map(|f| self.path(f)));
         command.arg("-o").arg(self.path(out)).args(more).output().unwrap()
     }
@@ -166,7 +167,7 @@ fn the_unwrapped_view_prints_the_layer_that_lays_its_picture_back() {
     recipe["layers"] = serde_json::json!([layer]);
     fs::write(desk.path("back.json"), recipe.to_string()).unwrap();
     let rendered = |name: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
+        let mut command = program();
         let out = desk.path(name).with_extension("png");
         let output = command
             .args(["render", "--force"])

@@ -21,13 +21,15 @@ mod render;
 mod replay;
 mod shape;
 mod thumbnail;
+mod translation;
 mod values;
 mod view;
 
 pub use limits::LimitArgs;
 
+use crate::language;
 use crate::{Error, Remedy, Result};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
@@ -69,10 +71,8 @@ pub fn command() -> clap::Command {
 ///
 /// `window` opens the window on these files, if the build has one.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWindow>) -> ExitCode {
-    let parsed = match Arguments::try_parse_from(with_command(
-        arguments.into_iter().collect(),
-        window.is_some(),
-    )) {
+    language::set_language(language::system_language());
+    let parsed = match parse(with_command(arguments.into_iter().collect(), window.is_some())) {
         Ok(parsed) => parsed,
         Err(refusal) => {
             // A closed pipe while printing help is no failure.
@@ -93,10 +93,17 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(sentence) => {
-            let _ = writeln!(std::io::stderr(), "rilievo: {}", printable(&sentence));
+            messages::print_line(&format!("rilievo: {sentence}"));
             ExitCode::FAILURE
         }
     }
+}
+
+/// The arguments, with help in the user's language.
+fn parse(arguments: Vec<OsString>) -> std::result::Result<Arguments, clap::Error> {
+    let mut command = translation::translate_help(command());
+    let matches = command.try_get_matches_from_mut(arguments)?;
+    Arguments::from_arg_matches(&matches).map_err(|refusal| refusal.format(&mut command))
 }
 
 fn dispatch(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result<()> {
@@ -112,7 +119,10 @@ fn dispatch(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result<(
         Some(CliCommand::Shape(args)) => shape::run(&args),
         Some(CliCommand::Thumbnail(args)) => thumbnail::run(&args),
         Some(CliCommand::View(args)) => view::run(&args),
-        None => print(&Arguments::command().render_help().to_string()),
+        None => {
+            let mut help = translation::translate_help(Arguments::command());
+            print(&help.render_help().to_string())
+        }
     }
 }
 
@@ -140,14 +150,15 @@ pub fn print(text: &str) -> Result<()> {
 
 /// The sentence of an error, with the option that would help.
 pub fn with_advice(error: &Error) -> String {
-    let option = match error.remedy() {
-        Some(Remedy::LongerSides) => " (raise the limit with --max-side)",
-        Some(Remedy::MorePixels) => " (raise the limit with --max-pixels)",
-        Some(Remedy::MoreMemory) => " (close other programs, or raise the limit with --max-memory)",
-        Some(Remedy::Background) => " (choose a background with --background)",
-        None => "",
-    };
-    format!("{error}{option}")
+    match error.remedy() {
+        Some(Remedy::LongerSides) => format!("{error} (raise the limit with --max-side)"),
+        Some(Remedy::MorePixels) => format!("{error} (raise the limit with --max-pixels)"),
+        Some(Remedy::MoreMemory) => {
+            format!("{error} (close other programs, or raise the limit with --max-memory)")
+        }
+        Some(Remedy::Background) => format!("{error} (choose a background with --background)"),
+        None => error.to_string(),
+    }
 }
 
 /// Writes lines to standard output, without terminal control sequences.

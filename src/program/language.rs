@@ -6,7 +6,9 @@
 //! lower floors have put together in English: notes, refusals, steps of the history.
 
 mod catalog;
+mod template;
 
+use crate::io::platform;
 use catalog::Catalog;
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -61,6 +63,16 @@ thread_local! {
     static CURRENT: Cell<Language> = const { Cell::new(Language::English) };
 }
 
+/// The language that the user has chosen for all programs: that of the locale, or English.
+/// `RILIEVO_LANGUAGE`, a code such as `de`, is stronger than the locale.
+pub fn system_language() -> Language {
+    ["RILIEVO_LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"]
+        .into_iter()
+        .find_map(platform::environment_variable)
+        .and_then(|locale| Language::from_locale(&locale))
+        .unwrap_or_default()
+}
+
 /// What this thread shows is in this language from now on.
 pub fn set_language(language: Language) {
     CURRENT.set(language);
@@ -79,9 +91,14 @@ pub fn tr(text: &str) -> &str {
     }
 }
 
+/// The row of a text in the current language's catalog.
+pub fn find_translation(text: &str) -> Option<&'static str> {
+    language().catalog()?.find_text(text)
+}
+
 /// A text that was put together in English, in the current language: the catalog's row of which it
 /// is an instance gives the words, and the text the values. Values are translated as well, if they
-/// are rows themselves.
+/// are rows or messages themselves, but for what stands in quotes: those are names that users gave.
 pub fn tr_message(message: &str) -> Cow<'_, str> {
     match language().catalog() {
         Some(catalog) => catalog.translate_message(message),
@@ -91,7 +108,7 @@ pub fn tr_message(message: &str) -> Cow<'_, str> {
 
 /// A text with values in braces, in the current language. Use [`tr!`](crate::tr).
 pub fn tr_with(template: &str, values: &[(&str, &dyn Display)]) -> String {
-    catalog::fill_in(tr(template), values)
+    template::fill_in(tr(template), values)
 }
 
 /// A number as the current language writes it.

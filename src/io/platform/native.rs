@@ -49,6 +49,11 @@ pub fn locale() -> Option<String> {
     sys_locale::get_locale()
 }
 
+/// A variable of the environment, if it is set to a text.
+pub fn environment_variable(name: &str) -> Option<String> {
+    std::env::var(name).ok().filter(|value| !value.is_empty())
+}
+
 /// The user's own folder.
 pub fn home_folder() -> Option<PathBuf> {
     etcetera::home_dir().ok()

@@ -92,6 +92,11 @@ pub fn locale() -> Option<String> {
     Some(host::locale())
 }
 
+/// A page has no environment.
+pub fn environment_variable(_name: &str) -> Option<String> {
+    None
+}
+
 /// The user's own folder.
 pub fn home_folder() -> Option<PathBuf> {
     Some(DOCUMENTS.into())

@@ -34,7 +34,7 @@ impl Force {
 pub fn naming_the_flag(done: Result<()>) -> Result<()> {
     done.map_err(|error| match error {
         Error::Changed { file, reason } => {
-            Error::Changed { file, reason: reason + "; --force replaces it" }
+            Error::Changed { file, reason: format!("{reason}; --force replaces it") }
         }
         error => error,
     })

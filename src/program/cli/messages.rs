@@ -1,5 +1,7 @@
 //! What commands print to standard error besides errors. Floor 7.
 
+use crate::language::tr_message;
+use std::io::Write;
 use std::path::Path;
 
 /// What could not be converted goes to standard error: it is no failure, but the user must see it.
@@ -13,7 +15,8 @@ pub fn print_notes(file: &Path, notes: &[String]) {
     }
 }
 
-/// A line on standard error, in which a name cannot control the terminal.
+/// A line on standard error in the user's language, in which a name cannot control the terminal.
+/// Nobody may be left to read it.
 pub fn print_line(line: &str) {
-    eprintln!("{}", super::printable(line));
+    let _ = writeln!(std::io::stderr(), "{}", super::printable(&tr_message(line)));
 }

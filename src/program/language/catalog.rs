@@ -2,10 +2,11 @@
 //! text; in braces stand the names of values, which the translation may order as it likes.
 
 use super::Language;
+use super::template::{Template, fill_in, words_of};
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::fmt::{Display, Write as _};
-use std::sync::OnceLock;
+use std::fmt::Display;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// The catalogs of all languages but English, in the order of [`Language::ALL`].
 const FILES: [(Language, &str); 5] = [
@@ -29,7 +30,19 @@ pub struct Catalog {
     texts: HashMap<String, String>,
     /// The rows with values, those with the most letters of their own first.
     templates: Vec<Template>,
+    /// Of a word: the templates that have it, of their own words the one that the fewest have.
+    by_word: HashMap<String, Vec<usize>>,
+    /// The templates without a whole word.
+    wordless: Vec<usize>,
+    /// Messages that were translated before: what is shown is asked for again in every frame.
+    seen: Mutex<HashMap<String, Option<String>>>,
 }
+
+/// How deep messages within messages are translated: an error may have a cause that has a cause.
+const DEEPEST: usize = 6;
+
+/// How many messages are kept.
+const MOST_SEEN: usize = 1024;
 
 impl Catalog {
     /// A file that cannot be read is an empty catalog: the program's own are held by a test.
@@ -38,7 +51,19 @@ impl Catalog {
         let mut templates: Vec<Template> =
             texts.keys().filter_map(|text| Template::read(text)).collect();
         templates.sort_by_key(|template| (usize::MAX - template.letters(), template.key.clone()));
-        Self { texts, templates }
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        for word in templates.iter().flat_map(Template::whole_words) {
+            *counts.entry(word).or_default() += 1;
+        }
+        let mut by_word: HashMap<String, Vec<usize>> = HashMap::new();
+        let mut wordless = Vec::new();
+        for (i, template) in templates.iter().enumerate() {
+            match template.whole_words().min_by_key(|word| counts.get(word)) {
+                Some(word) => by_word.entry(word.to_owned()).or_default().push(i),
+                None => wordless.push(i),
+            }
+        }
+        Self { texts, templates, by_word, wordless, seen: Mutex::default() }
     }
 
     pub fn rows(&self) -> impl Iterator<Item = (&str, &str)> {
@@ -54,92 +79,119 @@ impl Catalog {
         if let Some(text) = self.find_text(message) {
             return Cow::Borrowed(text);
         }
-        for template in &self.templates {
-            if let Some(values) = template.match_values(message) {
-                let values: Vec<(&str, &str)> = values
-                    .into_iter()
-                    .map(|(name, value)| (name, self.find_text(value).unwrap_or(value)))
-                    .collect();
-                let values: Vec<(&str, &dyn Display)> =
-                    values.iter().map(|(name, value)| (*name, value as &dyn Display)).collect();
-                let text = self.find_text(&template.key).unwrap_or(&template.key);
-                return Cow::Owned(fill_in(text, &values));
-            }
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = seen.get(message) {
+            return known.clone().map_or(Cow::Borrowed(message), Cow::Owned);
         }
-        Cow::Borrowed(message)
+        let found = self.translate(message, 0);
+        if seen.len() >= MOST_SEEN {
+            seen.clear();
+        }
+        seen.insert(message.to_owned(), found.clone());
+        found.map_or(Cow::Borrowed(message), Cow::Owned)
+    }
+
+    /// A message in the language, if any of it is known.
+    fn translate(&self, message: &str, depth: usize) -> Option<String> {
+        if let Some(text) = self.find_text(message) {
+            return Some(text.to_owned());
+        }
+        if depth == DEEPEST || !message.contains(char::is_alphabetic) {
+            return None;
+        }
+        if message.contains('\n') {
+            return self.translate_parts(message, "\n", depth);
+        }
+        let templates = self.candidates(message);
+        let (later, first): (Vec<&Template>, Vec<&Template>) =
+            templates.into_iter().partition(|template| template.begins_with_value());
+        let find = |templates: &[&Template]| {
+            templates.iter().find_map(|template| self.translate_instance(template, message, depth))
+        };
+        find(&first)
+            .or_else(|| self.translate_tail(message, depth))
+            .or_else(|| find(&later))
+            .or_else(|| self.translate_sentences(message, depth))
+            .or_else(|| self.translate_parts(message, "; ", depth))
+    }
+
+    /// The templates that a message could be an instance of, the longest first.
+    fn candidates(&self, message: &str) -> Vec<&Template> {
+        let mut found: Vec<usize> = words_of(message)
+            .filter_map(|word| self.by_word.get(word))
+            .chain([&self.wordless])
+            .flatten()
+            .copied()
+            .collect();
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|i| &self.templates[i]).collect()
+    }
+
+    /// A message that has a template's words, with its values translated as messages of their own.
+    fn translate_instance(
+        &self,
+        template: &Template,
+        message: &str,
+        depth: usize,
+    ) -> Option<String> {
+        let values = template.match_values(message)?;
+        let translated: Vec<Option<String>> = values
+            .iter()
+            .map(|value| match value.is_quoted {
+                true => None,
+                false => self.translate(value.text, depth + 1),
+            })
+            .collect();
+        if template.is_weak() && translated.iter().all(Option::is_none) {
+            return None;
+        }
+        let values: Vec<(&str, String)> = values
+            .iter()
+            .zip(translated)
+            .map(|(value, text)| (value.name, text.unwrap_or_else(|| value.text.to_owned())))
+            .collect();
+        let values: Vec<(&str, &dyn Display)> =
+            values.iter().map(|(name, value)| (*name, value as &dyn Display)).collect();
+        Some(fill_in(self.find_text(&template.key)?, &values))
+    }
+
+    /// `file: field: reason`, of which the reason is known.
+    fn translate_tail(&self, message: &str, depth: usize) -> Option<String> {
+        message.match_indices(": ").find_map(|(at, colon)| {
+            let (head, tail) = (&message[..at], &message[at + colon.len()..]);
+            let tail = self.translate(tail, depth + 1)?;
+            let head = self.find_text(head).unwrap_or(head);
+            Some(format!("{head}: {tail}"))
+        })
+    }
+
+    /// Several sentences, each by itself.
+    fn translate_sentences(&self, message: &str, depth: usize) -> Option<String> {
+        let ends = message.match_indices(['.', '?', '!', '…']);
+        let mut ends = ends.map(|(at, mark)| at + mark.len());
+        let end = ends.find(|&end| message[end..].starts_with(' '))?;
+        let (first, rest) = (&message[..end], &message[end + 1..]);
+        let texts = [first, rest].map(|part| (part, self.translate(part, depth + 1)));
+        join(&texts, " ")
+    }
+
+    /// The same for parts between separators.
+    fn translate_parts(&self, message: &str, separator: &str, depth: usize) -> Option<String> {
+        if !message.contains(separator) {
+            return None;
+        }
+        let parts = message.split(separator);
+        let texts: Vec<_> = parts.map(|part| (part, self.translate(part, depth + 1))).collect();
+        join(&texts, separator)
     }
 }
 
-/// A row with values: its own words, and the names of the values between them.
-struct Template {
-    key: String,
-    /// The words before each value, and the value's name.
-    before: Vec<(String, String)>,
-    /// The words after the last value.
-    end: String,
-}
-
-impl Template {
-    /// A text without values is no template, nor is one without words: it would be like any text.
-    fn read(key: &str) -> Option<Self> {
-        let (mut before, mut rest) = (Vec::new(), key);
-        while let Some((words, name, after)) = split_at_value(rest) {
-            before.push((words.to_owned(), name.to_owned()));
-            rest = after;
-        }
-        let template = Self { key: key.to_owned(), before, end: rest.to_owned() };
-        (!template.before.is_empty() && template.letters() >= MIN_LETTERS).then_some(template)
-    }
-
-    /// How many letters are its own.
-    fn letters(&self) -> usize {
-        let before = self.before.iter().map(|(words, _)| words.as_str());
-        before.chain([self.end.as_str()]).flat_map(str::chars).filter(|c| c.is_alphabetic()).count()
-    }
-
-    /// The values of a message that has these words, each as short as it can be.
-    fn match_values<'a>(&'a self, message: &'a str) -> Option<Vec<(&'a str, &'a str)>> {
-        let (first, _) = self.before.first()?;
-        let mut rest = message.strip_prefix(first.as_str())?.strip_suffix(self.end.as_str())?;
-        let mut values = Vec::with_capacity(self.before.len());
-        for (i, (_, name)) in self.before.iter().enumerate() {
-            let value = match self.before.get(i + 1) {
-                Some((words, _)) => {
-                    let (value, after) = rest.split_once(words.as_str())?;
-                    rest = after;
-                    value
-                }
-                None => rest,
-            };
-            values.push((name.as_str(), value));
-        }
-        Some(values)
-    }
-}
-
-/// A template has at least so many letters of its own.
-const MIN_LETTERS: usize = 3;
-
-/// What stands before the first value of a text, the value's name, and what follows. A brace that is
-/// not closed is a letter.
-fn split_at_value(text: &str) -> Option<(&str, &str, &str)> {
-    let (words, after) = text.split_once('{')?;
-    let (name, rest) = after.split_once('}')?;
-    Some((words, name, rest))
-}
-
-/// A text with its values in the place of their names.
-pub fn fill_in(text: &str, values: &[(&str, &dyn Display)]) -> String {
-    let (mut filled, mut rest) = (String::with_capacity(text.len() + 16), text);
-    while let Some((words, name, after)) = split_at_value(rest) {
-        filled.push_str(words);
-        match values.iter().find(|(of, _)| *of == name) {
-            // Writing to a string does not fail.
-            Some((_, value)) => drop(write!(filled, "{value}")),
-            None => drop(write!(filled, "{{{name}}}")),
-        }
-        rest = after;
-    }
-    filled.push_str(rest);
-    filled
+/// Parts and their translations; nothing if none is translated.
+fn join(texts: &[(&str, Option<String>)], separator: &str) -> Option<String> {
+    texts.iter().any(|(_, text)| text.is_some()).then(|| {
+        let parts: Vec<&str> =
+            texts.iter().map(|(part, text)| text.as_deref().unwrap_or(part)).collect();
+        parts.join(separator)
+    })
 }
