@@ -63,12 +63,14 @@ thread_local! {
     static CURRENT: Cell<Language> = const { Cell::new(Language::English) };
 }
 
-/// The language that the user has chosen for all programs: that of the locale, or English.
-/// `RILIEVO_LANGUAGE`, a code such as `de`, is stronger than the locale.
+/// The language that the user has chosen for all programs: that of the locale, or English. The
+/// variables of a shell are stronger than what the system says, and `RILIEVO_LANGUAGE`, a code such
+/// as `de`, is stronger than both.
 pub fn system_language() -> Language {
     ["RILIEVO_LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"]
         .into_iter()
         .find_map(platform::environment_variable)
+        .or_else(platform::locale)
         .and_then(|locale| Language::from_locale(&locale))
         .unwrap_or_default()
 }
