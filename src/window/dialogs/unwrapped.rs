@@ -37,7 +37,8 @@ impl UnwrappedDialog {
     pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         set_width(ui, 320.0);
         ui.heading(tr("Export the unwrapped surface"));
-        ui.weak(tr("Paint over it in another program and import it unwrapped: it returns to its place on the surface."));
+        ui.weak(tr("Paint over it in another program and import it unwrapped: it returns to its place on the \
+             surface."));
         for scale in UnwrapOptions::SCALE.filter(|scale| scale.is_power_of_two()) {
             let about = match scale {
                 1 => "As large as on the surface".to_owned(),
