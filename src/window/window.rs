@@ -176,7 +176,7 @@ impl MainWindow {
     pub fn of_user(ctx: &egui::Context, tablet: SharedTablet, files: Vec<PathBuf>) -> Self {
         theme::install(ctx);
         let mut window = Self::remembering(ctx, settings::file());
-        window.system_language = Some(language::system_language());
+        window.system_language = Some(crate::language::system_language());
         window.follow_language(ctx);
         window.draw_on(tablet);
         if let Some(folder) = crate::io::recovery::folder() {
