@@ -1,7 +1,9 @@
 //! A new document: an empty canvas, or one on an object's maps.
 //! Floor 7.
 
+use super::profile::profile_choice;
 use super::{DialogAnswer, buttons, set_width};
+use crate::math::ColorProfile;
 use crate::math::srgb::Color;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
@@ -13,6 +15,7 @@ pub struct NewDialog {
     width: u32,
     height: u32,
     background: CanvasBackground,
+    profile: ColorProfile,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -24,7 +27,12 @@ enum CanvasBackground {
 
 impl Default for NewDialog {
     fn default() -> Self {
-        Self { width: 1024, height: 1024, background: CanvasBackground::White }
+        Self {
+            width: 1024,
+            height: 1024,
+            background: CanvasBackground::White,
+            profile: ColorProfile::Srgb,
+        }
     }
 }
 
@@ -76,6 +84,10 @@ impl NewDialog {
                 radio(ui, &mut self.background, choice, name);
             }
         });
+        ui.horizontal(|ui| {
+            ui.label("Color profile");
+            profile_choice(ui, &mut self.profile);
+        });
         match buttons(ui, "Create", true) {
             Some(true) => {
                 let background = match self.background {
@@ -87,6 +99,7 @@ impl NewDialog {
                     width: self.width,
                     height: self.height,
                     background,
+                    profile: Some(self.profile),
                 }));
                 DialogAnswer::Close
             }
