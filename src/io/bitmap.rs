@@ -15,7 +15,7 @@ pub use upright::png_exif;
 pub use weight::{has_png_profile, png_cicp};
 
 use super::Budget;
-use crate::icc_profiles::own;
+use crate::icc_profiles::icc_of;
 use crate::math::{ColorProfile, Size};
 use crate::{Error, Remedy, Result};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
@@ -143,7 +143,7 @@ fn code_points(format: ImageFormat, bytes: &[u8]) -> Option<Vec<u8>> {
         [12, 13, 0, 1] => ColorProfile::DisplayP3,
         _ => return None,
     };
-    Some(own(profile).to_vec())
+    Some(icc_of(profile).to_vec())
 }
 
 /// The ICC profile of a file, from its header alone; none where that cannot be read.

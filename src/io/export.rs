@@ -8,7 +8,7 @@ pub mod shape;
 
 use crate::document::{Document, Progress};
 use crate::fs::Disk;
-use crate::icc_profiles::named;
+use crate::icc_profiles::to_embed;
 use crate::math::{ColorProfile, Rect, Size, srgb, srgb::Color};
 use crate::pixels::strips;
 use crate::raster::TileGrid;
@@ -288,7 +288,7 @@ fn png(
     let mut bytes = Vec::new();
     let mut info = png::Info::with_size(size.width, size.height);
     (info.color_type, info.bit_depth) = (png::ColorType::Rgba, depth);
-    info.icc_profile = named(profile).map(Into::into);
+    info.icc_profile = to_embed(profile).map(Into::into);
     let mut encoder = png::Encoder::with_info(&mut bytes, info)?;
     if profile == ColorProfile::Srgb {
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
@@ -353,7 +353,7 @@ fn name_profile(
     encoder: &mut impl image::ImageEncoder,
     profile: ColorProfile,
 ) -> Result<()> {
-    let Some(icc) = named(profile) else { return Ok(()) };
+    let Some(icc) = to_embed(profile) else { return Ok(()) };
     encoder.set_icc_profile(icc.to_vec()).map_err(|e| Error::unsupported_file(file, e))
 }
 

@@ -8,37 +8,39 @@ use std::sync::LazyLock;
 
 /// The ICC profile that this program writes. Its encoder would write the present time into it; the
 /// time is fixed, so that the same document gives the same bytes.
-pub fn own(profile: ColorProfile) -> &'static [u8] {
-    static SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| written(ColorProfile::Srgb));
-    static DISPLAY_P3: LazyLock<Vec<u8>> = LazyLock::new(|| written(ColorProfile::DisplayP3));
+pub fn icc_of(profile: ColorProfile) -> &'static [u8] {
+    static SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| encode(ColorProfile::Srgb));
+    static DISPLAY_P3: LazyLock<Vec<u8>> = LazyLock::new(|| encode(ColorProfile::DisplayP3));
     match profile {
         ColorProfile::Srgb => &SRGB,
         ColorProfile::DisplayP3 => &DISPLAY_P3,
     }
 }
 
-/// The profile that a file of a document names; none of sRGB, which is what files without one are.
-pub fn named(profile: ColorProfile) -> Option<&'static [u8]> {
-    (profile != ColorProfile::Srgb).then(|| own(profile))
+/// The profile that a file of a document embeds; none of sRGB, which is what files without one are.
+pub fn to_embed(profile: ColorProfile) -> Option<&'static [u8]> {
+    (profile != ColorProfile::Srgb).then(|| icc_of(profile))
 }
 
 /// A profile as the library of color management has it.
-pub fn parsed(profile: ColorProfile) -> moxcms::ColorProfile {
+fn library_profile(profile: ColorProfile) -> moxcms::ColorProfile {
     match profile {
         ColorProfile::Srgb => moxcms::ColorProfile::new_srgb(),
         ColorProfile::DisplayP3 => {
-            // The numbers that it would have besides are those of other primaries.
-            moxcms::ColorProfile { cicp: None, ..moxcms::ColorProfile::new_display_p3() }
+            let mut p3 = moxcms::ColorProfile::new_display_p3();
+            // The code points that it has are those of other primaries.
+            p3.cicp = None;
+            p3
         }
     }
 }
 
-fn written(profile: ColorProfile) -> Vec<u8> {
+fn encode(profile: ColorProfile) -> Vec<u8> {
     /// Year, month, day, hour, minute and second, as the header of a profile holds them.
     const DATE: [u8; 12] = [0x07, 0xd0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
     /// The illuminant of the connection space, always D50, which the encoder omits.
     const D50: [u8; 12] = [0, 0, 0xf6, 0xd6, 0, 1, 0, 0, 0, 0, 0xd3, 0x2d];
-    let mut profile = parsed(profile).encode().unwrap_or_default();
+    let mut profile = library_profile(profile).encode().unwrap_or_default();
     for (at, value) in [(24, DATE), (68, D50)] {
         if let Some(place) = profile.get_mut(at..at + value.len()) {
             place.copy_from_slice(&value);
@@ -67,19 +69,19 @@ fn aligned(profile: &[u8]) -> Option<Vec<u8>> {
 
 /// The profile of sRGB that this program writes itself: nothing needs converting.
 pub fn is_own_srgb(icc: &[u8]) -> bool {
-    own(ColorProfile::Srgb) == icc
+    icc_of(ColorProfile::Srgb) == icc
 }
 
 /// Whether a profile is Display P3 as far as a byte can tell, whoever made it.
 pub fn is_display_p3(icc: &[u8]) -> bool {
-    if own(ColorProfile::DisplayP3) == icc {
+    if icc_of(ColorProfile::DisplayP3) == icc {
         return true;
     }
     let Ok(profile) = moxcms::ColorProfile::new_from_slice(icc) else { return false };
     if profile.color_space != moxcms::DataColorSpace::Rgb {
         return false;
     }
-    let target = parsed(ColorProfile::DisplayP3);
+    let target = library_profile(ColorProfile::DisplayP3);
     let options = TransformOptions::default();
     let transform = profile.create_transform_16bit(Layout::Rgb, &target, Layout::Rgb, options);
     let Ok(transform) = transform else { return false };
@@ -97,9 +99,9 @@ mod tests {
 
     #[test]
     fn each_profile_is_itself_and_no_other() {
-        let p3 = own(ColorProfile::DisplayP3);
-        assert!(is_display_p3(p3) && !is_display_p3(own(ColorProfile::Srgb)));
-        assert!(is_own_srgb(own(ColorProfile::Srgb)) && !is_own_srgb(p3));
+        let p3 = icc_of(ColorProfile::DisplayP3);
+        assert!(is_display_p3(p3) && !is_display_p3(icc_of(ColorProfile::Srgb)));
+        assert!(is_own_srgb(icc_of(ColorProfile::Srgb)) && !is_own_srgb(p3));
         // Another program's, and spaces that are near it.
         let of = |profile: moxcms::ColorProfile| profile.encode().unwrap();
         assert!(is_display_p3(&of(moxcms::ColorProfile::new_display_p3())));
@@ -115,7 +117,7 @@ mod tests {
 
     #[test]
     fn the_profile_that_is_written_is_small_and_whole() {
-        let p3 = own(ColorProfile::DisplayP3);
+        let p3 = icc_of(ColorProfile::DisplayP3);
         assert!(p3.len() < 1024, "{} bytes", p3.len());
         assert_eq!(p3[..4], (p3.len() as u32).to_be_bytes());
         assert_eq!(&p3[36..40], b"acsp");

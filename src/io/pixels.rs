@@ -5,7 +5,7 @@
 use crate::Budget;
 use crate::bitmap;
 use crate::document::EncodedPixels;
-use crate::icc_profiles::{is_own_srgb, own};
+use crate::icc_profiles::{icc_of, is_own_srgb};
 use crate::math::{ColorProfile, Rect, Size};
 use crate::raster::tile::sixteen_bit::byte_of;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
@@ -181,7 +181,7 @@ fn encode_strips<'v>(
         }
         // Krita asks for a profile, layer by layer, for pictures of 16 bits that do not contain
         // one.
-        (_, profile) => info.icc_profile = Some(own(profile).into()),
+        (_, profile) => info.icc_profile = Some(icc_of(profile).into()),
     }
     let mut encoder = png::Encoder::with_info(&mut bytes, info)?;
     encoder.set_compression(how);
@@ -244,7 +244,7 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     let info = reader.info();
     let is_own = |icc: &[u8]| {
         let stays = budget.profile == ColorProfile::DisplayP3;
-        is_own_srgb(icc) || stays && own(ColorProfile::DisplayP3) == icc
+        is_own_srgb(icc) || stays && icc_of(ColorProfile::DisplayP3) == icc
     };
     let stays = !bitmap::has_png_profile(bytes) || info.icc_profile.as_deref().is_some_and(is_own);
     let stays = stays && bitmap::png_cicp(bytes).is_none();

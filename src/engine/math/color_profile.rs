@@ -244,9 +244,10 @@ mod tests {
         for (found, expected) in there.as_flattened().iter().zip(expected.as_flattened()) {
             assert!((found - expected).abs() < 2e-6, "{there:?}");
         }
-        for r in 0..3 {
+        for (r, row) in there.iter().enumerate() {
             for c in 0..3 {
-                let product: f32 = (0..3).map(|k| there[r][k] * to_p3().rows[k][c]).sum();
+                let other = to_p3().rows.map(|other| other[c]);
+                let product: f32 = row.iter().zip(other).map(|(a, b)| a * b).sum();
                 assert!((product - f32::from(u8::from(r == c))).abs() < 1e-6, "{r} {c}");
             }
         }

@@ -1,7 +1,7 @@
 //! Pictures of every format, with profiles and without.
 
 use super::*;
-use crate::icc_profiles::own;
+use crate::icc_profiles::icc_of;
 use crate::math::ColorProfile;
 use image::{ImageFormat, RgbaImage};
 use std::io::Cursor;
@@ -57,7 +57,7 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
     // Krita writes its profile, which has to be looked at first.
     let mut profiled = Vec::new();
     let mut info = png::Info::with_size(70, 130);
-    info.icc_profile = Some(own(ColorProfile::Srgb).to_vec().into());
+    info.icc_profile = Some(icc_of(ColorProfile::Srgb).to_vec().into());
     (info.color_type, info.bit_depth) = (png::ColorType::Rgba, png::BitDepth::Sixteen);
     let mut writer = png::Encoder::with_info(&mut profiled, info).unwrap().write_header().unwrap();
     let bytes: Vec<u8> = texels16.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect();
@@ -143,7 +143,7 @@ fn a_jpeg_without_its_end_is_shown_as_far_as_it_goes() {
 
 #[test]
 fn our_own_profile_is_one_that_strict_readers_take() {
-    let profile = own(ColorProfile::Srgb).to_vec();
+    let profile = icc_of(ColorProfile::Srgb).to_vec();
     let number = |at: usize| u32::from_be_bytes(*profile[at..].first_chunk().unwrap()) as usize;
     assert_eq!(number(0), profile.len());
     let places = (0..number(128)).map(|i| number(132 + 12 * i + 4));

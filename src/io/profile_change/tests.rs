@@ -3,7 +3,7 @@
 use super::*;
 use crate::document::{Content, PixelLayer, Progress, flatten};
 use crate::export::{ExportOptions, high_depth::encode_document};
-use crate::icc_profiles::{is_display_p3, own};
+use crate::icc_profiles::{icc_of, is_display_p3};
 use crate::math::Rect;
 use crate::project::sample::{self, MemoryFiles, assert_same, everything, png, read};
 use crate::raster::picture::Texels;
@@ -41,7 +41,8 @@ fn colorful() -> Value {
             { "name": "path", "kind": "image", "source": { "path": { "figure": { "kind": "rectangle", "from": [4, 4],
                 "to": [60, 60] }, "fill": "#aa4678", "outline": 8, "outline_color": "#46aa78" } } },
             { "name": "strokes", "kind": "strokes", "strokes": [
-                { "brush": { "preset": "hard-round", "size": 30 }, "color": "#ffcc00", "samples": [[9, 9], [50, 50]] } ] },
+                { "brush": { "preset": "hard-round", "size": 30 }, "color": "#ffcc00",
+                  "samples": [[9, 9], [50, 50]] } ] },
             { "name": "ink", "kind": "lines", "color": "#25151a" },
             { "name": "hatch", "kind": "hatching", "color": "#1a1530" },
             { "name": "light", "kind": "shading", "model": "painter",
@@ -53,7 +54,8 @@ fn colorful() -> Value {
             { "name": "map", "kind": "adjustment",
               "adjust": { "kind": "gradient-map", "stops": [[0, "#14285a"], [1, "#f0c8a0"]] } },
             { "name": "glass", "kind": "adjustment", "adjust": { "kind": "photo-filter", "color": "#3c8cdc" } },
-            { "name": "tint", "kind": "adjustment", "adjust": { "kind": "black-white", "tint": true, "color": "#c8a078" } },
+            { "name": "tint", "kind": "adjustment",
+              "adjust": { "kind": "black-white", "tint": true, "color": "#c8a078" } },
             { "name": "dots", "kind": "filter",
               "filter": { "kind": "halftone", "ink": "#5a285a", "paper": "#e6dc78" } },
             { "name": "group", "kind": "group", "layers": [{ "name": "in it", "kind": "fill", "color": "#6496c8" }] } ]
@@ -90,7 +92,7 @@ fn every_color_that_a_document_writes_is_converted() {
     let mut found = recipe::write(&to_p3(&document));
     // Without the names of files, and the colors as they are.
     recolor(&mut found, "", &mut none, &|color| color);
-    let (expected, found) = (sorted(&expected), sorted(&found));
+    let (expected, found) = (lines_of(&expected), lines_of(&found));
     assert_eq!(found, expected);
     let known = [
         "bounce_color",
@@ -109,7 +111,7 @@ fn every_color_that_a_document_writes_is_converted() {
 }
 
 /// The lines of a JSON, whatever the order of its fields.
-fn sorted(value: &Value) -> Vec<String> {
+fn lines_of(value: &Value) -> Vec<String> {
     fn list(value: &Value, path: &str, out: &mut Vec<String>) {
         match value {
             Value::Object(fields) => {
@@ -418,7 +420,7 @@ fn code_points_of_a_png_outrank_its_profile() {
     assert_eq!(read(&p3, P3), (P3, [234, 51, 35, 255]));
     let (_, [r, g, b, _]) = read(&p3, ColorProfile::Srgb);
     assert!(r >= 254 && g <= 1 && b <= 1, "{:?}", [r, g, b]);
-    let srgb = with([1, 13, 0, 1], Some(own(P3)));
+    let srgb = with([1, 13, 0, 1], Some(icc_of(P3)));
     assert_eq!(read(&srgb, ColorProfile::Srgb), (ColorProfile::Srgb, [234, 51, 35, 255]));
 }
 
@@ -441,12 +443,13 @@ fn a_placed_picture_gets_the_colors_of_the_document_and_is_as_wide_as_its_file()
     assert_eq!((first(&placed), placed.encoded.is_some()), ([255, 0, 0, 255], true));
     // Assigned, its numbers stay, so its file cannot be kept.
     assert!(SameNumbers.picture(&wide).encoded.is_none());
-    assert!(is_display_p3(own(P3)));
+    assert!(is_display_p3(icc_of(P3)));
 }
 
 #[test]
 fn a_drawing_stays_a_drawing() {
-    let svg = br##"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8" id="#ff0000"><linearGradient id="abcdef">
+    let svg = br##"<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8">
+        <linearGradient id="abcdef">
         <stop offset="0" stop-color="red"/><stop offset="1" stop-color="#f00"/></linearGradient>
         <rect width="4" height="8" fill="red"/><rect x="4" width="4" height="8" fill="url(#abcdef)"/></svg>"##;
     let budget = Budget::default();

@@ -112,7 +112,7 @@ fn resources(kept: FileMarks, ours: &[u8]) -> Vec<u8> {
     unicode(&mut version, "Rilievo");
     long(&mut version, 1);
     let mut out = Vec::new();
-    let profile = crate::icc_profiles::own(kept.profile);
+    let profile = crate::icc_profiles::icc_of(kept.profile);
     let mut named = alpha_channels::resources(kept.selections);
     named.extend(marks::guides_resource(kept.guides));
     named.extend(marks::effect_light_resources(kept.light));

@@ -326,7 +326,7 @@ mod tests {
         assert_eq!(own, [[234, 51, 35, 255], [117, 26, 18, 128]], "sRGB is not converted");
         let values = seen(ColorProfile::DisplayP3, ShownLook::Values);
         assert!(near(values, [[127, 127, 127, 255], [64, 64, 64, 128]]), "{values:?}");
-        let icc = crate::io::icc_profiles::own(ColorProfile::Srgb);
+        let icc = crate::io::icc_profiles::icc_of(ColorProfile::Srgb);
         let table = ProofTable::read(std::path::Path::new("a.icc"), icc).unwrap();
         let proof = ShownLook::Proof { table: Arc::new(table), is_marked: true };
         let proofed = seen(ColorProfile::DisplayP3, proof);
