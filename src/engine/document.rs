@@ -6,6 +6,7 @@ mod apply_transform;
 pub mod assistants;
 mod attachments;
 pub mod canvas_change;
+mod colors;
 mod compose;
 pub mod conventions;
 mod count_memory;
@@ -48,6 +49,7 @@ mod weight;
 pub use crate::paint::{Attachment, StrokeAttachment};
 pub use assistants::{Assistant, AssistantKind};
 pub use canvas_change::CanvasChange;
+pub use colors::ColorMap;
 pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::singles::SingleLayers;
@@ -75,8 +77,9 @@ pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
 pub use symmetry::{Symmetry, SymmetrySettings};
 
+use crate::math::{ColorProfile, Size};
 use crate::paint::{ColorPalette, EffectLight, Scene, Selection};
-use crate::{math::Size, raster::Asset, surface::Surface};
+use crate::{raster::Asset, surface::Surface};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
@@ -85,6 +88,8 @@ use std::sync::Arc;
 pub struct Document {
     /// The canvas, px.
     pub size: Size,
+    /// The colors that its numbers mean.
+    pub profile: ColorProfile,
     /// What is painted on; absent: a flat canvas.
     pub surface: Option<Arc<Surface>>,
     /// The maps that the surface was made from; absent if there is no surface or it came from no
@@ -117,6 +122,7 @@ impl Document {
     pub fn empty(size: Size) -> Self {
         Self {
             size,
+            profile: ColorProfile::default(),
             surface: None,
             surface_source: None,
             surface_files: Arc::default(),

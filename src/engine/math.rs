@@ -2,6 +2,7 @@
 //! `Vec2`, distinguished by name.
 
 pub mod cielab;
+pub mod color_profile;
 pub mod conjugate_gradients;
 pub mod fast;
 pub mod hash;
@@ -18,6 +19,7 @@ pub mod simd;
 pub mod srgb;
 pub mod union_find;
 
+pub use color_profile::{ColorProfile, ProfileConversion};
 pub use glam::{Affine2, DVec2, Mat2, Mat3, Vec2, Vec3, Vec3A, Vec4, vec2, vec3};
 pub use number_settings::NumberSetting;
 pub use plane_map::PlaneMap;

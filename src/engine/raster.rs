@@ -6,6 +6,7 @@ pub mod bits;
 pub mod blend;
 pub mod blur;
 pub mod border;
+mod converted;
 pub mod coverage;
 pub mod distance;
 pub mod flood;

@@ -12,10 +12,12 @@ mod upright;
 mod weight;
 
 pub use upright::png_exif;
-pub use weight::has_png_profile;
+pub use weight::{has_png_profile, png_cicp};
 
 use super::Budget;
-use crate::{Error, Remedy, Result, math::Size};
+use crate::icc_profiles::icc_of;
+use crate::math::{ColorProfile, Size};
+use crate::{Error, Remedy, Result};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
 use std::{
     io::Cursor,
@@ -118,6 +120,7 @@ fn decode_as(
         let is_lost = icc.is_none() && format == ImageFormat::Png && weight::has_png_profile(bytes);
         let warning =
             is_lost.then_some("its color profile is damaged or too large, and was left out");
+        let icc = code_points(format, bytes).or(icc);
         let exif = decoder.exif_metadata().ok().flatten();
         let turned = exif.as_deref().and_then(upright::of_exif).or_else(|| {
             let exif = upright::png_exif(bytes).filter(|_| format == ImageFormat::Png)?;
@@ -129,6 +132,33 @@ fn decode_as(
         Ok(Bitmap { image, icc, orientation, format: name, warning })
     }));
     decoded.unwrap_or_else(|_| Err(Error::decode(file, format!("the {name} data is damaged"))))
+}
+
+/// The profile that the code points of a PNG say, which outrank its ICC profile.
+fn code_points(format: ImageFormat, bytes: &[u8]) -> Option<Vec<u8>> {
+    let points = (format == ImageFormat::Png).then(|| weight::png_cicp(bytes))?;
+    let profile = match points? {
+        // BT.709 or SMPTE EG 432-1 primaries, the curve of sRGB, RGB of full range.
+        [1, 13, 0, 1] => ColorProfile::Srgb,
+        [12, 13, 0, 1] => ColorProfile::DisplayP3,
+        _ => return None,
+    };
+    Some(icc_of(profile).to_vec())
+}
+
+/// The ICC profile of a file, from its header alone; none where that cannot be read.
+pub fn icc_profile(file: &Path, bytes: &[u8], budget: &Budget) -> Option<Vec<u8>> {
+    let (format, ..) = sniff(file, bytes).ok()?;
+    if let Some(icc) = code_points(format, bytes) {
+        return Some(icc);
+    }
+    let profile = || {
+        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+        reader.limits(limits(format, bytes, budget));
+        reader.into_decoder().ok()?.icc_profile().ok()?
+    };
+    // Decoders are third-party code: a panic counts as a damaged file.
+    catch_unwind(AssertUnwindSafe(profile)).ok()?
 }
 
 fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)> {

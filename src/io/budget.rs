@@ -4,7 +4,7 @@
 #![warn(missing_docs)]
 
 use crate::document::{Content, Document, Part, PartKind};
-use crate::math::Size;
+use crate::math::{ColorProfile, Size};
 use crate::memory;
 use crate::paint::{Sample, Stroke};
 use crate::raster::{Picture, Tile};
@@ -30,6 +30,9 @@ pub struct Budget {
     /// Whether paint has 16 bits a channel where its file has more than 8. It takes three times the
     /// memory.
     pub sixteen_bit_paint: bool,
+    /// The profile of the document that is read for. Colors in Display P3 stay as they are for a
+    /// document in Display P3; all others become sRGB.
+    pub profile: ColorProfile,
     /// Bytes of any one file.
     pub file_bytes: u64,
     /// Bytes read from all entries of a zip together.
@@ -66,6 +69,7 @@ impl Default for Budget {
             region_px: Document::MOST_REGION_PX,
             memory_bytes: super::machine::UNKNOWN_BYTES,
             sixteen_bit_paint: true,
+            profile: ColorProfile::default(),
             file_bytes: 2 << 30,
             unpacked_bytes: 8 << 30,
             // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes

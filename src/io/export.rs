@@ -8,7 +8,8 @@ pub mod shape;
 
 use crate::document::{Document, Progress};
 use crate::fs::Disk;
-use crate::math::{Rect, Size, srgb, srgb::Color};
+use crate::icc_profiles::to_embed;
+use crate::math::{ColorProfile, Rect, Size, srgb, srgb::Color};
 use crate::pixels::strips;
 use crate::raster::TileGrid;
 use crate::replace::{Overwrite, Terms, check, replace};
@@ -19,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// A kind of file that a picture can be written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportFormat {
-    /// Straight alpha, marked as sRGB.
+    /// Straight alpha, marked as sRGB or Display P3.
     Png,
     /// 8 bits, opaque.
     Jpeg,
@@ -93,11 +94,21 @@ pub struct ExportOptions {
     pub crop: Option<Rect>,
     /// Bits a channel, one of [`ExportFormat::depths`]; the format's usual one by default.
     pub bits: Option<u8>,
+    /// The profile that colors are converted to, and that the file names; that of the document by
+    /// default.
+    pub profile: Option<ColorProfile>,
 }
 
 impl Default for ExportOptions {
     fn default() -> Self {
-        Self { background: None, quality: 92, dots_per_inch: None, crop: None, bits: None }
+        Self {
+            background: None,
+            quality: 92,
+            dots_per_inch: None,
+            crop: None,
+            bits: None,
+            profile: None,
+        }
     }
 }
 
@@ -154,8 +165,17 @@ impl OutputFile {
     }
 
     /// Encodes and writes the part of a flattened picture that the canvas shows.
-    pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &ExportOptions) -> Result<()> {
-        self.replace(&encode(&self.named, ExportFormat::of(&self.named)?, pixels, canvas, options)?)
+    ///
+    /// * `profile`: what its numbers mean, which the file names.
+    pub fn write(
+        &self,
+        pixels: &TileGrid,
+        canvas: Size,
+        options: &ExportOptions,
+        profile: ColorProfile,
+    ) -> Result<()> {
+        let format = ExportFormat::of(&self.named)?;
+        self.replace(&encode_in(&self.named, format, pixels, canvas, options, profile)?)
     }
 
     /// The target is the old file or the new one, never a part of it.
@@ -180,13 +200,25 @@ pub fn write_picture(document: &Document, file: &Path, over: Overwrite) -> Resul
     )
 }
 
-/// The bytes of a picture file; `file` is for messages.
+/// The bytes of a picture file of sRGB; `file` is for messages.
 pub fn encode(
     file: &Path,
     format: ExportFormat,
     pixels: &TileGrid,
     canvas: Size,
     options: &ExportOptions,
+) -> Result<Vec<u8>> {
+    encode_in(file, format, pixels, canvas, options, ColorProfile::Srgb)
+}
+
+/// The same of pixels in a color profile, which the file names.
+pub fn encode_in(
+    file: &Path,
+    format: ExportFormat,
+    pixels: &TileGrid,
+    canvas: Size,
+    options: &ExportOptions,
+    profile: ColorProfile,
 ) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() {
@@ -202,14 +234,15 @@ pub fn encode(
     };
     match format {
         ExportFormat::Png => {
-            let written = png(strips(rect).map(straight), canvas, png::BitDepth::Eight, options);
+            let rows = strips(rect).map(straight);
+            let written = png(rows, canvas, png::BitDepth::Eight, options, profile);
             written.map_err(|e| Error::unsupported_file(file, e))
         }
-        ExportFormat::Jpeg => jpeg(file, &straight(rect), canvas, options.quality),
-        ExportFormat::WebP => webp(file, &straight(rect), canvas),
-        ExportFormat::Tiff => tiff(file, straight(rect), canvas),
+        ExportFormat::Jpeg => jpeg(file, &straight(rect), canvas, options.quality, profile),
+        ExportFormat::WebP => webp(file, &straight(rect), canvas, profile),
+        ExportFormat::Tiff => tiff(file, straight(rect), canvas, profile),
         ExportFormat::Exr => {
-            exr(&straight(rect), canvas).map_err(|e| Error::unsupported_file(file, e))
+            exr(&straight(rect), canvas, profile).map_err(|e| Error::unsupported_file(file, e))
         }
     }
 }
@@ -231,9 +264,9 @@ fn lay_on(rgba: &mut [u8], background: Color) {
     }
 }
 
-fn tiff(file: &Path, rgba: Vec<u8>, size: Size) -> Result<Vec<u8>> {
+fn tiff(file: &Path, rgba: Vec<u8>, size: Size, profile: ColorProfile) -> Result<Vec<u8>> {
     let image = image::RgbaImage::from_raw(size.width, size.height, rgba);
-    high_depth::tiff(file, image.map(image::DynamicImage::ImageRgba8))
+    high_depth::tiff(file, image.map(image::DynamicImage::ImageRgba8), profile)
 }
 
 /// Pixels a meter.
@@ -248,14 +281,18 @@ fn png(
     size: Size,
     depth: png::BitDepth,
     options: &ExportOptions,
+    profile: ColorProfile,
 ) -> Result<Vec<u8>, png::EncodingError> {
     /// Size of a chunk of packed pixels.
     const CHUNK_BYTES: usize = 1 << 20;
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(depth);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut info = png::Info::with_size(size.width, size.height);
+    (info.color_type, info.bit_depth) = (png::ColorType::Rgba, depth);
+    info.icc_profile = to_embed(profile).map(Into::into);
+    let mut encoder = png::Encoder::with_info(&mut bytes, info)?;
+    if profile == ColorProfile::Srgb {
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    }
     encoder.set_pixel_dims(options.dots_per_inch.map(png_resolution));
     let mut writer = encoder.write_header()?;
     let mut rows = writer.stream_writer_with_size(CHUNK_BYTES)?;
@@ -267,7 +304,13 @@ fn png(
     Ok(bytes)
 }
 
-fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
+fn jpeg(
+    file: &Path,
+    rgba: &[u8],
+    size: Size,
+    quality: u8,
+    profile: ColorProfile,
+) -> Result<Vec<u8>> {
     if rgba.chunks_exact(4).any(|pixel| pixel[3] != 255) {
         let reason = "the picture has transparent parts, and a JPEG cannot store them";
         return Err(Error::unsupported_file(file, reason).with_remedy(Remedy::Background));
@@ -283,12 +326,13 @@ fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let mut encoder =
         image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
+    name_profile(file, &mut encoder, profile)?;
     let encoded = encoder.encode(&rgb, size.width, size.height, image::ExtendedColorType::Rgb8);
     encoded.map_err(|e| Error::unsupported_file(file, e))?;
     Ok(bytes.into_inner())
 }
 
-fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
+fn webp(file: &Path, rgba: &[u8], size: Size, profile: ColorProfile) -> Result<Vec<u8>> {
     if size.width.max(size.height) > 16_384 {
         return Err(Error::unsupported_file(
             file,
@@ -296,14 +340,25 @@ fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
         ));
     }
     let mut bytes = Cursor::new(Vec::new());
-    let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut bytes);
+    let mut encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut bytes);
+    name_profile(file, &mut encoder, profile)?;
     let encoded = encoder.encode(rgba, size.width, size.height, image::ExtendedColorType::Rgba8);
     encoded.map_err(|e| Error::unsupported_file(file, e))?;
     Ok(bytes.into_inner())
 }
 
-fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
-    high_depth::exr(size, 16, |i| {
+/// Puts a profile into a file; none of sRGB.
+fn name_profile(
+    file: &Path,
+    encoder: &mut impl image::ImageEncoder,
+    profile: ColorProfile,
+) -> Result<()> {
+    let Some(icc) = to_embed(profile) else { return Ok(()) };
+    encoder.set_icc_profile(icc.to_vec()).map_err(|e| Error::unsupported_file(file, e))
+}
+
+fn exr(rgba: &[u8], size: Size, profile: ColorProfile) -> Result<Vec<u8>, exr::error::Error> {
+    high_depth::exr(size, 16, profile, |i| {
         let [r, g, b, a] = std::array::from_fn(|c| rgba[4 * i + c]);
         let alpha = f32::from(a) / 255.0;
         let light = |c: u8| srgb::decode_u8(c) * alpha;

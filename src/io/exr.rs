@@ -7,11 +7,12 @@ mod names;
 mod write;
 
 pub use names::{ExrPass, passes};
-pub use write::{encode_channels, encode_light};
+pub use write::{chromaticities, encode_channels, encode_light};
 
 use super::Budget;
+use crate::math::{ColorProfile, Size};
 use crate::raster::{Plane, TILE};
-use crate::{Error, Remedy, Result, math::Size};
+use crate::{Error, Remedy, Result};
 use exr::meta::{BlockDescription, MetaData, attribute::SampleType, header::Header};
 use std::{
     io::Cursor,
@@ -80,6 +81,18 @@ impl<'a> ExrFile<'a> {
     /// The channels grouped by layer.
     pub fn passes(&self) -> &[ExrPass] {
         &self.passes
+    }
+
+    /// The profile of its light, by its chromaticities; sRGB where it says nothing, or others.
+    pub fn profile(&self) -> ColorProfile {
+        let said = self.meta.headers.iter().find_map(|h| h.shared_attributes.chromaticities);
+        let is_p3 = said.is_some_and(|said| {
+            let found = [said.red, said.green, said.blue, said.white].map(|v| [v.x(), v.y()]);
+            let known = ColorProfile::DisplayP3.chromaticities();
+            let pairs = found.as_flattened().iter().zip(known.as_flattened());
+            pairs.into_iter().all(|(a, b)| (a - b).abs() < 2e-3)
+        });
+        if is_p3 { ColorProfile::DisplayP3 } else { ColorProfile::Srgb }
     }
 
     /// How many pictures the file says it holds, each of its own layers.

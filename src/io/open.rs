@@ -113,6 +113,9 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
 
 /// A picture as a document of its size; an EXR or a sprite of several layers with all of them.
 fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
+    // Colors in Display P3 stay: the document has that profile.
+    let profile = picture::profile_of(file, bytes, budget);
+    let budget = &Budget { profile, ..*budget };
     if aseprite::is_aseprite(bytes) {
         return aseprite::read(file, bytes, budget);
     }
@@ -151,7 +154,7 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
         }
     };
     let notes = notes.into_iter().chain(warning).map(str::to_owned).collect();
-    let document = Document { layers, ..Document::empty(size) };
+    let document = Document { layers, profile, ..Document::empty(size) };
     Ok(ProjectContents { document, notes, is_whole: true, picture: None })
 }
 

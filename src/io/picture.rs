@@ -14,22 +14,24 @@ pub use passes::{LightLayer, layers};
 use super::bitmap::Bitmap;
 use super::exr::{self, ExrFile};
 use super::{Budget, bitmap, pixels, svg};
-use crate::math::{Size, srgb};
+use crate::icc_profiles::is_display_p3;
+use crate::math::{ColorProfile, Size, srgb};
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane, TileGrid, tile};
 use crate::{Error, Result};
 use image::DynamicImage;
-use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
+use moxcms::{DataColorSpace, Layout, TransformOptions};
 use std::path::Path;
 
 /// Decodes any format of `bitmap`, EXR or SVG, distinguished by their first bytes.
 ///
 /// * `file`: for messages (and for TGA, which only its name identifies).
 ///
-/// Integer files become sRGB bytes (through their ICC profile where it says something else), float
-/// files linear light. EXR gives its color layer, straight alpha; integers of 16 bits are kept
-/// along with the bytes. Fails with a sentence on anything damaged, unknown or beyond `budget`. The
-/// picture keeps `bytes`, so that a project can store the file as it is.
+/// Integer files become sRGB bytes (through their ICC profile where it says something else; Display
+/// P3 stays for a document in Display P3), float files linear light. EXR gives its color layer,
+/// straight alpha; integers of 16 bits are kept along with the bytes. Fails with a sentence on
+/// anything damaged, unknown or beyond `budget`. The picture keeps `bytes`, so that a project can
+/// store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     if svg::is_svg(bytes) {
         return svg::decode(file, bytes, budget);
@@ -56,10 +58,22 @@ pub fn encode(file: &Path, picture: &Picture) -> Result<(Asset, &'static str)> {
     }
 }
 
-/// A decoded file in its upright position.
+/// Whether the colors of a picture file are Display P3 or anything else, by its header.
+pub fn profile_of(file: &Path, bytes: &[u8], budget: &Budget) -> ColorProfile {
+    if ExrFile::is_exr(bytes) {
+        return ExrFile::open(file, bytes, budget).map_or(ColorProfile::Srgb, |exr| exr.profile());
+    }
+    let icc = bitmap::icc_profile(file, bytes, budget);
+    let is_p3 = !svg::is_svg(bytes) && icc.is_some_and(|icc| is_display_p3(&icc));
+    if is_p3 { ColorProfile::DisplayP3 } else { ColorProfile::Srgb }
+}
+
+/// A decoded file in its upright position, without the profile of colors that stay.
 fn decode_upright(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let mut bitmap = bitmap::decode(file, bytes, budget)?;
     bitmap.image.apply_orientation(bitmap.orientation);
+    let stays = budget.profile == ColorProfile::DisplayP3;
+    bitmap.icc = bitmap.icc.filter(|icc| !(stays && is_display_p3(icc)));
     Ok(bitmap)
 }
 
@@ -202,7 +216,7 @@ pub fn to_srgb16(size: Size, texels: Vec<[u16; 4]>, is_gray: bool, icc: &[u8]) -
 /// `None` where the profile is sRGB as far as a byte can tell (so that such files keep their
 /// bytes), does not belong to the image's kind of color, or cannot be used.
 fn convert_by_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
-    let profile = ColorProfile::new_from_slice(icc).ok()?;
+    let profile = moxcms::ColorProfile::new_from_slice(icc).ok()?;
     let gray = matches!(
         image,
         DynamicImage::ImageLuma8(_)
@@ -215,7 +229,7 @@ fn convert_by_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>>
         (DataColorSpace::Gray, true) => Layout::GrayAlpha,
         _ => return None,
     };
-    let target = ColorProfile::new_srgb();
+    let target = moxcms::ColorProfile::new_srgb();
     let transform = profile
         .create_transform_16bit(layout, &target, Layout::Rgba, TransformOptions::default())
         .ok()?;
@@ -248,7 +262,7 @@ fn convert_by_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>>
 /// `None` where the profile's light is sRGB's and linear (so that such files keep what is beyond
 /// white), or cannot be used.
 fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]>> {
-    let profile = ColorProfile::new_from_slice(icc).ok()?;
+    let profile = moxcms::ColorProfile::new_from_slice(icc).ok()?;
     let layout = match profile.color_space {
         DataColorSpace::Rgb => Layout::Rgba,
         DataColorSpace::Gray => Layout::GrayAlpha,
@@ -256,7 +270,7 @@ fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]
     };
     let options = TransformOptions::default();
     let transform = profile
-        .create_transform_f32(layout, &ColorProfile::new_srgb(), Layout::Rgba, options)
+        .create_transform_f32(layout, &moxcms::ColorProfile::new_srgb(), Layout::Rgba, options)
         .ok()?;
     let run = |texels: &[[f32; 4]]| -> Option<Vec<[f32; 4]>> {
         let bounded = |v: f32| v.max(0.0).min(1.0);

@@ -1,14 +1,14 @@
-//! Pixels as a project stores them: sRGB PNGs with straight alpha, of 16 bits where some tile has
+//! Pixels as a project stores them: PNGs with straight alpha, of 16 bits where some tile has
 //! them, else of 8, each decoded again and compared before it is trusted. Floor 5. `look` decides
 //! which pixels are stored.
 
 use crate::Budget;
 use crate::bitmap;
 use crate::document::EncodedPixels;
-use crate::math::{Rect, Size};
+use crate::icc_profiles::{icc_of, is_own_srgb};
+use crate::math::{ColorProfile, Rect, Size};
 use crate::raster::tile::sixteen_bit::byte_of;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
-use crate::srgb_profile::{is_own_srgb, own_srgb};
 use crate::{Error, Result};
 use std::borrow::Cow;
 use std::io::Write;
@@ -28,11 +28,18 @@ pub struct Painted {
 /// transparent.
 ///
 /// Premultiplied values come back exactly from straight ones, so nothing is lost.
-pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<EncodedPixels> {
+///
+/// * `profile`: what the file says that its colors are.
+pub fn encode(
+    file: &Path,
+    tiles: &TileGrid,
+    within: Option<Rect>,
+    profile: ColorProfile,
+) -> Result<EncodedPixels> {
     let bounds = painted_rect(tiles, within);
     let rect = if bounds.is_empty() { Rect::new(0, 0, 1, 1) } else { bounds };
     Ok(EncodedPixels {
-        file: encode_rect(file, tiles, rect)?,
+        file: encode_rect(file, tiles, rect, profile)?,
         size: size_of(rect),
         x: rect.x0,
         y: rect.y0,
@@ -40,7 +47,12 @@ pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<Enc
 }
 
 /// All of a rectangle as a PNG.
-pub fn encode_rect(file: &Path, tiles: &TileGrid, rect: Rect) -> Result<Asset> {
+pub fn encode_rect(
+    file: &Path,
+    tiles: &TileGrid,
+    rect: Rect,
+    profile: ColorProfile,
+) -> Result<Asset> {
     let is_16_bit = tiles.is_16_bit_in(rect);
     let values = |strip: Rect| match is_16_bit {
         true => tiles
@@ -52,6 +64,7 @@ pub fn encode_rect(file: &Path, tiles: &TileGrid, rect: Rect) -> Result<Asset> {
         false => tiles.to_straight_rgba(strip),
     };
     let kind = if is_16_bit { PngKind::RGBA16 } else { PngKind::RGBA8 };
+    let kind = PngKind { profile, ..kind };
     check(file, || strips(rect).map(|strip| Cow::Owned(values(strip))), size_of(rect), kind)
 }
 
@@ -64,13 +77,17 @@ fn size_of(rect: Rect) -> Size {
 struct PngKind {
     color: png::ColorType,
     depth: png::BitDepth,
+    profile: ColorProfile,
 }
 
 impl PngKind {
-    const RGBA8: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Eight };
-    const RGBA16: PngKind = PngKind { color: png::ColorType::Rgba, depth: png::BitDepth::Sixteen };
-    const GRAY8: PngKind =
-        PngKind { color: png::ColorType::Grayscale, depth: png::BitDepth::Eight };
+    const RGBA8: PngKind = PngKind {
+        color: png::ColorType::Rgba,
+        depth: png::BitDepth::Eight,
+        profile: ColorProfile::Srgb,
+    };
+    const RGBA16: PngKind = PngKind { depth: png::BitDepth::Sixteen, ..Self::RGBA8 };
+    const GRAY8: PngKind = PngKind { color: png::ColorType::Grayscale, ..Self::RGBA8 };
 
     /// Of a pixel.
     fn bytes(self) -> usize {
@@ -93,9 +110,20 @@ pub fn encode_coverage(file: &Path, plane: &Plane<u8>) -> Result<Asset> {
     check(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), PngKind::GRAY8)
 }
 
-/// Straight RGBA texels as a PNG, the colors of transparent ones kept.
+/// Straight RGBA texels as a PNG of sRGB, the colors of transparent ones kept.
 pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asset> {
-    check(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, PngKind::RGBA8)
+    encode_texels_in(file, texels, size, ColorProfile::Srgb)
+}
+
+/// The same in a color profile.
+pub fn encode_texels_in(
+    file: &Path,
+    texels: &[[u8; 4]],
+    size: Size,
+    profile: ColorProfile,
+) -> Result<Asset> {
+    let kind = PngKind { profile, ..PngKind::RGBA8 };
+    check(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, kind)
 }
 
 /// The same with 16 bits a channel.
@@ -147,11 +175,13 @@ fn encode_strips<'v>(
     let mut bytes = Vec::new();
     let mut info = png::Info::with_size(size.width, size.height);
     (info.color_type, info.bit_depth) = (kind.color, kind.depth);
-    match kind.depth {
+    match (kind.depth, kind.profile) {
+        (png::BitDepth::Eight, ColorProfile::Srgb) => {
+            info.srgb = Some(png::SrgbRenderingIntent::Perceptual);
+        }
         // Krita asks for a profile, layer by layer, for pictures of 16 bits that do not contain
         // one.
-        png::BitDepth::Sixteen => info.icc_profile = Some(own_srgb().into()),
-        _ => info.srgb = Some(png::SrgbRenderingIntent::Perceptual),
+        (_, profile) => info.icc_profile = Some(icc_of(profile).into()),
     }
     let mut encoder = png::Encoder::with_info(&mut bytes, info)?;
     encoder.set_compression(how);
@@ -212,9 +242,13 @@ pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Pai
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().ok()?;
     let info = reader.info();
-    let is_srgb =
-        !bitmap::has_png_profile(bytes) || info.icc_profile.as_deref().is_some_and(is_own_srgb);
-    let is_bare = bitmap::png_exif(bytes).is_none() && info.animation_control.is_none() && is_srgb;
+    let is_own = |icc: &[u8]| {
+        let stays = budget.profile == ColorProfile::DisplayP3;
+        is_own_srgb(icc) || stays && icc_of(ColorProfile::DisplayP3) == icc
+    };
+    let stays = !bitmap::has_png_profile(bytes) || info.icc_profile.as_deref().is_some_and(is_own);
+    let stays = stays && bitmap::png_cicp(bytes).is_none();
+    let is_bare = bitmap::png_exif(bytes).is_none() && info.animation_control.is_none() && stays;
     let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
     let (color, depth) = reader.output_color_type();
     let is_16_bit = depth == png::BitDepth::Sixteen;
@@ -334,7 +368,7 @@ mod tests {
             bytes.resize(TILE * TILE * 4, 0);
             tiles.set(TileAt::new(i as i32 - 3, 1), Tile::from_bytes(bytes).map(Into::into));
         }
-        let encoded = encode(Path::new("a"), &tiles, None).unwrap();
+        let encoded = encode(Path::new("a"), &tiles, None, ColorProfile::Srgb).unwrap();
         let picture =
             picture::decode(Path::new("a"), encoded.file.bytes(), &Budget::default()).unwrap();
         let crate::raster::picture::Texels::Srgb8(texels) = picture.texels else { panic!("bytes") };
@@ -365,7 +399,7 @@ mod tests {
         };
         let pixels: Vec<[u16; 4]> = (0..200 * 90).map(pixel).collect();
         let tiles = TileGrid::from_straight16(&pixels, 200, 90, -8, 5);
-        let encoded = encode(Path::new("a"), &tiles, None).unwrap();
+        let encoded = encode(Path::new("a"), &tiles, None, ColorProfile::Srgb).unwrap();
         assert!(is_16_bit(encoded.file.bytes()));
         assert!(bitmap::has_png_profile(encoded.file.bytes()), "Krita would ask for one");
         assert_eq!((encoded.x, encoded.y, encoded.size), (-8, 5, Size::new(200, 90)));
@@ -399,7 +433,7 @@ mod tests {
             rgba[(y * 100 + x) * 4..][..4].copy_from_slice(&[1, 2, 3, 4]);
         }
         let tiles = TileGrid::from_straight_rgba(&rgba, 100, 90, -30, -7);
-        let encoded = encode(Path::new("a"), &tiles, None).unwrap();
+        let encoded = encode(Path::new("a"), &tiles, None, ColorProfile::Srgb).unwrap();
         assert_eq!((encoded.x, encoded.y, encoded.size), (-10, 3, Size::new(51, 71)));
         let nothing = encode(Path::new("a"), &TileGrid::default(), None).unwrap();
         assert_eq!(nothing.size, Size::new(1, 1));

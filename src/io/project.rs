@@ -42,7 +42,9 @@ pub use thumbnail::{SmallPicture, stored_thumbnail};
 use super::recipe;
 use crate::document::EncodedPixels;
 use crate::document::{Document, LayerId, Progress, flatten};
+use crate::math::ColorProfile;
 use crate::pixels;
+use crate::profile_change::show_in_srgb;
 use crate::raster::Asset;
 use crate::{Error, Result};
 use assets::{AssetList, StoredPixels};
@@ -84,15 +86,17 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
     entries.insert(3, ZipEntry::text(STACK, xml.into_bytes()));
     let layers = pictures.iter().map(|(name, picture)| ZipEntry::bytes(name, picture.file.clone()));
     entries.splice(4..4, layers);
-    let whole = merged.to_straight_rgba(document.size.rect());
-    let mut picture = |name, rgba: &[u8], size| -> Result<()> {
-        let png = pixels::encode_texels(file, rgba.as_chunks().0, size)?;
+    let mut whole = merged.to_straight_rgba(document.size.rect());
+    let mut picture = |name, rgba: &[u8], size, profile| -> Result<()> {
+        let png = pixels::encode_texels_in(file, rgba.as_chunks().0, size, profile)?;
         entries.push(ZipEntry::bytes(name, png));
         Ok(())
     };
-    picture(MERGED, &whole, document.size)?;
+    picture(MERGED, &whole, document.size, document.profile)?;
+    // File managers know sRGB alone.
+    show_in_srgb(&mut whole, document.profile);
     if let Some(small) = SmallPicture::of(whole, document.size, thumbnail::STORED_PX) {
-        picture(thumbnail::ENTRY, &small.rgba, small.size)?;
+        picture(thumbnail::ENTRY, &small.rgba, small.size, ColorProfile::Srgb)?;
     }
     pack_zip(file, &entries).map(Some)
 }

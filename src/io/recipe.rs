@@ -72,7 +72,7 @@ pub use strokes::write_stroke;
 use super::json::{Fields, JsonNode, JsonObject, Printer};
 use super::{Budget, Files, RecipeFolder, files, maps};
 use crate::document::{Document, Guides, SelectionList, SurfaceSource, SymmetrySettings};
-use crate::math::Size;
+use crate::math::{ColorProfile, Size};
 use crate::paint::{Scene, Selection};
 use crate::raster::Asset;
 use crate::surface::{Surface, SurfaceError};
@@ -177,8 +177,12 @@ pub fn read_unshaped(
         .get("symmetry")
         .map_or(Ok(SymmetrySettings::default()), |node| guides::read_symmetry(&node))?;
     let palette = root.get("palette").map_or(Ok(Arc::default()), |node| palettes::read(&node))?;
+    let profile = root.one_of("profile", &ColorProfile::ALL, ColorProfile::default())?;
     root.finish()?;
 
+    // Pictures in the document's profile stay as they are.
+    let budget = Budget { profile, ..*source.budget };
+    let source = RecipeSource { budget: &budget, ..source };
     let CanvasAndSurface { size, surface, files, notes: of_maps } =
         shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(fit_source).or(own.map(|(own, _)| own)).map(Arc::new);
@@ -215,6 +219,7 @@ pub fn read_unshaped(
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
     let bare = Document {
         size,
+        profile,
         surface,
         surface_source,
         surface_files: Arc::new(files),
@@ -243,6 +248,11 @@ pub fn read_unshaped(
         }
     };
     Ok((document, reader.notes))
+}
+
+/// The color profile that a document's JSON says, if it is one that is known.
+pub fn profile_of(value: &Value) -> ColorProfile {
+    value["profile"].as_str().and_then(ColorProfile::from_name).unwrap_or_default()
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {
@@ -393,9 +403,13 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
         || has_unwrapped(document)
         || effects::is_needed(document)
         || guides::is_needed(document)
-        || palettes::is_needed(document);
+        || palettes::is_needed(document)
+        || document.profile != ColorProfile::default();
     out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
+    if document.profile != ColorProfile::default() {
+        out.set("profile", document.profile.name().into());
+    }
     let mut surface = document.surface_source.as_deref().map(surface::write).unwrap_or_default();
     if !document.parts.is_empty() {
         surface.set("parts", parts::write(document, list));

@@ -11,6 +11,7 @@ mod shapes;
 pub use shapes::{MOST_SHAPES, SvgShape, SvgShapes, read_shapes};
 
 use super::{Budget, pixels::Painted};
+use crate::math::srgb::Color;
 use crate::math::{Size, Vec2, vec2};
 use crate::raster::{self, Asset, Picture, TileGrid};
 use crate::{Error, Result};
@@ -77,6 +78,34 @@ pub fn decode_paint(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) 
     let (w, h) = (size.width as usize, size.height as usize);
     let tiles = TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y);
     Ok(Painted { size, tiles, warning: drawing.warning() })
+}
+
+/// An SVG with each of its colors replaced, its text as outlines. Pictures within it stay.
+pub fn recolor(
+    file: &Path,
+    bytes: &[u8],
+    budget: &Budget,
+    replace: impl Fn(Color) -> Color,
+) -> Result<Vec<u8>> {
+    /// Attributes of colors, as the writer of `usvg` has them: `#rrggbb`.
+    const COLORS: [&str; 5] =
+        ["fill=\"", "stroke=\"", "stop-color=\"", "flood-color=\"", "lighting-color=\""];
+    let text = tree(file, bytes, budget)?.to_string(&WriteOptions::default());
+    let (mut out, mut rest) = (String::with_capacity(text.len()), text.as_str());
+    while let Some(at) = rest.find("=\"#") {
+        let (before, after) = rest.split_at(at + 2);
+        out.push_str(before);
+        let color = after.split('"').next().unwrap_or_default();
+        let replaced =
+            Color::parse(color).filter(|_| COLORS.iter().any(|name| before.ends_with(name)));
+        match replaced {
+            Some(known) => out.push_str(&replace(known).to_string()),
+            None => out.push_str(color),
+        }
+        rest = &after[color.len()..];
+    }
+    out.push_str(rest);
+    Ok(out.into_bytes())
 }
 
 /// An SVG that was parsed.

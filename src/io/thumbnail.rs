@@ -6,6 +6,8 @@ use super::files::read_file;
 use super::project::{self, SmallPicture};
 use super::{Budget, open};
 use crate::document::{Progress, flatten};
+use crate::profile_change::show_in_srgb;
+use crate::raster::TileGrid;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -30,8 +32,13 @@ fn paint(file: &Path, side_px: u32, budget: &Budget) -> Result<SmallPicture> {
     let size = document.size;
     // Nothing here cancels, so it is always painted.
     let whole = flatten(&document, &Progress::default());
+    let shown = |tiles: TileGrid| {
+        let mut rgba = tiles.to_straight_rgba(size.rect());
+        show_in_srgb(&mut rgba, document.profile);
+        rgba
+    };
     whole
-        .and_then(|tiles| SmallPicture::of(tiles.to_straight_rgba(size.rect()), size, side_px))
+        .and_then(|tiles| SmallPicture::of(shown(tiles), size, side_px))
         .ok_or_else(|| Error::decode(file, "the picture has no pixels"))
 }
 

@@ -38,12 +38,12 @@ use crate::document::Document;
 use crate::io::proof::ProofTable;
 use crate::language::tr;
 use crate::math::srgb::Color;
-use crate::math::{Affine2, Rect, Size, Vec2, vec2};
+use crate::math::{Affine2, ColorProfile, Rect, Size, Vec2, vec2};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::tools::ToolKind;
 use ants::Ants;
-use blocks::{ShownColors, corners, on_screen, quad};
+use blocks::{ShownColors, ShownLook, corners, on_screen, quad};
 use eframe::egui::{
     self, Color32, ColorImage, Painter, Sense, Stroke, TextureHandle, TextureOptions,
     TextureWrapMode, Ui, pos2,
@@ -84,6 +84,8 @@ pub struct Canvas {
     has_loupe: bool,
     /// How the picture will be printed, once a profile was chosen.
     pub proof: Option<Arc<ProofTable>>,
+    /// What the numbers of the picture mean.
+    profile: ColorProfile,
     /// The picture for the navigator, and whether it is outdated.
     small: Option<TextureHandle>,
     small_is_old: bool,
@@ -139,6 +141,7 @@ impl Canvas {
             wobble: None,
             has_loupe: true,
             proof: None,
+            profile: ColorProfile::Srgb,
             small: None,
             small_is_old: true,
             area_pt: vec2(800.0, 600.0),
@@ -277,11 +280,15 @@ impl Canvas {
     /// Shows the pictures in their colors, in grays, or as they will be printed.
     fn show_colors(&mut self, session: &Session) {
         let proof = self.proof.clone().filter(|_| session.shows_proof);
-        let colors = match proof {
-            _ if session.shows_values => ShownColors::Values,
-            Some(table) => ShownColors::Proof { table, is_marked: session.marks_gamut },
-            None => ShownColors::Own,
+        let look = match proof {
+            _ if session.shows_values => ShownLook::Values,
+            Some(table) => ShownLook::Proof { table, is_marked: session.marks_gamut },
+            None => ShownLook::Own,
         };
+        let profile = session.shown_document().map_or(ColorProfile::Srgb, |seen| seen.profile);
+        self.small_is_old |= profile != self.profile;
+        self.profile = profile;
+        let colors = ShownColors { profile, look };
         for sheet in [&mut self.whole, &mut self.draft, &mut self.sheet.shown] {
             sheet.show_in(&colors);
         }

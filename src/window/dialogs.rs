@@ -18,6 +18,7 @@ pub mod palette;
 pub mod panels;
 pub mod path;
 pub mod preferences;
+pub mod profile;
 pub mod recovery;
 pub mod replace;
 pub mod shape;
@@ -64,6 +65,7 @@ pub enum Dialog {
     Unwrapped(unwrapped::UnwrappedDialog),
     Import(Box<import::ImportDialog>),
     Path(path::PathDialog),
+    Profile(profile::ProfileDialog),
     Recovery(recovery::RecoveryDialog),
     Shape(shape::ShapeDialog),
     Unsaved(unsaved::UnsavedDialog),
@@ -184,6 +186,7 @@ impl Dialog {
             Dialog::Canvas(canvas) => canvas.show(ui, requests),
             Dialog::ImageSize(image) => image.show(ui, requests),
             Dialog::Turn(turn) => turn.show(ui, requests),
+            Dialog::Profile(profile) => profile.show(ui, requests),
             Dialog::Export(export) => export.show(ui, session, &mut settings.exports, *preview),
             Dialog::Unwrapped(unwrapped) => unwrapped.show(ui, session),
             Dialog::Import(import) => import.show(ui),

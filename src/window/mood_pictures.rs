@@ -6,6 +6,7 @@ use crate::Error;
 use crate::document::{
     Content, Document, DocumentReducer, Layer, LayerId, Live, Progress, flatten,
 };
+use crate::io::profile_change::show_in_srgb;
 use crate::shading::Mood;
 use eframe::egui::{self, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2};
 use std::collections::HashMap;
@@ -113,7 +114,9 @@ fn paint_moods(document: &Document, layer: LayerId) -> Vec<(Mood, ColorImage)> {
 
 /// What a document shows, as an image of its size.
 pub fn image_of(document: &Document) -> Option<ColorImage> {
-    let pixels = flatten(document, &Progress::default())?.to_straight_rgba(document.size.rect());
+    let shown = flatten(document, &Progress::default())?;
+    let mut pixels = shown.to_straight_rgba(document.size.rect());
+    show_in_srgb(&mut pixels, document.profile);
     let size = [document.size.width as usize, document.size.height as usize];
     Some(ColorImage::from_rgba_unmultiplied(size, &pixels))
 }

@@ -3,7 +3,7 @@
 
 use super::file_pictures::{FilePictures, PictureState};
 use super::requests::UiRequests;
-use super::theme::ACCENT;
+use super::theme::{self, ACCENT};
 use crate::language::tr;
 use crate::math::srgb::Color;
 use crate::session::Action;
@@ -259,6 +259,7 @@ fn pick(
         share.x = 1.0 - share.x;
     }
     if let Some(color) = color_at(pixels, share) {
+        let color = theme::from_window(color);
         requests.act(Action::Hand(HandAction::Color { color }));
     }
 }

@@ -94,6 +94,7 @@ pub enum WindowRequest {
     CanvasSizeDialog,
     ImageSizeDialog,
     TurnDialog,
+    ProfileDialog,
     Paste(PasteTo),
     Palette,
     /// The preferences, at a page.

@@ -2,7 +2,10 @@
 //! colors, and one accent. Floor 7.
 
 use crate::math::named::current_name;
+use crate::math::srgb::Color;
+use crate::math::{ColorProfile, ProfileConversion};
 use eframe::egui::{self, Color32, CornerRadius, Stroke, Style, TextStyle, Theme, Visuals, vec2};
+use std::cell::Cell;
 
 /// What is selected or held.
 pub const ACCENT: Color32 = Color32::from_rgb(0x4d, 0x9d, 0xe0);
@@ -12,9 +15,30 @@ const ACCENT_ON_LIGHT: Color32 = Color32::from_rgb(0x1a, 0x68, 0xb0);
 /// The squares behind what is transparent.
 pub const CHECKER: [Color32; 2] = [Color32::from_gray(0x9a), Color32::from_gray(0x7e)];
 
+thread_local! {
+    /// The color profile of the document in front.
+    static PROFILE: Cell<ColorProfile> = const { Cell::new(ColorProfile::Srgb) };
+}
+
+/// Colors are shown as those of a document in a profile from now on.
+pub fn show_profile(profile: ColorProfile) {
+    PROFILE.set(profile);
+}
+
+/// How the document's colors become those of the window, which is sRGB; `None` if they are the same.
+pub fn to_window() -> Option<&'static ProfileConversion> {
+    PROFILE.get().conversion_to(ColorProfile::Srgb)
+}
+
+/// A color of the window, such as that of a pinned reference, in the document's profile.
+pub fn from_window(color: Color) -> Color {
+    ColorProfile::Srgb.conversion_to(PROFILE.get()).map_or(color, |by| by.color(color))
+}
+
 /// A color of the document as the window shows it.
-pub fn color32(color: crate::math::srgb::Color) -> Color32 {
-    Color32::from_rgba_unmultiplied(color.r, color.g, color.b, color.a)
+pub fn color32(color: Color) -> Color32 {
+    let Color { r, g, b, a } = to_window().map_or(color, |by| by.color(color));
+    Color32::from_rgba_unmultiplied(r, g, b, a)
 }
 
 /// The looks of the window.

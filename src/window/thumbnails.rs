@@ -7,6 +7,7 @@ use crate::document::{
     Content, Document, InkLayer, Layer, LayerId, LayerMask, MaskKind, PixelLayer, Progress,
     flatten_layer,
 };
+use crate::io::profile_change::show_in_srgb;
 use crate::mood_pictures::MoodPictures;
 use crate::part_pictures::PartPictures;
 use crate::raster::{Plane, TileGrid};
@@ -202,7 +203,8 @@ impl ThumbnailMaker {
         let id = layer.id;
         let bare = small.with_layer(id, |layer| (layer.opacity, layer.visible) = (1.0, true))?;
         let grid: TileGrid = flatten_layer(&bare, id, &Progress::default())?;
-        let bytes = grid.to_straight_rgba(bare.size.rect());
+        let mut bytes = grid.to_straight_rgba(bare.size.rect());
+        show_in_srgb(&mut bytes, order.document.profile);
         let pixels = bytes
             .as_chunks::<4>()
             .0

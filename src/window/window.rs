@@ -272,6 +272,8 @@ impl MainWindow {
         self.apply_first_scale(ui.ctx());
         self.follow_language(ui.ctx());
         self.finish_jobs(ui.ctx());
+        let profile = self.session.shown_document().map(|document| document.profile);
+        theme::show_profile(profile.unwrap_or_default());
         self.tell_troubles();
         self.unwrap_ahead();
         let is_painting = self.canvas.is_painting(&self.session);

@@ -328,7 +328,7 @@ fn a_proof_is_shown_with_the_profile_of_a_file_and_kept_for_the_next_time() {
     });
     assert!(!session(&harness).shows_proof);
     let profile = home.path().join("press.icc");
-    std::fs::write(&profile, rilievo_io::srgb_profile::own_srgb()).unwrap();
+    std::fs::write(&profile, rilievo_io::icc_profiles::icc_of(Default::default())).unwrap();
     command(&mut harness, "Show proof");
     choose(&mut harness, &profile);
     until(&mut harness, |harness| session(harness).shows_proof);

@@ -211,6 +211,7 @@ impl Document {
         let parts = parts::transform_parts(&self.parts.list, change, both);
         let bare = Document {
             size: change.to,
+            profile: self.profile,
             surface_source: source.map(|(source, maps)| Arc::new(source.placed_as(maps))),
             surface: maps,
             surface_files: self.surface_files.clone(),

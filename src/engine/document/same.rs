@@ -19,6 +19,9 @@ impl Document {
         if self.size != other.size {
             return Some("the size of the canvas".into());
         }
+        if self.profile != other.profile {
+            return Some("the color profile".into());
+        }
         surface(self, other)
             .or_else(|| parts(&self.parts.list, &other.parts.list))
             .or_else(|| layers(&self.layers, &other.layers))

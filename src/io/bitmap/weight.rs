@@ -34,16 +34,27 @@ pub fn png_pixel_bits(bytes: &[u8]) -> Option<u64> {
 
 /// A PNG says that it has a color profile.
 pub fn has_png_profile(bytes: &[u8]) -> bool {
+    chunk_before_pixels(bytes, b"iCCP").is_some()
+}
+
+/// What a PNG says of its colors by code points (ITU-T H.273): primaries, transfer, matrix, range.
+pub fn png_cicp(bytes: &[u8]) -> Option<[u8; 4]> {
+    let at = chunk_before_pixels(bytes, b"cICP")?;
+    bytes.get(at..)?.first_chunk().copied()
+}
+
+/// Where the content of a chunk begins that a PNG has before its pixels.
+fn chunk_before_pixels(bytes: &[u8], wanted: &[u8; 4]) -> Option<usize> {
     let mut at = 8;
     while let Some(head) = bytes.get(at..).and_then(<[u8]>::first_chunk::<8>) {
         let ([a, b, c, d], kind) = ([head[0], head[1], head[2], head[3]], &head[4..]);
         match kind {
-            b"iCCP" => return true,
-            b"IDAT" => return false,
+            kind if kind == wanted => return Some(at + 8),
+            b"IDAT" => return None,
             _ => {
                 at = at.saturating_add(u32::from_be_bytes([a, b, c, d]) as usize).saturating_add(12)
             }
         }
     }
-    false
+    None
 }

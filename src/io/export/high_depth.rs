@@ -1,14 +1,16 @@
 //! Pictures of more than 8 bits: PNG and TIFF of 16, EXR of half floats or whole ones, from what
 //! was composed without rounding. Floor 5.
 
-use super::{ExportFormat, ExportOptions, png};
+use super::{ExportFormat, ExportOptions, name_profile, png};
 use crate::document::{
     Document, Highlights, Progress, flatten, flatten_rounding_once, flatten_to_floats,
 };
-use crate::math::{Size, srgb};
+use crate::math::{ColorProfile, ProfileConversion, Size, srgb};
 use crate::project::Cancelable;
+use crate::raster::TileGrid;
 use crate::{Budget, Error, Result};
 use image::DynamicImage;
+use rayon::prelude::*;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -32,15 +34,46 @@ pub fn encode_document(
         } else {
             flatten(document, progress)
         };
-        return pixels
-            .map(|pixels| super::encode(file, format, &pixels, document.size, options))
-            .transpose();
+        let conversion = conversion(document, options);
+        let encode = |pixels: TileGrid| {
+            let pixels = match conversion {
+                Some(by) => pixels.converted(by).0,
+                None => pixels,
+            };
+            let profile = written_profile(document, options);
+            super::encode_in(file, format, &pixels, document.size, options, profile)
+        };
+        return pixels.map(encode).transpose();
     }
-    let Some(pixels) = flatten_within_budget(file, document, highlights(format), budget, progress)?
+    let Some(mut pixels) =
+        flatten_within_budget(file, document, highlights(format), budget, progress)?
     else {
         return Ok(None);
     };
-    encode(file, format, &pixels, document.size, options).map(Some)
+    if let Some(by) = conversion(document, options) {
+        pixels.par_iter_mut().for_each(|pixel| *pixel = convert(*pixel, by));
+    }
+    let profile = written_profile(document, options);
+    encode_in(file, format, &pixels, document.size, options, profile).map(Some)
+}
+
+/// The profile that a file of a document names.
+fn written_profile(document: &Document, options: &ExportOptions) -> ColorProfile {
+    options.profile.unwrap_or(document.profile)
+}
+
+/// How the document's colors become those of the file.
+fn conversion(document: &Document, options: &ExportOptions) -> Option<&'static ProfileConversion> {
+    document.profile.conversion_to(written_profile(document, options))
+}
+
+/// A premultiplied encoded pixel, light brighter than white kept.
+fn convert([r, g, b, a]: [f32; 4], by: &ProfileConversion) -> [f32; 4] {
+    if a <= 0.0 {
+        return [0.0; 4];
+    }
+    let [r, g, b] = by.encoded_bright([r, g, b].map(|v| v / a)).map(|v| v * a);
+    [r, g, b, a]
 }
 
 /// A document flattened without rounding, if there is memory for it and for its file; `None` if
@@ -63,8 +96,8 @@ fn highlights(format: ExportFormat) -> Highlights {
     if format == ExportFormat::Exr { Highlights::Kept } else { Highlights::Clipped }
 }
 
-/// The bytes of a picture file, of pixels as [`crate::document::flatten_to_floats`] gives them;
-/// `file` is for messages.
+/// The bytes of a picture file of sRGB, of pixels as [`crate::document::flatten_to_floats`] gives
+/// them; `file` is for messages.
 ///
 /// Fails for formats of 8 bits.
 pub fn encode(
@@ -73,6 +106,18 @@ pub fn encode(
     pixels: &[[f32; 4]],
     canvas: Size,
     options: &ExportOptions,
+) -> Result<Vec<u8>> {
+    encode_in(file, format, pixels, canvas, options, ColorProfile::Srgb)
+}
+
+/// The same of pixels in a color profile, which the file names.
+pub fn encode_in(
+    file: &Path,
+    format: ExportFormat,
+    pixels: &[[f32; 4]],
+    canvas: Size,
+    options: &ExportOptions,
+    profile: ColorProfile,
 ) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() || pixels.len() != canvas.area() {
@@ -88,17 +133,18 @@ pub fn encode(
         ExportFormat::Png => {
             let values: Vec<u8> =
                 part.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
-            png([values].into_iter(), size, png::BitDepth::Sixteen, options)
+            png([values].into_iter(), size, png::BitDepth::Sixteen, options, profile)
                 .map_err(|e| Error::unsupported_file(file, e))
         }
         ExportFormat::Tiff => {
             let values = part.iter().flat_map(straight16).collect();
             let image = image::ImageBuffer::from_raw(size.width, size.height, values);
-            tiff(file, image.map(DynamicImage::ImageRgba16))
+            tiff(file, image.map(DynamicImage::ImageRgba16), profile)
         }
         ExportFormat::Exr => {
             let bits = format.bits(file, options.bits)?;
-            exr(size, bits, |i| light(&part[i])).map_err(|e| Error::unsupported_file(file, e))
+            exr(size, bits, profile, |i| light(&part[i]))
+                .map_err(|e| Error::unsupported_file(file, e))
         }
         ExportFormat::Jpeg | ExportFormat::WebP => Err(Error::unsupported_file(
             file,
@@ -120,13 +166,17 @@ fn straight16(&[r, g, b, a]: &[f32; 4]) -> [u16; 4] {
 }
 
 /// A TIFF of an image, whatever its depth.
-pub(super) fn tiff(file: &Path, image: Option<DynamicImage>) -> Result<Vec<u8>> {
+pub(super) fn tiff(
+    file: &Path,
+    image: Option<DynamicImage>,
+    profile: ColorProfile,
+) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let image =
         image.ok_or_else(|| Error::unsupported_file(file, "the picture holds no pixels"))?;
-    image
-        .write_to(&mut bytes, image::ImageFormat::Tiff)
-        .map_err(|e| Error::unsupported_file(file, e))?;
+    let mut encoder = image::codecs::tiff::TiffEncoder::new(&mut bytes);
+    name_profile(file, &mut encoder, profile)?;
+    image.write_with_encoder(encoder).map_err(|e| Error::unsupported_file(file, e))?;
     Ok(bytes.into_inner())
 }
 
@@ -136,8 +186,10 @@ pub(super) fn tiff(file: &Path, image: Option<DynamicImage>) -> Result<Vec<u8>> 
 pub(super) fn exr(
     size: Size,
     bits: u8,
+    profile: ColorProfile,
     light: impl Fn(usize) -> [f32; 4] + Sync,
 ) -> Result<Vec<u8>, exr::error::Error> {
+    use crate::exr::chromaticities;
     use exr::prelude::*;
     // Lines are written in order, so that the bytes do not depend on the threads.
     let encoding = Encoding {
@@ -152,15 +204,15 @@ pub(super) fn exr(
     if bits == 32 {
         let channels =
             SpecificChannels::rgba(|at: Vec2<usize>| <(f32, f32, f32, f32)>::from(light(at)));
-        Image::from_layer(Layer::new(extent, attributes, encoding, channels))
-            .write()
-            .to_buffered(&mut bytes)?;
+        let mut image = Image::from_layer(Layer::new(extent, attributes, encoding, channels));
+        image.attributes.chromaticities = chromaticities(profile);
+        image.write().to_buffered(&mut bytes)?;
     } else {
         let half = |at: Vec2<usize>| <(f16, f16, f16, f16)>::from(light(at).map(f16::from_f32));
         let channels = SpecificChannels::rgba(half);
-        Image::from_layer(Layer::new(extent, attributes, encoding, channels))
-            .write()
-            .to_buffered(&mut bytes)?;
+        let mut image = Image::from_layer(Layer::new(extent, attributes, encoding, channels));
+        image.attributes.chromaticities = chromaticities(profile);
+        image.write().to_buffered(&mut bytes)?;
     }
     Ok(bytes.into_inner())
 }

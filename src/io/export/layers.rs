@@ -4,7 +4,8 @@
 
 use super::high_depth::{flatten_within_budget, light};
 use crate::document::{Document, Highlights, Progress};
-use crate::math::Size;
+use crate::exr::chromaticities;
+use crate::math::{ColorProfile, Size};
 use crate::project::Cancelable;
 use crate::{Budget, Error, Result};
 use exr::prelude::*;
@@ -57,7 +58,9 @@ pub fn encode(
         let depth = pixels().map(|(x, y)| surface.depth(x, y)).collect();
         channels.push(AnyChannel::new("depth.Z", FlatSamples::F32(depth)));
     }
-    write_exr(size, channels).map(Some).map_err(|e| Error::unsupported_file(file, e))
+    write_exr(size, channels, document.profile)
+        .map(Some)
+        .map_err(|e| Error::unsupported_file(file, e))
 }
 
 fn push_picture(
@@ -90,6 +93,7 @@ fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
 fn write_exr(
     size: Size,
     channels: Vec<AnyChannel<FlatSamples>>,
+    profile: ColorProfile,
 ) -> Result<Vec<u8>, exr::error::Error> {
     let encoding = Encoding {
         compression: Compression::ZIP16,
@@ -104,7 +108,9 @@ fn write_exr(
         AnyChannels::sort(channels.into()),
     );
     let mut bytes = Cursor::new(Vec::new());
-    Image::from_layer(layer).write().to_buffered(&mut bytes)?;
+    let mut image = Image::from_layer(layer);
+    image.attributes.chromaticities = chromaticities(profile);
+    image.write().to_buffered(&mut bytes)?;
     Ok(bytes.into_inner())
 }
 

@@ -1,8 +1,9 @@
 //! OpenEXR out: one layer of named 32-bit channels, the same bytes every time.
 //! Floor 5.
 
-use crate::math::Size;
+use crate::math::{ColorProfile, Size};
 use crate::{Error, Result};
+use exr::meta::attribute::Chromaticities;
 use exr::prelude::*;
 use std::io::Cursor;
 use std::path::Path;
@@ -16,6 +17,12 @@ pub fn encode_light(file: &Path, size: Size, texels: &[[f32; 4]]) -> Result<Vec<
         size,
         vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2)), ("A", channel(3))],
     )
+}
+
+/// What a header says of the primaries; nothing of those of sRGB, which are the usual ones.
+pub fn chromaticities(profile: ColorProfile) -> Option<Chromaticities> {
+    let [red, green, blue, white] = profile.chromaticities().map(|[x, y]| Vec2(x, y));
+    (profile != ColorProfile::Srgb).then_some(Chromaticities { red, green, blue, white })
 }
 
 /// Any channels of 32 bits, one value a pixel, row by row.

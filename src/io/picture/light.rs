@@ -3,6 +3,7 @@
 
 use crate::Budget;
 use crate::exr::{ExrFile, ExrPass};
+use crate::math::{ColorProfile, ProfileConversion};
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
@@ -45,8 +46,9 @@ fn picture(file: &Path, exr: &ExrFile, pass: &ExrPass, budget: &Budget) -> Resul
     let bytes = exr.size().area() as u64 * 2 * size_of::<[f32; 4]>() as u64;
     budget.room(file, &format!("a picture of {} pixels of light", exr.size()), bytes)?;
     let mut texels = Vec::with_capacity(exr.size().area());
+    let conversion = conversion(exr, budget);
     in_bands(file, exr, pass, |band| {
-        texels.extend(band.iter().map(|&texel| straight(texel)));
+        texels.extend(band.iter().map(|&texel| convert(straight(texel), conversion)));
         Ok(())
     })?;
     Picture::linear(exr.size(), texels)
@@ -56,6 +58,18 @@ fn picture(file: &Path, exr: &ExrFile, pass: &ExrPass, budget: &Budget) -> Resul
 /// EXR's alpha is associated: colors are stored multiplied by it.
 pub fn straight([r, g, b, a]: [f32; 4]) -> [f32; 4] {
     if a > 0.0 && a < 1.0 { [r / a, g / a, b / a, a] } else { [r, g, b, a] }
+}
+
+/// How light in Display P3 becomes that of a document in sRGB.
+pub fn conversion(exr: &ExrFile, budget: &Budget) -> Option<&'static ProfileConversion> {
+    let is_p3 = exr.profile() == ColorProfile::DisplayP3;
+    is_p3.then(|| exr.profile().conversion_to(budget.profile)).flatten()
+}
+
+/// Straight light, converted if that is to be done.
+pub fn convert([r, g, b, a]: [f32; 4], by: Option<&ProfileConversion>) -> [f32; 4] {
+    let [r, g, b] = by.map_or([r, g, b], |by| by.light([r, g, b]));
+    [r, g, b, a]
 }
 
 /// The place of a layer's name among those of the whole picture; beyond them for others.

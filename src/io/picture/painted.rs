@@ -59,8 +59,10 @@ pub fn of_light(
         size.area() as u64 * budget.paint_bytes(),
     )?;
     let mut gathered = GatheredTiles::new(file, budget, size, [x, y]);
+    let conversion = light::conversion(exr, budget);
     light::in_bands(file, exr, pass, |band| {
-        let texels: Vec<[f32; 4]> = band.iter().map(|&texel| light::straight(texel)).collect();
+        let straight = |texel: &[f32; 4]| light::convert(light::straight(*texel), conversion);
+        let texels: Vec<[f32; 4]> = band.iter().map(straight).collect();
         gathered.add(|[w, h], [x, y]| TileGrid::from_light(&texels, w, h, x, y), texels.len())
     })?;
     Ok(gathered.finish())

@@ -1,7 +1,8 @@
 //! Pictures of every format, with profiles and without.
 
 use super::*;
-use crate::srgb_profile::own_srgb;
+use crate::icc_profiles::icc_of;
+use crate::math::ColorProfile;
 use image::{ImageFormat, RgbaImage};
 use std::io::Cursor;
 
@@ -56,7 +57,7 @@ fn pictures_of_16_bits_become_paint_of_16_bits_whatever_way_they_are_read() {
     // Krita writes its profile, which has to be looked at first.
     let mut profiled = Vec::new();
     let mut info = png::Info::with_size(70, 130);
-    info.icc_profile = Some(own_srgb().into());
+    info.icc_profile = Some(icc_of(ColorProfile::Srgb).to_vec().into());
     (info.color_type, info.bit_depth) = (png::ColorType::Rgba, png::BitDepth::Sixteen);
     let mut writer = png::Encoder::with_info(&mut profiled, info).unwrap().write_header().unwrap();
     let bytes: Vec<u8> = texels16.as_flattened().iter().flat_map(|v| v.to_be_bytes()).collect();
@@ -142,19 +143,19 @@ fn a_jpeg_without_its_end_is_shown_as_far_as_it_goes() {
 
 #[test]
 fn our_own_profile_is_one_that_strict_readers_take() {
-    let profile = own_srgb();
+    let profile = icc_of(ColorProfile::Srgb).to_vec();
     let number = |at: usize| u32::from_be_bytes(*profile[at..].first_chunk().unwrap()) as usize;
     assert_eq!(number(0), profile.len());
     let places = (0..number(128)).map(|i| number(132 + 12 * i + 4));
     assert!(places.into_iter().all(|at| at % 4 == 0 && at < profile.len()));
-    assert!(ColorProfile::new_from_slice(&profile).unwrap().description.is_some());
+    assert!(moxcms::ColorProfile::new_from_slice(&profile).unwrap().description.is_some());
     assert!(convert_by_profile(&opaque(), &profile).is_none());
 }
 
 #[test]
 fn a_wide_profile_is_applied_and_srgb_changes_nothing() {
     let image = opaque();
-    let profile = ColorProfile::new_display_p3().encode().unwrap();
+    let profile = moxcms::ColorProfile::new_display_p3().encode().unwrap();
     let encode = |icc: Option<Vec<u8>>| {
         use image::ImageEncoder;
         let mut out = Vec::new();
@@ -166,7 +167,10 @@ fn a_wide_profile_is_applied_and_srgb_changes_nothing() {
         out
     };
     let (plain, wide) = (texels(&encode(None), "a.png"), texels(&encode(Some(profile)), "b.png"));
-    assert_eq!(texels(&encode(Some(ColorProfile::new_srgb().encode().unwrap())), "c.png"), plain);
+    assert_eq!(
+        texels(&encode(Some(moxcms::ColorProfile::new_srgb().encode().unwrap())), "c.png"),
+        plain
+    );
     // Display P3's primaries are more saturated: a reddish pixel's red grows, the others shrink or
     // stay.
     let (p, w) = (plain[8], wide[8]);

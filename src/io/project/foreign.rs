@@ -25,7 +25,8 @@ pub fn document(reading: &mut ProjectReader, stack: StackXml) -> Result<Document
     let mut reader =
         ForeignReader { reading, used_px: 0, used_bytes: 0, known: HashMap::new(), live: None };
     let layers = reader.layers(stack.layers)?;
-    Ok(Document { layers, ..Document::empty(size) })
+    let profile = reader.reading.profile;
+    Ok(Document { layers, profile, ..Document::empty(size) })
 }
 
 /// The canvas's size from `stack.xml`, else from the merged picture.
@@ -115,7 +116,8 @@ pub fn restore(
         live: Some(SavedState { value: value.clone(), around, manifest }),
     };
     let layers = reader.layers(stack.layers)?;
-    Ok(Document { layers, size, ..base }.reshaped())
+    let profile = reader.reading.profile;
+    Ok(Document { layers, size, profile, ..base }.reshaped())
 }
 
 /// The list of layers is lost: each readable picture becomes a layer, else the merged picture.
@@ -125,7 +127,7 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
         |name: &&String| name.starts_with("data/") && name.to_lowercase().ends_with(".png");
     let mut layers = Vec::new();
     let mut size: Option<Size> = None;
-    let mut used_bytes = 0;
+    let (mut used_bytes, budget) = (0, reading.picture_budget());
     let only_merged = MERGED.to_owned();
     for name in names.iter().filter(is_layer).chain([&only_merged]) {
         // The merged picture shows all the others.
@@ -133,7 +135,7 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
             break;
         }
         let Ok(bytes) = reading.archive.bytes(name, reading.budget.file_bytes) else { continue };
-        let painted = match picture::decode_paint(Path::new(name), &bytes, 0, 0, reading.budget) {
+        let painted = match picture::decode_paint(Path::new(name), &bytes, 0, 0, &budget) {
             Ok(painted) => painted,
             Err(error) if reading.can_fit_if_rounded(&error) => return Err(error),
             Err(_) => continue,
@@ -151,11 +153,12 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
         }
     }
     let Some(size) = size else { return Err(error) };
+    let profile = reading.profile;
     reading.note_loss(format!(
         "{error}; {} of its pictures could be read, their order and places are lost",
         layers.len()
     ));
-    Ok(Document { layers, ..Document::empty(size) })
+    Ok(Document { layers, profile, ..Document::empty(size) })
 }
 
 /// The picture that another program put beside what it alone reads.
@@ -256,9 +259,9 @@ impl ForeignReader<'_, '_> {
             return Ok(PixelLayer { file: key.0, x, y, tiles });
         }
         let path = self.reading.archive_path(&key.0);
+        let budget = self.reading.picture_budget();
         let read = self.reading.archive.bytes(&key.0, self.reading.budget.file_bytes);
-        let decoded =
-            read.and_then(|bytes| picture::decode_paint(&path, &bytes, x, y, self.reading.budget));
+        let decoded = read.and_then(|bytes| picture::decode_paint(&path, &bytes, x, y, &budget));
         let decoded = match decoded {
             Ok(decoded) => decoded,
             Err(error @ Error::TooLarge { .. }) => return Err(error),

@@ -5,8 +5,9 @@ use super::plan::{ItemContent, PlanItem};
 use crate::Result;
 use crate::document::{Content, Document, Layer, LayerId, Progress, SingleLayers};
 use crate::document::{EncodedPixels, PreviewKind, flatten_layers, flatten_whole};
-use crate::pixels;
+use crate::math::ColorProfile;
 use crate::raster::{BlendMode, TileGrid};
+use crate::{bitmap, pixels};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
@@ -24,6 +25,7 @@ pub fn render(
     progress: &Progress,
 ) -> Cancelable<Vec<EncodedPixels>> {
     let (shown, seen) = (pictures_of(items), SeenLayers::of(document));
+    let profile = document.profile;
     progress.add_total(shown.len() as u64);
     let one = |item: &&PlanItem| {
         let encoded = match &item.shows {
@@ -38,11 +40,11 @@ pub fn render(
             }
             ItemContent::Composed { document, layers } => {
                 flatten_preview(document, layers, item.whole_rim, progress)
-                    .map(|tiles| pixels::encode(file, &tiles, None))
+                    .map(|tiles| pixels::encode(file, &tiles, None, profile))
                     .transpose()?
             }
             ItemContent::Nothing(_) | ItemContent::Stack { .. } => {
-                Some(pixels::encode(file, &TileGrid::default(), None)?)
+                Some(pixels::encode(file, &TileGrid::default(), None, profile)?)
             }
         };
         progress.step();
@@ -133,7 +135,9 @@ fn render_preview(
         });
         let tiles =
             plain.and_then(|plain| flatten_preview(&plain, &[layer.id], kind.whole_rim, progress));
-        tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
+        let encode =
+            |tiles| pixels::encode(file, &tiles, Some(document.size.rect()), document.profile);
+        tiles.map(encode).transpose()
     };
     let mut failed = None;
     let preview =
@@ -179,6 +183,11 @@ pub fn cache_previews(document: &Document, previews: &BTreeMap<LayerId, EncodedP
             if has_effects(layer) {
                 continue;
             }
+            // So has one whose pictures say other colors.
+            let is_srgb = document.profile == ColorProfile::Srgb;
+            if !is_srgb && !bitmap::has_png_profile(encoded.file.bytes()) {
+                continue;
+            }
             let bare = seen.bare(layer, true, false);
             // Another format rounded what it shows.
             if bare.is_some_and(|tiles| is_16_bit(tiles) != pixels::is_16_bit(encoded.file.bytes()))
@@ -219,9 +228,10 @@ fn pixels_of(
     tiles: &TileGrid,
 ) -> Result<EncodedPixels> {
     let mut failed = None;
+    let encode = || pixels::encode(file, tiles, None, document.profile);
     let known = layer.cache.pixels.get(&document.scene(), std::slice::from_ref(layer), &(), || {
-        pixels::encode(file, tiles, None).map_err(|error| failed = Some(error)).ok()
+        encode().map_err(|error| failed = Some(error)).ok()
     });
     // Without a failure there is a value.
-    failed.map_or_else(|| known.map_or_else(|| pixels::encode(file, tiles, None), Ok), Err)
+    failed.map_or_else(|| known.map_or_else(encode, Ok), Err)
 }

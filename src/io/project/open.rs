@@ -8,7 +8,7 @@ use super::reader::ProjectReader;
 use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, krita, repair, stack};
 use crate::document::EncodedPixels;
 use crate::document::{Content, Document, Layer, LayerId};
-use crate::math::Size;
+use crate::math::{ColorProfile, Size};
 use crate::raster::Asset;
 use crate::raster::tile::TILE_AREA;
 use crate::recipe::{self, RecipeSource, TileGrids};
@@ -42,8 +42,9 @@ pub struct ProjectContents {
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let archive = Archive::open(file, bytes, budget)?;
     let (notes, known) = (Vec::new(), Vec::new());
+    let profile = ColorProfile::default();
     let mut reading =
-        ProjectReader { file, archive: &archive, budget, notes, is_whole: true, known };
+        ProjectReader { file, archive: &archive, budget, profile, notes, is_whole: true, known };
     if archive.is_damaged() {
         reading.note_loss(
             "the file's table of contents is damaged; its entries were found without it",
@@ -74,8 +75,15 @@ pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget
         _ => None,
     });
     let known = known.collect();
-    let mut reading =
-        ProjectReader { file, archive: &archive, budget, notes: Vec::new(), is_whole: true, known };
+    let mut reading = ProjectReader {
+        file,
+        archive: &archive,
+        budget,
+        profile: document.profile,
+        notes: Vec::new(),
+        is_whole: true,
+        known,
+    };
     match reading.document() {
         Err(error) => lost(error.to_string()),
         Ok(_) if !reading.notes.is_empty() => lost(reading.notes.join("; ")),
@@ -101,6 +109,7 @@ impl ProjectReader<'_> {
             },
         };
         let Some(value) = parsed else { return self.pictures_only(stack) };
+        self.profile = recipe::profile_of(&value);
         let stack_crc =
             stack.as_ref().and_then(|text| text.as_ref().ok()).map(|text| crc32fast::hash(text));
         match (&manifest, stack) {
@@ -173,6 +182,7 @@ impl ProjectReader<'_> {
         list_paint(&value["layers"], &mut wanted);
         let left_px = AtomicU64::new(self.budget.document_px);
         let left_bytes = AtomicU64::new(self.budget.memory_bytes);
+        let budget = self.picture_budget();
         let one = |key: (String, i32, i32)| {
             let bytes = self.archive.bytes(&key.0, self.budget.file_bytes).ok()?;
             let size = png_size(&bytes)?;
@@ -183,7 +193,7 @@ impl ProjectReader<'_> {
             });
             let known = known.map(|(_, tiles)| tiles.clone());
             let read =
-                || picture::decode_paint(Path::new(&key.0), &bytes, key.1, key.2, self.budget).ok();
+                || picture::decode_paint(Path::new(&key.0), &bytes, key.1, key.2, &budget).ok();
             let tiles = known.or_else(|| Some(read()?.tiles))?;
             // Pixels in memory count, not the rectangle around them.
             let px = (tiles.iter().count() * TILE_AREA) as u64;
@@ -223,7 +233,14 @@ impl ProjectReader<'_> {
             }
         };
         match layers {
-            Ok(layers) => foreign::document(self, layers),
+            Ok(layers) => {
+                // Its layers are in the profile of the picture of them all.
+                let merged = self.archive.bytes(MERGED, self.budget.file_bytes);
+                self.profile = merged.map_or(self.profile, |png| {
+                    picture::profile_of(Path::new(MERGED), &png, self.budget)
+                });
+                foreign::document(self, layers)
+            }
             Err(error) => foreign::leftovers(self, error),
         }
     }

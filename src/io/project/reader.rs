@@ -5,6 +5,7 @@ use super::png_header::{PNG_HEADER, is_16_bit_png};
 use super::{Archive, DOCUMENT};
 use crate::document::Document;
 use crate::document::EncodedPixels;
+use crate::math::ColorProfile;
 use crate::raster::TileGrid;
 use crate::recipe::{self, RecipeSource};
 use crate::{Budget, Error, Remedy, Result};
@@ -16,6 +17,8 @@ pub struct ProjectReader<'a> {
     pub file: &'a Path,
     pub archive: &'a Archive<'a>,
     pub budget: &'a Budget,
+    /// The color profile of the document.
+    pub profile: ColorProfile,
     pub notes: Vec<String>,
     pub is_whole: bool,
     /// Pixels that are known to be those of these files.
@@ -23,6 +26,11 @@ pub struct ProjectReader<'a> {
 }
 
 impl ProjectReader<'_> {
+    /// The budget of pictures of the document.
+    pub fn picture_budget(&self) -> Budget {
+        Budget { profile: self.profile, ..*self.budget }
+    }
+
     /// Notes a difference that loses nothing.
     pub fn note(&mut self, sentence: impl Into<String>) {
         self.notes.push(sentence.into());

@@ -218,7 +218,7 @@ impl Colors<'_> {
 
     /// The profile that RGB and gray go through.
     fn profile(&self) -> Option<&[u8]> {
-        self.icc.filter(|icc| !self.is_light && !crate::srgb_profile::is_own_srgb(icc))
+        self.icc.filter(|icc| !self.is_light && !crate::icc_profiles::is_own_srgb(icc))
     }
 
     fn convert_by_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {

@@ -12,7 +12,7 @@ use crate::document::EncodedPixels;
 use crate::document::{
     Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten,
 };
-use crate::math::{Rect, Size};
+use crate::math::{ColorProfile, Rect, Size};
 use crate::memory;
 use crate::project::layer_preview::{self, Cancelable};
 use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
@@ -54,6 +54,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
     let mut builder = RecordBuilder {
         size: document.size,
+        profile: document.profile,
         previews: previews.into_iter(),
         ..RecordBuilder::default()
     };
@@ -85,7 +86,12 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
         document.size,
         &records,
         &merged,
-        FileMarks { selections: &selections, guides: &guides, light: document.effect_light },
+        FileMarks {
+            selections: &selections,
+            guides: &guides,
+            light: document.effect_light,
+            profile: document.profile,
+        },
         &ours,
     );
     if bytes.len() > LONGEST_BYTES {
@@ -107,6 +113,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
 struct RecordBuilder {
     size: Size,
     /// The previews of the plan's pictures, in their order.
+    profile: ColorProfile,
     previews: std::vec::IntoIter<EncodedPixels>,
     records: Vec<LayerRecord>,
     /// The records that show a single layer, for the manifest.
@@ -123,6 +130,7 @@ impl Default for RecordBuilder {
         let previews = Vec::new().into_iter();
         Self {
             size: Size::new(1, 1),
+            profile: ColorProfile::default(),
             previews,
             records: Vec::new(),
             shown: Vec::new(),
@@ -171,9 +179,12 @@ impl RecordBuilder {
             || Error::unsupported_file(file, "a layer could not be encoded; nothing was saved");
         let mut preview = self.previews.next().ok_or_else(damaged)?;
         let rgba = pixels::decode_png(preview.file.bytes()).ok_or_else(damaged)?;
-        if pixels::is_16_bit(preview.file.bytes()) {
+        let is_16_bit = pixels::is_16_bit(preview.file.bytes());
+        if is_16_bit || self.profile != ColorProfile::Srgb {
             // Our part of the file says what the record holds; it has all of the paint, too.
             preview = in_bytes(file, preview, &rgba)?;
+        }
+        if is_16_bit {
             self.notes.push(format!(
                 "“{}” has 16 bits per channel here and 8 for other programs",
                 item.name
@@ -241,10 +252,10 @@ impl RecordBuilder {
     }
 }
 
-/// A preview of 16 bits with its values rounded to bytes, for storing where only bytes exist.
+/// A preview as it is restored: of 8 bits, and without a profile, which the file has.
 fn in_bytes(file: &Path, preview: EncodedPixels, rgba: &[u8]) -> Result<EncodedPixels> {
     if rgba.chunks_exact(4).all(|pixel| pixel[3] == 0) {
-        return pixels::encode(file, &TileGrid::default(), None);
+        return pixels::encode(file, &TileGrid::default(), None, ColorProfile::Srgb);
     }
     Ok(EncodedPixels {
         file: pixels::encode_texels(file, rgba.as_chunks().0, preview.size)?,

@@ -13,6 +13,8 @@ use super::pattern::{self, PatternResource};
 use super::{ICC_PROFILE, LayerRecord, OURS, marks};
 use crate::Budget;
 use crate::document::Guides;
+use crate::icc_profiles::{is_display_p3, is_own_srgb};
+use crate::math::ColorProfile;
 use crate::paint::EffectLight;
 use crate::{Error, Result};
 use std::path::Path;
@@ -38,6 +40,8 @@ pub struct ParsedPsd<'a> {
     pub inks: Option<InkTones>,
     /// The profile of its colors.
     pub icc: Option<&'a [u8]>,
+    /// Of the document.
+    pub profile: ColorProfile,
     /// The light of effects that have none of their own.
     pub effect_light: EffectLight,
     /// And how many were left out.
@@ -66,6 +70,10 @@ pub fn parse_as<'a>(
     let header = header(file, &mut rest, budget)?;
     let table = rest.section(false).ok_or_else(cut)?;
     let resources = rest.section(false).ok_or_else(cut)?;
+    let icc = resource(resources, ICC_PROFILE).filter(|icc| !is_own_srgb(icc));
+    // Values of Display P3 stay: the document has that profile.
+    let is_p3 = header.mode == Mode::Rgb && header.bits < 32 && icc.is_some_and(is_display_p3);
+    let profile = if is_p3 { ColorProfile::DisplayP3 } else { ColorProfile::Srgb };
     let colors = Colors {
         mode: header.mode,
         channels: header.colors(),
@@ -74,7 +82,7 @@ pub fn parse_as<'a>(
         table: table.rest(),
         nothing: resource(resources, TRANSPARENT_NUMBER)
             .and_then(|data| u8::try_from(ByteCursor::new(data).u16()?).ok()),
-        icc: resource(resources, ICC_PROFILE).filter(|icc| !crate::srgb_profile::is_own_srgb(icc)),
+        icc: icc.filter(|_| !is_p3),
     };
     let length = rest.length(header.large).ok_or_else(cut)?;
     let section = ByteCursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
@@ -133,6 +141,7 @@ pub fn parse_as<'a>(
         gray: GrayTones::of(&colors, header.bits),
         inks,
         icc: colors.icc,
+        profile,
         effect_light,
         guides,
         damage,

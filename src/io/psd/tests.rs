@@ -35,7 +35,12 @@ fn read_back(bytes: &[u8]) -> ProjectContents {
 /// No selections, no guides, and the light of effects as it begins.
 fn no_marks() -> write::FileMarks<'static> {
     static GUIDES: Guides = Guides { vertical: Vec::new(), horizontal: Vec::new() };
-    write::FileMarks { selections: &[], guides: &GUIDES, light: Default::default() }
+    write::FileMarks {
+        selections: &[],
+        guides: &GUIDES,
+        light: Default::default(),
+        profile: Default::default(),
+    }
 }
 
 /// The file with our own resource under a number that nobody knows, as a program leaves it that

@@ -168,7 +168,9 @@ pub(super) fn build_document(
     }
     let effect_light = parsed.effect_light;
     let guides = guides.into();
-    let document = Document { layers, selections, guides, effect_light, ..Document::empty(size) };
+    let profile = parsed.profile;
+    let document =
+        Document { layers, profile, selections, guides, effect_light, ..Document::empty(size) };
     (document, is_less)
 }
 

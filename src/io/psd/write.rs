@@ -7,7 +7,7 @@ use super::{
 };
 use super::{adjustments, alpha_channels, effects, marks};
 use crate::document::{Guides, LayerLabel, NamedSelection};
-use crate::math::{Rect, Size};
+use crate::math::{ColorProfile, Rect, Size};
 use crate::paint::EffectLight;
 
 /// The default print resolution.
@@ -21,6 +21,7 @@ pub struct FileMarks<'a> {
     pub guides: &'a Guides,
     /// Of effects without a light of their own.
     pub light: EffectLight,
+    pub profile: ColorProfile,
 }
 
 /// The whole file. `merged` is RGBA of the canvas [on white](on_white), `ours` is our own resource.
@@ -111,13 +112,13 @@ fn resources(kept: FileMarks, ours: &[u8]) -> Vec<u8> {
     unicode(&mut version, "Rilievo");
     long(&mut version, 1);
     let mut out = Vec::new();
-    let profile = crate::srgb_profile::own_srgb();
+    let profile = crate::icc_profiles::icc_of(kept.profile);
     let mut named = alpha_channels::resources(kept.selections);
     named.extend(marks::guides_resource(kept.guides));
     named.extend(marks::effect_light_resources(kept.light));
     let own = [
         (RESOLUTION, &resolution[..]),
-        (ICC_PROFILE, &profile),
+        (ICC_PROFILE, profile),
         (VERSION_INFO, &version),
         (OURS, ours),
     ];

@@ -4,7 +4,7 @@
 use super::DrawingVersion;
 use super::log::{self, RecordKind};
 use crate::document::{Content, Document, Layer, Live, PixelLayer, SelectionList, StrokeList};
-use crate::math::Size;
+use crate::math::{ColorProfile, Size};
 use crate::paint::Stroke;
 use crate::pixels;
 use crate::project::assets::{AssetList, MadeFiles, StoredPixels};
@@ -177,7 +177,7 @@ impl StateWriter<'_> {
 fn encode_tile(file: &Path, at: TileAt, tile: &Arc<Tile>) -> Result<Vec<u8>> {
     let mut alone = TileGrid::default();
     alone.set(at, Some(tile.clone()));
-    Ok(pixels::encode_rect(file, &alone, at.rect())?.bytes().to_vec())
+    Ok(pixels::encode_rect(file, &alone, at.rect(), ColorProfile::Srgb)?.bytes().to_vec())
 }
 
 /// The last document in a log; `None` where there is none.

@@ -6,7 +6,7 @@ use super::{LimitArgs, messages};
 use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::recipe::{BrushPreset, preset};
 use crate::io::{Terms, brush, picture};
-use crate::math::Size;
+use crate::math::{ColorProfile, Size};
 use crate::raster::{Picture, TileGrid};
 use crate::session::{brushes, swatch};
 use crate::{Error, Result};
@@ -94,7 +94,7 @@ impl ConvertedBrush {
         match self {
             ConvertedBrush::Preset(encoded) => encoded.write(terms),
             ConvertedBrush::Picture(target, tiles, size) => {
-                target.write(&tiles, size, &ExportOptions::default())
+                target.write(&tiles, size, &ExportOptions::default(), ColorProfile::Srgb)
             }
         }
     }

@@ -9,6 +9,7 @@ use super::{LimitArgs, progress, values};
 use crate::document::Document;
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
 use crate::io::recipe::{LiveLook, PartMaterial};
+use crate::math::ColorProfile;
 use crate::math::srgb::Color;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -49,10 +50,19 @@ pub struct RenderArgs {
     /// Bits per channel: 8 or 16 for a .png or .tif (default 8), 16 or 32 for an .exr (default 16)
     #[arg(long, value_name = "N", value_parser = values::depth)]
     bits: Option<u8>,
+    /// Color profile that colors are converted to and that the picture names: srgb or display-p3;
+    /// by default the document's
+    #[arg(long, value_name = "PROFILE", value_parser = profile)]
+    profile: Option<ColorProfile>,
     #[command(flatten)]
     force: Force,
     #[command(flatten)]
     limits: LimitArgs,
+}
+
+fn profile(word: &str) -> std::result::Result<ColorProfile, String> {
+    let known = ColorProfile::ALL.map(|(_, name)| name).join(", ");
+    ColorProfile::from_name(word).ok_or_else(|| format!("one of {known}"))
 }
 
 fn look(word: &str) -> std::result::Result<LiveLook, String> {
@@ -96,6 +106,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             background: args.background,
             quality: args.quality,
             bits: args.bits,
+            profile: args.profile,
             ..ExportOptions::default()
         };
         progress::run_with_progress(|progress| {

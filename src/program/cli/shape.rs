@@ -164,8 +164,8 @@ impl InkFiles {
         let Some(Content::Pixels(drawing)) = drawing else { return Ok(()) };
         let lifted = LiftedInk::of(&drawing.tiles);
         let options = ExportOptions::default();
-        self.ink.write(&lifted.lines, document.size, &options)?;
-        self.flats.write(&lifted.flats, document.size, &options)
+        self.ink.write(&lifted.lines, document.size, &options, document.profile)?;
+        self.flats.write(&lifted.flats, document.size, &options, document.profile)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::io::files::{TrackedFiles, read_file};
 use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, RecipeSource};
 use crate::io::{Budget, RecipeFolder, UserFiles, sixteen_bit_paint};
-use crate::math::{Size, named::former_name, srgb::Color};
+use crate::math::{ColorProfile, Size, named::former_name, srgb::Color};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage};
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
 use crate::{Error, Result};
@@ -105,8 +105,10 @@ pub fn run(args: &ViewArgs) -> Result<()> {
                 Error::invalid(named_file(args), format!("--show {}", view.name()), why)
             })
         };
-        let write =
-            |target: &OutputFile, picture: &Picture| write(target, picture, args.background);
+        // Maps are numbers; a painting is in the document's colors.
+        let write = |target: &OutputFile, picture: &Picture| {
+            write(args, target, picture, ColorProfile::Srgb)
+        };
         if args.output.is_dir() {
             let target = |view: SurfaceView| {
                 let file = args.output.join(view.name()).with_extension("png");
@@ -125,7 +127,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
                 let seen = view::render_unwrapped(&document, layer, options, &Progress::default())
                     .map_err(refused)?;
                 let picture = seen.picture().ok_or_else(|| refused(ViewUnavailable::NoMemory))?;
-                write(&target, &picture)?;
+                self::write(args, &target, &picture, document.profile)?;
                 // What puts the picture back.
                 println!("{}", layer_line(&document, &args.output, &seen, picture));
                 Ok(())
@@ -180,11 +182,17 @@ fn named_file(args: &ViewArgs) -> &Path {
     args.files.first().or(args.normal.as_ref()).or(args.depth.as_ref()).unwrap_or(&args.output)
 }
 
-fn write(target: &OutputFile, picture: &Picture, background: Option<Color>) -> Result<()> {
+fn write(
+    args: &ViewArgs,
+    target: &OutputFile,
+    picture: &Picture,
+    profile: ColorProfile,
+) -> Result<()> {
     let Texels::Srgb8(texels) = &picture.texels else { return Ok(()) };
     let (width, height) = (picture.size.width as usize, picture.size.height as usize);
     let grid = TileGrid::from_straight_rgba(texels.as_flattened(), width, height, 0, 0);
-    target.write(&grid, picture.size, &ExportOptions { background, ..ExportOptions::default() })
+    let options = ExportOptions { background: args.background, ..ExportOptions::default() };
+    target.write(&grid, picture.size, &options, profile)
 }
 
 /// The document, and every file that was read for it.

@@ -4,8 +4,9 @@
 use crate::document::Document;
 use crate::io::Budget;
 use crate::io::export::{ExportOptions, Output};
+use crate::io::profile_change;
 use crate::math::srgb::Color;
-use crate::math::{Rect, Size};
+use crate::math::{ColorProfile, Rect, Size};
 use crate::{Error, Result};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -32,6 +33,8 @@ pub struct ExportSettings {
     pub size: ExportSize,
     /// Only the box around the selection, where there is one.
     pub selection: bool,
+    /// What colors are converted to; if absent, they stay in the document's profile.
+    pub profile: Option<ColorProfile>,
 }
 
 /// A file that a document was exported to, and how.
@@ -59,7 +62,8 @@ impl ExportSize {
 impl Default for ExportSettings {
     fn default() -> Self {
         let ExportOptions { background, quality, bits, .. } = ExportOptions::default();
-        Self { background, quality, bits, size: ExportSize::Scale(1.0), selection: false }
+        let (size, selection, profile) = (ExportSize::Scale(1.0), false, None);
+        Self { background, quality, bits, size, selection, profile }
     }
 }
 
@@ -97,6 +101,10 @@ impl ExportSettings {
         }
         let factor = self.size.factor(Size::new(part.width() as u32, part.height() as u32));
         let scaled = scale_document(file, document, factor, budget)?;
+        let scaled = match self.profile.filter(|_| matches!(Output::of(file), Ok(Output::Psd))) {
+            Some(profile) => profile_change::convert(&scaled, profile, budget).document,
+            None => scaled,
+        };
         let crop = (!is_whole).then(|| {
             // Of whole pixels, wherever the factor leads.
             let along = |at: i32, to: u32, from: u32| {
@@ -107,8 +115,9 @@ impl ExportSettings {
             let y0 = along(part.y0, to.height, from.height);
             Rect::new(x0, y0, x0 + size.width as i32, y0 + size.height as i32)
         });
-        let Self { background, quality, bits, .. } = *self;
-        Ok((scaled, ExportOptions { background, quality, bits, crop, ..ExportOptions::default() }))
+        let Self { background, quality, bits, profile, .. } = *self;
+        let options = ExportOptions::default();
+        Ok((scaled, ExportOptions { background, quality, bits, crop, profile, ..options }))
     }
 }
 

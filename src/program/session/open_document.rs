@@ -32,6 +32,8 @@ pub struct Edit {
     pub document: Document,
     /// Chosen from now on, the active one last; none: unchanged.
     pub select: Vec<LayerId>,
+    /// What the user should know of it.
+    pub note: Option<&'static str>,
 }
 
 /// An open document.
@@ -263,7 +265,7 @@ impl OpenDocument {
 
     /// Adds an edit as a step.
     pub fn take(&mut self, edit: Edit) {
-        let Edit { label, document, select } = edit;
+        let Edit { label, document, select, note: _ } = edit;
         if self.commit(label, document) {
             self.select_layers(select);
         }
@@ -387,5 +389,5 @@ pub fn is_same_look(a: &Document, b: &Document) -> bool {
         && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));
     let (old, new) = (&a.parts.list, &b.parts.list);
     let same_parts = old.len() == new.len() && old.iter().zip(new).all(|(a, b)| Arc::ptr_eq(a, b));
-    same_layers && same_parts && a.scene().is_same(&b.scene())
+    same_layers && same_parts && a.profile == b.profile && a.scene().is_same(&b.scene())
 }

@@ -104,7 +104,7 @@ pub fn open(file: &Path) -> Result<OpenedFile> {
             // An incomplete document must not overwrite its file without asking.
             open.stamp = Some(stamp).filter(|_| is_project && is_whole);
             open.reads = reads;
-            open.stored_preview = StoredPreview::of(file, picture.as_ref(), open.document().size);
+            open.stored_preview = StoredPreview::of(file, picture.as_ref(), open.document());
             let drawing = match (found, open.document().layers.as_slice()) {
                 (FileUse::Picture, [layer]) => drawing::traits_of(open.document(), layer.id),
                 _ => None,

@@ -1,8 +1,8 @@
 //! The picture that a project holds of itself, which the window's canvas shows until its layers are
 //! painted. Floor 6.
 
+use crate::document::Document;
 use crate::io::{Budget, picture};
-use crate::math::Size;
 use crate::raster::{Asset, TileGrid};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -13,9 +13,10 @@ pub struct StoredPreview(Mutex<Option<TileGrid>>);
 
 impl StoredPreview {
     /// From a PNG as large as the canvas; none from any other or a damaged one, or if memory lacks.
-    pub fn of(file: &Path, png: Option<&Asset>, canvas: Size) -> Self {
+    pub fn of(file: &Path, png: Option<&Asset>, document: &Document) -> Self {
         let read = || {
-            let budget = Budget::of_this_machine();
+            let (canvas, profile) = (document.size, document.profile);
+            let budget = Budget { profile, ..Budget::of_this_machine() };
             budget.room(file, "the picture of it", canvas.area() as u64 * 4).ok()?;
             let painted = picture::decode_paint(file, png?.bytes(), 0, 0, &budget).ok()?;
             (painted.size == canvas).then_some(painted.tiles)
@@ -32,8 +33,9 @@ impl StoredPreview {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Content, Document, Layer, Progress, flatten};
+    use crate::document::{Content, Layer, Progress, flatten};
     use crate::io::Overwrite;
+    use crate::math::Size;
     use crate::math::srgb::Color;
     use crate::session::storage;
     use std::sync::Arc;
@@ -52,7 +54,7 @@ mod tests {
         let rect = document.size.rect();
         assert!(picture.to_straight_rgba(rect) == painted.to_straight_rgba(rect));
         assert!(open.stored_preview.take().is_none(), "it is held no longer than it is needed");
-        let of = |size| StoredPreview::of(&file, Some(&Asset::from(vec![1, 2, 3])), size).take();
-        assert!(of(document.size).is_none());
+        let damaged = Asset::from(vec![1, 2, 3]);
+        assert!(StoredPreview::of(&file, Some(&damaged), &document).take().is_none());
     }
 }

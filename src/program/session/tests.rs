@@ -10,6 +10,7 @@ mod palettes;
 mod panels;
 mod pasting;
 mod paths;
+mod profiles;
 mod selecting;
 mod several;
 mod shaped;

@@ -2,7 +2,7 @@
 //! are uploaded. Floor 7.
 
 use crate::io::proof::ProofTable;
-use crate::math::{Affine2, Rect, Size, srgb, vec2};
+use crate::math::{Affine2, ColorProfile, Rect, Size, srgb, vec2};
 use crate::raster::{TILE, TileAt, TileGrid};
 use eframe::egui::{
     self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle,
@@ -49,8 +49,16 @@ pub struct TextureBlocks {
 
 /// In which colors a picture is seen.
 #[derive(Clone, Debug, Default)]
-pub enum ShownColors {
-    /// Its own.
+pub struct ShownColors {
+    /// What its numbers mean; the window is sRGB.
+    pub profile: ColorProfile,
+    pub look: ShownLook,
+}
+
+/// What is done to colors before they are seen.
+#[derive(Clone, Debug, Default)]
+pub enum ShownLook {
+    /// Nothing.
     #[default]
     Own,
     /// The grays of its luminance.
@@ -64,6 +72,25 @@ const MARK: [u8; 3] = [128; 3];
 
 impl ShownColors {
     fn is_same(&self, other: &Self) -> bool {
+        self.profile == other.profile && self.look.is_same(&other.look)
+    }
+
+    /// Premultiplied texels of a row as they are seen.
+    fn show(&self, texels: &[[u8; 4]], row: &mut [Color32]) {
+        let Some(conversion) = self.profile.conversion_to(ColorProfile::Srgb) else {
+            return self.look.show(texels, row);
+        };
+        let mut seen = [[0; 4]; TILE];
+        for (texels, row) in texels.chunks(TILE).zip(row.chunks_mut(TILE)) {
+            let seen = &mut seen[..texels.len()];
+            conversion.show(texels, seen);
+            self.look.show(seen, row);
+        }
+    }
+}
+
+impl ShownLook {
+    fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Own, Self::Own) | (Self::Values, Self::Values) => true,
             (Self::Proof { table: a, is_marked: b }, Self::Proof { table, is_marked }) => {
@@ -73,7 +100,14 @@ impl ShownColors {
         }
     }
 
-    /// A premultiplied texel as it is seen.
+    /// Premultiplied texels of sRGB as they are seen.
+    fn show(&self, texels: &[[u8; 4]], row: &mut [Color32]) {
+        for (pixel, &texel) in row.iter_mut().zip(texels) {
+            let [r, g, b, a] = self.of(texel);
+            *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
+        }
+    }
+
     fn of(&self, texel: [u8; 4]) -> [u8; 4] {
         match self {
             Self::Own => texel,
@@ -226,10 +260,7 @@ fn image(grid: &TileGrid, rect: Rect, canvas: Size, colors: &ShownColors) -> Col
             let from = ((y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
             let to = (y - rect.y0) as usize * width + (area.x0 - rect.x0) as usize;
             let texels = tile.bytes()[from..from + area.width() * 4].as_chunks::<4>().0;
-            for (pixel, &texel) in pixels[to..].iter_mut().zip(texels) {
-                let [r, g, b, a] = colors.of(texel);
-                *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
-            }
+            colors.show(texels, &mut pixels[to..to + area.width()]);
         }
     }
     let within = |end: i32, begin: i32, n: usize| {
@@ -275,11 +306,39 @@ mod tests {
     }
 
     #[test]
+    fn a_document_in_display_p3_is_shown_in_srgb_and_its_proof_too() {
+        let rect = Rect::new(0, 0, 600, 1);
+        let canvas = Size::new(600, 1);
+        // The red of sRGB in Display P3, and half of it.
+        let texel = |x: usize| if x < 500 { [234, 51, 35, 255] } else { [234, 51, 35, 128] };
+        let bytes: Vec<u8> = (0..600).flat_map(texel).collect();
+        let grid = TileGrid::from_straight_rgba(&bytes, 600, 1, 0, 0);
+        let seen = |profile, look: ShownLook| {
+            let colors = ShownColors { profile, look };
+            [0, 599].map(|x| image(&grid, rect, canvas, &colors).pixels[x].to_array())
+        };
+        let near = |a: [[u8; 4]; 2], b: [[u8; 4]; 2]| {
+            a.as_flattened().iter().zip(b.as_flattened()).all(|(a, b)| a.abs_diff(*b) <= 1)
+        };
+        let shown = seen(ColorProfile::DisplayP3, ShownLook::Own);
+        assert!(near(shown, [[255, 0, 0, 255], [128, 0, 0, 128]]), "{shown:?}");
+        let own = seen(ColorProfile::Srgb, ShownLook::Own);
+        assert_eq!(own, [[234, 51, 35, 255], [117, 26, 18, 128]], "sRGB is not converted");
+        let values = seen(ColorProfile::DisplayP3, ShownLook::Values);
+        assert!(near(values, [[127, 127, 127, 255], [64, 64, 64, 128]]), "{values:?}");
+        let icc = crate::io::icc_profiles::icc_of(ColorProfile::Srgb);
+        let table = ProofTable::read(std::path::Path::new("a.icc"), icc).unwrap();
+        let proof = ShownLook::Proof { table: Arc::new(table), is_marked: true };
+        let proofed = seen(ColorProfile::DisplayP3, proof);
+        assert!(proofed[0][0] >= 253 && proofed[0][1] <= 2, "{proofed:?}");
+    }
+
+    #[test]
     fn the_rim_of_the_canvas_is_repeated_once_beyond_it() {
         let canvas = Size::new(3, 2);
         let bytes: Vec<u8> = (0..6u8).flat_map(|i| [i * 40, 9, 9, 255]).collect();
         let grid = TileGrid::from_straight_rgba(&bytes, 3, 2, 0, 0);
-        let image = image(&grid, Rect::new(0, 0, 5, 4), canvas, &ShownColors::Own);
+        let image = image(&grid, Rect::new(0, 0, 5, 4), canvas, &ShownColors::default());
         let reds: Vec<u8> = image.pixels.iter().map(|pixel| pixel.r()).collect();
         assert_eq!(
             reds,

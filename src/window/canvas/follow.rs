@@ -8,6 +8,7 @@ use crate::document::Document;
 use crate::math::{Rect, Size};
 use crate::render_thread::RenderRequest;
 use crate::session::{CanvasView, OpenDocument, Session, is_same_look};
+use crate::theme::to_window;
 use crate::tools::ToolKind;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
 use std::time::Duration;
@@ -125,7 +126,8 @@ impl Canvas {
             let pixel = |i: u32| {
                 let (x, y) = (i % width * step + step / 2, i / width * step + step / 2);
                 let at = |v: u32, n: u32| v.min(n - 1) as i32;
-                let [r, g, b, a] = shown.grid.pixel(at(x, canvas.width), at(y, canvas.height));
+                let pixel = shown.grid.pixel(at(x, canvas.width), at(y, canvas.height));
+                let [r, g, b, a] = to_window().map_or(pixel, |by| by.premultiplied(pixel));
                 Color32::from_rgba_premultiplied(r, g, b, a)
             };
             let image = ColorImage::new(

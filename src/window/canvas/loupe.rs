@@ -86,7 +86,9 @@ fn compose_over_checker(pixel: [u8; 4], is_light: bool) -> Color32 {
     let ground = CHECKER[usize::from(!is_light)].r();
     let share = f32::from(pixel[3]) / 255.0;
     let mix = |v: u8| (f32::from(v) * share + f32::from(ground) * (1.0 - share)).round() as u8;
-    Color32::from_rgb(mix(straight[0]), mix(straight[1]), mix(straight[2]))
+    let [r, g, b, _] = straight;
+    let shown = color32(Color::rgb(r, g, b));
+    Color32::from_rgb(mix(shown.r()), mix(shown.g()), mix(shown.b()))
 }
 
 #[cfg(test)]

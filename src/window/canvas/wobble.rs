@@ -7,6 +7,7 @@ use crate::document::view::wobble::WobbleScene;
 use crate::math::Affine2;
 use crate::raster::TileGrid;
 use crate::session::is_same_look;
+use crate::theme::to_window;
 use eframe::egui::{
     Color32, ColorImage, Context, Event, Painter, TextureHandle, TextureOptions, Ui, pos2,
 };
@@ -53,6 +54,7 @@ impl Wobble {
         let seen = self.scene.render_from(angle);
         let pixels = seen
             .into_iter()
+            .map(|texel| to_window().map_or(texel, |by| by.premultiplied(texel)))
             .map(|[r, g, b, a]| Color32::from_rgba_premultiplied(r, g, b, a))
             .collect();
         let image = ColorImage::new([size.width as usize, size.height as usize], pixels);

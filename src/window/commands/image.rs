@@ -37,6 +37,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| requests.request(WindowRequest::ImageSizeDialog),
     ),
+    row(
+        "Profile…",
+        &[],
+        "Which colors the document's numbers mean: sRGB or Display P3",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ProfileDialog),
+    ),
     submenu("Adjust", super::adjustments::PAINT),
     submenu("Filter", super::filters::PAINT),
     LINE,

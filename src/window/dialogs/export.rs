@@ -8,7 +8,7 @@ use crate::document::Document;
 use crate::export_memory::{ExportMemory, ExportPreset};
 use crate::io::export::ExportFormat;
 use crate::language::{tr, tr_message};
-use crate::math::{Size, srgb::Color};
+use crate::math::{ColorProfile, Size, srgb::Color};
 use crate::requests::WindowRequest;
 use crate::session::{ExportSettings, ExportSize, ExportedFile, Session};
 use crate::theme;
@@ -101,6 +101,7 @@ impl ExportDialog {
             radio(ui, &mut self.extension, extension, about);
         }
         self.depth(ui);
+        self.profile(ui, document);
         let mut opaque = self.settings.background.is_some() || self.extension == "jpg";
         let can_choose = !["jpg", "psd"].contains(&self.extension);
         ui.add_enabled_ui(can_choose, |ui| check_box(ui, &mut opaque, "Lay it on white"));
@@ -204,6 +205,17 @@ impl ExportDialog {
             // What is no picture holds the whole canvas.
             selection: self.settings.selection && format.is_some(),
             ..self.settings
+        }
+    }
+
+    /// Shown if the document is not in sRGB.
+    fn profile(&mut self, ui: &mut Ui, document: Option<&Document>) {
+        if document.is_some_and(|document| document.profile != ColorProfile::Srgb) {
+            let mut is_converted = self.settings.profile == Some(ColorProfile::Srgb);
+            check_box(ui, &mut is_converted, "Convert to sRGB").on_hover_text(
+                "For programs that ignore color profiles; else the file names the document's",
+            );
+            self.settings.profile = is_converted.then_some(ColorProfile::Srgb);
         }
     }
 

@@ -1,8 +1,10 @@
 //! A new document: an empty canvas, or one on an object's maps.
 //! Floor 7.
 
+use super::profile::profile_choice;
 use super::{DialogAnswer, buttons, set_width};
 use crate::language::tr;
+use crate::math::ColorProfile;
 use crate::math::srgb::Color;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
@@ -14,6 +16,7 @@ pub struct NewDialog {
     width: u32,
     height: u32,
     background: CanvasBackground,
+    profile: ColorProfile,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -25,7 +28,12 @@ enum CanvasBackground {
 
 impl Default for NewDialog {
     fn default() -> Self {
-        Self { width: 1024, height: 1024, background: CanvasBackground::White }
+        Self {
+            width: 1024,
+            height: 1024,
+            background: CanvasBackground::White,
+            profile: ColorProfile::Srgb,
+        }
     }
 }
 
@@ -77,6 +85,10 @@ impl NewDialog {
                 radio(ui, &mut self.background, choice, name);
             }
         });
+        ui.horizontal(|ui| {
+            ui.label("Color profile");
+            profile_choice(ui, &mut self.profile);
+        });
         match buttons(ui, "Create", true) {
             Some(true) => {
                 let background = match self.background {
@@ -88,6 +100,7 @@ impl NewDialog {
                     width: self.width,
                     height: self.height,
                     background,
+                    profile: Some(self.profile),
                 }));
                 DialogAnswer::Close
             }

@@ -3,7 +3,8 @@
 
 use super::MainWindow;
 use crate::dialogs::{
-    Dialog, canvas, edge, import, looks, materials, new, paint_change, palette, panels, preferences,
+    Dialog, canvas, edge, import, looks, materials, new, paint_change, palette, panels,
+    preferences, profile,
 };
 use crate::file_purpose::FilePurpose;
 use crate::requests::WindowRequest;
@@ -59,6 +60,11 @@ impl MainWindow {
             | WindowRequest::TurnDialog => {
                 let size = self.session.active().map(|open| open.document().size);
                 self.dialogs.extend(size.map(|size| canvas::dialog_for(&ask, size)));
+            }
+            WindowRequest::ProfileDialog => {
+                let profile = self.session.active().map(|open| open.document().profile);
+                let dialog = profile.map(profile::ProfileDialog::of);
+                self.dialogs.extend(dialog.map(Dialog::Profile));
             }
             WindowRequest::PaintChangeDialog(change) => {
                 let dialog = paint_change::PaintChangeDialog::new(*change, &self.session);

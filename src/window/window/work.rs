@@ -327,11 +327,13 @@ impl MainWindow {
         };
         // No other edits are possible meanwhile; an edit that happened anyway must not be lost.
         if crate::session::is_same(open.document(), from) {
+            let note = edit.note;
             open.take(edit);
             if matches!(action, Action::Canvas(_)) {
                 forget_places(open);
                 self.session.tools.crop.area = None;
             }
+            note.into_iter().for_each(|note| self.session.say(note));
             self.did(|| action);
         }
     }

@@ -75,7 +75,7 @@ impl Part {
         }
     }
 
-    pub(super) fn outline_mut(&mut self) -> Option<&mut OutlineSource> {
+    pub(in crate::document) fn outline_mut(&mut self) -> Option<&mut OutlineSource> {
         match &mut self.kind {
             PartKind::Inflate { outline, .. }
             | PartKind::Bevel { outline, .. }

@@ -77,7 +77,7 @@ fn what_is_clipped_to_a_group_that_passes_through_lies_on_what_that_lets_through
 
 #[test]
 fn layers_of_a_profile_that_blend_otherwise_keep_its_values() {
-    let icc = moxcms::ColorProfile::new_display_p3().encode().unwrap();
+    let icc = moxcms::ColorProfile::new_adobe_rgb().encode().unwrap();
     let layers = vec![
         colored_layer("ground", 4, 4, [200, 100, 50]),
         MadeLayer { blend: *b"diff", ..colored_layer("top", 4, 4, [100, 200, 250]) },

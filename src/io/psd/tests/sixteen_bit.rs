@@ -118,7 +118,7 @@ fn the_file_s_own_picture_keeps_16_bits_where_it_is_shown() {
 #[test]
 fn a_wide_profile_is_applied_in_16_bits() {
     let mut made = file_of(16, short, false);
-    made.resources = vec![(1039, moxcms::ColorProfile::new_display_p3().encode().unwrap())];
+    made.resources = vec![(1039, moxcms::ColorProfile::new_adobe_rgb().encode().unwrap())];
     let document = read_back(&made.bytes()).document;
     let pixels = tiles(&document, 0).to_straight16(RECT);
     assert!(greatest_difference(tiles(&document, 0)) > 1000, "sRGB is narrower");

@@ -5,7 +5,8 @@
 use crate::document::canvas_change::{CanvasAnchor, CanvasChange, CanvasMirror};
 use crate::document::{Document, Progress, flatten};
 use crate::io::Budget;
-use crate::math::{Rect, Size};
+use crate::io::profile_change::{self, ProfileChange};
+use crate::math::{ColorProfile, Rect, Size};
 use crate::raster::{CoverageGrid, Resampling};
 use crate::session::open_document::Edit;
 use crate::session::replay::{actions, names, record};
@@ -18,6 +19,8 @@ record!(Rect { x0, y0, x1, y1 });
 names!(CanvasAnchor);
 names!(CanvasMirror);
 names!(Resampling);
+names!(ColorProfile);
+names!(ProfileChange);
 
 actions! {
     /// All except the area of the crop tool are steps that can be undone. Paint beyond the canvas is kept.
@@ -34,6 +37,8 @@ actions! {
         /// Degrees, counter-clockwise.
         "turn" Turn { degrees: f32 }
         "mirror" Mirror { mirror: CanvasMirror }
+        /// Another color profile: assigned, numbers stay; converted, colors stay.
+        "profile" Profile { profile: ColorProfile, change: ProfileChange }
         /// The area that the crop tool cuts out, or none.
         "frame" CropArea { frame: Option<Rect> }
         /// The aspect that it keeps.
@@ -66,9 +71,10 @@ impl CanvasAction {
         let Some(open) = session.active_mut() else { return session.say("There is no document.") };
         open.forget_preview();
         match self.step(open.document(), &Progress::default()) {
-            Ok((label, next)) => {
-                if open.commit(label, next) {
+            Ok(Edit { label, document, note, .. }) => {
+                if open.commit(label, document) {
                     forget_places(open);
+                    note.into_iter().for_each(|note| session.say(note));
                 }
             }
             Err(why) => session.say(&why),
@@ -77,7 +83,11 @@ impl CanvasAction {
 
     /// What a long step is doing, which the window therefore runs on another thread.
     pub fn takes_long(&self) -> Option<&'static str> {
-        matches!(self, CanvasAction::Trim {}).then_some("Trimming the canvas")
+        match self {
+            CanvasAction::Trim {} => Some("Trimming the canvas"),
+            CanvasAction::Profile { .. } => Some("Changing the color profile"),
+            _ => None,
+        }
     }
 
     /// The step on a document, or why there is none; `None` once it is canceled.
@@ -86,17 +96,13 @@ impl CanvasAction {
         document: &Document,
         progress: &Progress,
     ) -> Option<Result<Edit, String>> {
-        let done = self.step(document, progress);
-        let edit = done.map(|(label, document)| Edit { label, document, select: Vec::new() });
+        let edit = self.step(document, progress);
         (!progress.is_canceled()).then_some(edit)
     }
 
-    /// The step: its name and the resulting document; or why there is none.
-    fn step(
-        &self,
-        document: &Document,
-        progress: &Progress,
-    ) -> Result<(&'static str, Document), String> {
+    /// The step, or why there is none.
+    fn step(&self, document: &Document, progress: &Progress) -> Result<Edit, String> {
+        let edit = |label, document| Edit { label, document, select: Vec::new(), note: None };
         let size = document.size;
         let (label, change) = match self {
             CanvasAction::Crop { to } => ("Crop", crop_to(size, *to)?),
@@ -133,7 +139,7 @@ impl CanvasAction {
                 let next = document
                     .resampled(to, *filter)
                     .map_err(|why| format!("The picture was not changed: {why}."));
-                return Ok(("Image size", next?));
+                return Ok(edit("Image size", next?));
             }
             CanvasAction::Turn { degrees } => {
                 let change = CanvasChange::turn(size, f64::from(*degrees));
@@ -143,6 +149,9 @@ impl CanvasAction {
             CanvasAction::Mirror { mirror } => {
                 ("Mirror canvas", CanvasChange::mirror(size, *mirror))
             }
+            CanvasAction::Profile { profile, change } => {
+                return change_profile(document, *profile, *change);
+            }
             CanvasAction::CropArea { .. } | CanvasAction::Aspect { .. } => {
                 return Err("There is no frame.".into());
             }
@@ -150,8 +159,32 @@ impl CanvasAction {
         if change.is_none() {
             return Err("The canvas would stay the same.".into());
         }
-        Ok((label, document.on_other_canvas(&change)?))
+        Ok(edit(label, document.on_other_canvas(&change)?))
     }
+}
+
+/// The document in another color profile.
+fn change_profile(
+    document: &Document,
+    profile: ColorProfile,
+    change: ProfileChange,
+) -> Result<Edit, String> {
+    if document.profile == profile {
+        return Err(format!("The document's color profile is {} already.", profile.label()));
+    }
+    let (label, document, note) = match change {
+        ProfileChange::Assign => {
+            ("Assign color profile", profile_change::assign(document, profile), None)
+        }
+        ProfileChange::Convert => {
+            let budget = Budget::of_this_machine();
+            let made = profile_change::convert(document, profile, &budget);
+            let note = "Some colors are more saturated than the profile allows; they became the \
+                        nearest it has.";
+            ("Convert color profile", made.document, made.is_clamped.then_some(note))
+        }
+    };
+    Ok(Edit { label, document, select: Vec::new(), note })
 }
 
 /// Places on the old canvas mean nothing on another one.

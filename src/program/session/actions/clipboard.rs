@@ -11,7 +11,8 @@ use crate::document::cut::multiply;
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten_to_paint,
 };
-use crate::math::{Rect, Size, Vec2};
+use crate::io::{Budget, profile_change};
+use crate::math::{ColorProfile, Rect, Size, Vec2};
 use crate::raster::{CoverageGrid, Picture, TileGrid};
 use crate::session::replay::actions;
 use crate::session::{OpenDocument, Session};
@@ -45,8 +46,12 @@ pub struct Copied {
     canvas: Size,
     /// The same for other programs: straight RGBA, with its place.
     pub rect: Rect,
-    /// Straight RGBA.
+    /// Straight RGBA, sRGB.
     pub rgba: Arc<Vec<u8>>,
+    /// The profile that it was copied from.
+    profile: ColorProfile,
+    /// Straight RGBA in that profile.
+    own: Arc<Vec<u8>>,
     /// The same with 16 bits, if some of it has them.
     texels16: Option<Arc<Vec<[u16; 4]>>>,
 }
@@ -62,7 +67,7 @@ impl Copied {
         let (width, height) = (self.rect.width(), self.rect.height());
         match &self.texels16 {
             Some(texels16) => TileGrid::from_straight16(texels16, width, height, x, y),
-            None => TileGrid::from_straight_rgba(&self.rgba, width, height, x, y),
+            None => TileGrid::from_straight_rgba(&self.own, width, height, x, y),
         }
     }
 }
@@ -75,7 +80,7 @@ impl ClipboardAction {
             ClipboardAction::PasteNew {} => return paste_new(session),
             ClipboardAction::PasteImage { at } => return paste_image(session, *at),
             ClipboardAction::PastePicture { picture, to, at } => {
-                return pasted::paste(session, picture, *to, *at);
+                return pasted::paste(session, picture, ColorProfile::Srgb, *to, *at);
             }
             _ => {}
         }
@@ -161,9 +166,18 @@ fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'
     if rect.is_empty() && merged {
         return Err("Nothing is visible where you selected.");
     }
-    let rgba = Arc::new(tiles.to_straight_rgba(rect));
+    let own = Arc::new(tiles.to_straight_rgba(rect));
+    let profile = document.profile;
+    let rgba = match profile {
+        ColorProfile::Srgb => own.clone(),
+        ColorProfile::DisplayP3 => {
+            let mut rgba = own.to_vec();
+            profile_change::show_in_srgb(&mut rgba, profile);
+            Arc::new(rgba)
+        }
+    };
     let texels16 = tiles.is_16_bit_in(rect).then(|| Arc::new(tiles.to_straight16(rect)));
-    Ok(Copied { layers, canvas: document.size, rect, rgba, texels16 })
+    Ok(Copied { layers, canvas: document.size, rect, rgba, profile, own, texels16 })
 }
 
 fn cut(open: &mut OpenDocument) -> Result<Copied, &'static str> {
@@ -199,9 +213,16 @@ fn paste(open: &mut OpenDocument, copied: &Copied) {
     }
 }
 
+/// What was copied as new layers of a document, in its color profile.
+fn paste_layers(copied: &Copied, document: &Document) -> Vec<Layer> {
+    let layers = own_layers(copied, document);
+    let budget = Budget::of_this_machine();
+    profile_change::convert_layers(layers, copied.profile, document.profile, &budget)
+}
+
 /// What was copied as new layers of a document; on a canvas of another size masks become pixels,
 /// because a mask has the size of its canvas.
-fn paste_layers(copied: &Copied, document: &Document) -> Vec<Layer> {
+fn own_layers(copied: &Copied, document: &Document) -> Vec<Layer> {
     let is_plain = |layer: &Layer| layer.mask.is_none() && layer.content.group().is_none();
     if copied.canvas != document.size && !copied.layers.iter().all(is_plain) {
         let Rect { x0, y0, .. } = copied.rect;
@@ -221,14 +242,15 @@ fn paste_new(session: &mut Session) {
     let tiles = copied.tiles(0, 0);
     let layer =
         Layer::new(copied.name(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
-    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
+    let (profile, layers) = (copied.profile, vec![Arc::new(layer)]);
+    let document = Document { layers, profile, ..Document::empty(size) };
     let name = session.new_title();
     let mut open = OpenDocument::new(name, document, None);
     open.mark_unsaved();
     session.add_document(open);
 }
 
-/// What was copied here, as the picture that other programs get.
+/// What was copied here, as a picture.
 fn paste_image(session: &mut Session, at: Option<Vec2>) {
     let Some(copied) = session.copied.clone().filter(|copied| !copied.rect.is_empty()) else {
         return session.say(NOTHING_COPIED);
@@ -236,11 +258,11 @@ fn paste_image(session: &mut Session, at: Option<Vec2>) {
     let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
     let picture = match &copied.texels16 {
         Some(texels16) => Picture::srgb16(size, texels16.to_vec()),
-        None => Picture::srgb8(size, copied.rgba.as_chunks::<4>().0.to_vec()),
+        None => Picture::srgb8(size, copied.own.as_chunks::<4>().0.to_vec()),
     };
     let Some(picture) = picture else { return };
     let pasted = PastedPicture { name: format!("{}.png", copied.name()), picture };
-    pasted::paste(session, &pasted, PasteTo::Image, at);
+    pasted::paste(session, &pasted, copied.profile, PasteTo::Image, at);
 }
 
 /// Copies what is selected of the layer to a new one above it, and takes it out of this one if it

@@ -12,7 +12,7 @@ use crate::io::export::{Output, OutputFile};
 use crate::io::fs::Disk;
 use crate::io::replace::replace;
 use crate::io::{Budget, Overwrite, Terms, line_svg, save};
-use crate::math::{Size, Vec2, srgb::Color};
+use crate::math::{ColorProfile, Size, Vec2, srgb::Color};
 use crate::session::actions::placing::{place, read_picture};
 use crate::session::actions::{pictures, unwrapped};
 use crate::session::exporting::{ExportSettings, ExportSize, ExportedFile};
@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 names!(ShapeMap);
-record!(ExportSettings { background, quality, bits, size, selection });
+record!(ExportSettings { background, quality, bits, size, selection, profile });
 
 /// `{ "scale": factor }` or `{ "width": pixels }`.
 impl ReplayValue for ExportSize {
@@ -53,7 +53,10 @@ actions! {
     /// Paths are those of the user's own files.
     FileAction {
         /// An empty document, its bottom layer filled with a color where there is one.
-        "new" New { width: u32, height: u32, background: Option<Color> }
+        /// `profile`: if absent, sRGB.
+        "new" New {
+            width: u32, height: u32, background: Option<Color>, profile: Option<ColorProfile>,
+        }
         /// A document, or a picture as one.
         "open" Open { file: PathBuf }
         /// A document on the surface of these maps, conventions found.
@@ -68,10 +71,11 @@ actions! {
         "remove brush" RemoveBrush { name: String }
         "save" Save { file: PathBuf }
         /// `bits`: per channel; if absent, the format's default. `size`: if absent, that of the
-        /// canvas. `selection`: only the box around it.
+        /// canvas. `selection`: only the box around it. `profile`: what colors are converted to; if
+        /// absent, the document's.
         "export" Export {
             file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8>, size: Option<ExportSize>,
-            selection: Option<bool>,
+            selection: Option<bool>, profile: Option<ColorProfile>,
         }
         /// The document in front once more, to the same file, which is replaced.
         "export again" ExportAgain {}
@@ -140,14 +144,16 @@ impl FileAction {
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         session.drop_gesture();
         match self {
-            FileAction::New { width, height, background } => {
+            FileAction::New { width, height, background, profile } => {
                 let size = Budget::of_this_machine().size(
                     Path::new("new"),
                     (*width).into(),
                     (*height).into(),
                 )?;
                 let name = session.new_title();
-                session.add_document(OpenDocument::new(name, empty(size, *background), None));
+                let profile = profile.unwrap_or_default();
+                let document = Document { profile, ..empty(size, *background) };
+                session.add_document(OpenDocument::new(name, document, None));
             }
             FileAction::Open { file } => {
                 let opened = storage::open(file)?;
@@ -160,7 +166,7 @@ impl FileAction {
             }
             FileAction::Place { file, at } => {
                 let (name, picture) = read_picture(file)?;
-                place(session, &name, picture, *at);
+                place(session, &name, picture, ColorProfile::Srgb, *at);
                 session.note_read(file);
             }
             FileAction::ImportBrush { file } => brushes::import(session, file)?,
@@ -212,13 +218,14 @@ impl FileAction {
         let Some(open) = session.active() else { return Ok(()) };
         let terms = Terms::export(unless_forced(session), session.reads());
         match self {
-            FileAction::Export { file, background, quality, bits, size, selection } => {
+            FileAction::Export { file, background, quality, bits, size, selection, profile } => {
                 let settings = ExportSettings {
                     background: *background,
                     quality: *quality,
                     bits: *bits,
                     size: size.unwrap_or(ExportSettings::default().size),
                     selection: selection.unwrap_or(false),
+                    profile: *profile,
                 };
                 export_in_front(session, ExportedFile { file: file.clone(), settings }, terms)?;
             }

@@ -386,7 +386,7 @@ impl LayerAction {
             | LayerAction::Write { .. }
             | LayerAction::Set { .. } => return None,
         };
-        Some(Edit { label, document, select })
+        Some(Edit { label, document, select, note: None })
     }
 }
 

@@ -2,14 +2,14 @@
 //! layer. Floor 6. Not here: reading files (`io`).
 
 use super::file_names::free_file;
-use super::placing::read_picture;
+use super::placing::{in_profile, read_picture};
 use crate::Result;
 use crate::document::source::NormalConvention;
 use crate::document::{
     Content, DetailSource, Document, LayerId, LayerMask, Live, MaskKind, NormalLayer,
 };
 use crate::io::{Budget, files::read_file, maps::detail, picture};
-use crate::math::{Size, Vec2};
+use crate::math::{ColorProfile, Size, Vec2};
 use crate::paint::{Adjust, PictureSource};
 use crate::raster::{Picture, Plane};
 use crate::session::{OpenDocument, PicturePart};
@@ -69,7 +69,10 @@ pub fn put(open: &mut OpenDocument, layer: LayerId, read: ReadPart) {
         PartValue::Detail(picture, map) => {
             with_detail(document, layer, PictureSource::new(file, picture, Adjust::default()), map)
         }
-        PartValue::Picture(picture) => with_picture(document, layer, part, file, picture),
+        PartValue::Picture(picture) => {
+            let picture = in_profile(&picture, ColorProfile::Srgb, document);
+            with_picture(document, layer, part, file, picture)
+        }
     };
     if let Some(next) = next {
         open.commit(part.step(), next);

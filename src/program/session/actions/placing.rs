@@ -3,8 +3,8 @@
 
 use crate::Result;
 use crate::document::{Content, Document, Layer, Live};
-use crate::io::{Budget, files::read_file, picture};
-use crate::math::Vec2;
+use crate::io::{Budget, files::read_file, picture, profile_change};
+use crate::math::{ColorProfile, Vec2};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::file_names::free_file;
@@ -15,7 +15,7 @@ use crate::surface::{Anchor, Bend, Operator};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A picture of the user's own, with its name.
+/// A picture of the user's own, with its name; its colors are sRGB until it is in a document.
 pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
     let bytes = read_file(file, Budget::of_this_machine().file_bytes)?;
     let picture = picture::decode(file, &bytes, &Budget::of_this_machine())?;
@@ -24,7 +24,9 @@ pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
 
 /// A picture becomes an image layer, bent by the current operator (by normals, if that is flat),
 /// pinned at `at`. If no document is open, it becomes one itself.
-pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
+///
+/// * `from`: the profile of its colors.
+pub fn place(session: &mut Session, name: &str, picture: Picture, from: ColorProfile, at: Vec2) {
     let operator = match session.tools.operator {
         Operator::None => DROPPED,
         operator => operator,
@@ -42,7 +44,14 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
         outside: Outside::Mirror,
         bend: Bend { operator, anchors: vec![Anchor::pin(at)], ..Bend::default() },
     };
+    let picture = in_profile(&picture, from, document);
     add_image(open, name, picture, lies, "Place image");
+}
+
+/// A picture whose colors are of a profile, in that of a document.
+pub(super) fn in_profile(picture: &Picture, from: ColorProfile, document: &Document) -> Picture {
+    let budget = Budget::of_this_machine();
+    profile_change::convert_picture(picture, from, document.profile, &budget)
 }
 
 /// How a picture lies on the canvas.
@@ -53,7 +62,7 @@ pub(super) struct Lies {
 }
 
 /// A picture becomes an image layer above the selected one, and is selected; returns whether it
-/// could.
+/// could. Its colors are in the document's profile.
 pub(super) fn add_image(
     open: &mut OpenDocument,
     name: &str,
@@ -94,12 +103,13 @@ fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
 /// recognizable.
 const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
 
-/// A picture as a document of its own size.
+/// A picture as a document of its own size; in Display P3 if its file is.
 pub fn of_picture(name: &str, picture: Picture) -> Document {
     let size = picture.size;
+    let empty =
+        Document { profile: profile_change::own_profile(&picture), ..Document::empty(size) };
+    let picture = in_profile(&picture, ColorProfile::Srgb, &empty);
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-    Document {
-        layers: vec![Arc::new(storage::flat_image(&stem, name, picture, size))],
-        ..Document::empty(size)
-    }
+    let layers = vec![Arc::new(storage::flat_image(&stem, name, picture, size))];
+    Document { layers, ..empty }
 }

@@ -4,12 +4,13 @@
 use crate::document::view::{UnwrapOptions, place_over, render_unwrapped};
 use crate::document::{Document, Highlights, Progress};
 use crate::io::Terms;
-use crate::io::export::high_depth::encode as encode_floats;
-use crate::io::export::{ExportFormat, ExportOptions, OutputFile, encode};
+use crate::io::export::high_depth::encode_in as encode_floats;
+use crate::io::export::{ExportFormat, ExportOptions, OutputFile, encode_in};
+use crate::math::ColorProfile;
 use crate::math::srgb::Color;
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
 use crate::session::Session;
-use crate::session::actions::placing::{Lies, add_image};
+use crate::session::actions::placing::{Lies, add_image, in_profile};
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -35,15 +36,17 @@ pub fn export(
     // A JPEG has no transparency for what lies between the pieces.
     let background = (format == ExportFormat::Jpeg).then_some(Color::WHITE);
     let written = ExportOptions { background, ..ExportOptions::default() };
+    let profile = document.profile;
     if floats.is_some() {
-        return target.replace(&encode_floats(file, format, &seen.pixels, seen.size, &written)?);
+        let bytes = encode_floats(file, format, &seen.pixels, seen.size, &written, profile)?;
+        return target.replace(&bytes);
     }
     let Some(Texels::Srgb8(texels)) = seen.picture().map(|picture| picture.texels) else {
         return Ok(());
     };
     let (width, height) = (seen.size.width as usize, seen.size.height as usize);
     let grid = TileGrid::from_straight_rgba(texels.as_flattened(), width, height, 0, 0);
-    target.replace(&encode(file, format, &grid, seen.size, &written)?)
+    target.replace(&encode_in(file, format, &grid, seen.size, &written, profile)?)
 }
 
 /// How far the sides of a picture may differ from the sheet's, as a ratio, without a note.
@@ -59,6 +62,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture) {
     else {
         return session.notes.push("There is no surface to unwrap.".into());
     };
+    let picture = in_profile(&picture, ColorProfile::Srgb, document);
     let (sheet, size) = (layout.size(), picture.size);
     let lies = Lies {
         placement: place_over(sheet.rect(), size, document.size),

@@ -1,5 +1,5 @@
 //! Lightness, chroma and hue (OKLCH) as three bars. Each shows the colors that it leads to; where
-//! sRGB ends, the bar is dim, and a line is drawn. Floor 7.
+//! the document's colors end, the bar is dim, and a line is drawn. Floor 7.
 
 use crate::language::tr;
 use crate::math::oklch::{self, MOST_CHROMA};

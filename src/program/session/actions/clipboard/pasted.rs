@@ -3,12 +3,12 @@
 //! itself (`clipboard`).
 
 use crate::document::{Content, Document, Layer, PixelLayer};
-use crate::io::{Budget, base64, picture};
+use crate::io::{Budget, base64, picture, profile_change};
 use crate::math::range::clamp_to_range;
-use crate::math::{COORDINATE, Vec2};
+use crate::math::{COORDINATE, ColorProfile, Vec2};
 use crate::raster::{Asset, Picture, TileGrid};
 use crate::session::actions::layers::slot_above;
-use crate::session::actions::placing::place;
+use crate::session::actions::placing::{in_profile, place};
 use crate::session::replay::{ReplayValue, names};
 use crate::session::{OpenDocument, Session};
 use serde_json::{Value, json};
@@ -60,18 +60,27 @@ impl ReplayValue for PastedPicture {
 }
 
 /// Pastes a picture with its middle at a canvas point. Without a point: the middle of the view.
-pub(super) fn paste(session: &mut Session, pasted: &PastedPicture, to: PasteTo, at: Option<Vec2>) {
+///
+/// * `from`: the profile of its colors.
+pub(super) fn paste(
+    session: &mut Session,
+    pasted: &PastedPicture,
+    from: ColorProfile,
+    to: PasteTo,
+    at: Option<Vec2>,
+) {
     let Some(open) = session.active_mut().filter(|_| to != PasteTo::Document) else {
-        return open(session, picture::to_tiles(&pasted.picture, 0, 0), pasted);
+        return open(session, pasted);
     };
     let at = at.unwrap_or_else(|| view_middle(open));
     let at = Vec2::new(clamp_to_range(at.x, &COORDINATE), clamp_to_range(at.y, &COORDINATE));
     if to == PasteTo::Image {
-        return place(session, &pasted.name, pasted.picture.clone(), at);
+        return place(session, &pasted.name, pasted.picture.clone(), from, at);
     }
     let size = pasted.picture.size;
     let corner = (at - Vec2::new(size.width as f32, size.height as f32) / 2.0).round();
-    let tiles = picture::to_tiles(&pasted.picture, corner.x as i32, corner.y as i32);
+    let picture = in_profile(&pasted.picture, from, open.document());
+    let tiles = picture::to_tiles(&picture, corner.x as i32, corner.y as i32);
     let layer = paint(open.document().free_layer_name(&stem(&pasted.name)), tiles);
     let id = layer.id;
     if let Some(next) = open.document().with_inserted(layer, slot_above(open))
@@ -96,11 +105,13 @@ fn paint(name: String, tiles: TileGrid) -> Layer {
     Layer { clip_to_surface: false, ..Layer::new(name, Content::Pixels(pixels)) }
 }
 
-/// A document of the picture's size, which is its paint.
-fn open(session: &mut Session, tiles: TileGrid, pasted: &PastedPicture) {
-    let layer = paint(stem(&pasted.name), tiles);
-    let document =
-        Document { layers: vec![Arc::new(layer)], ..Document::empty(pasted.picture.size) };
+/// A document of the picture's size, which is its paint; in Display P3 if its file is.
+fn open(session: &mut Session, pasted: &PastedPicture) {
+    let profile = profile_change::own_profile(&pasted.picture);
+    let empty = Document { profile, ..Document::empty(pasted.picture.size) };
+    let picture = in_profile(&pasted.picture, ColorProfile::Srgb, &empty);
+    let layer = paint(stem(&pasted.name), picture::to_tiles(&picture, 0, 0));
+    let document = Document { layers: vec![Arc::new(layer)], ..empty };
     let name = session.new_title();
     let mut open = OpenDocument::new(name, document, None);
     open.mark_unsaved();

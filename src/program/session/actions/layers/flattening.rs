@@ -64,7 +64,7 @@ impl LayerAction {
                 };
                 let baked = |next: Document, id| bake(&next, next.layer(id)?, progress);
                 let document = ids.into_iter().try_fold(document.clone(), baked)?;
-                Some(Edit { label, document, select: Vec::new() })
+                Some(Edit { label, document, select: Vec::new(), note: None })
             }
             LayerAction::Flatten {} => {
                 let all: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
@@ -72,7 +72,7 @@ impl LayerAction {
                 let flat = paint_layer("Picture", flatten_to_paint(document, progress)?);
                 let select = vec![flat.id];
                 let document = Document { layers: vec![Arc::new(flat)], ..document.clone() };
-                Some(Edit { label: "Flatten picture", document, select })
+                Some(Edit { label: "Flatten picture", document, select, note: None })
             }
             _ => None,
         }
@@ -148,7 +148,7 @@ fn merge_down(document: &Document, id: LayerId, progress: &Progress) -> Option<E
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
         (layer.opacity, layer.mask, layer.transform, layer.liquify) = (1.0, None, transform, None);
     })?;
-    Some(Edit { label: "Merge down", document, select: vec![beneath.id] })
+    Some(Edit { label: "Merge down", document, select: vec![beneath.id], note: None })
 }
 
 /// Layers, bottom first, as one paint layer in the place of the topmost of them; it has the name
@@ -176,7 +176,7 @@ fn merge_several(document: &Document, ids: &[LayerId], progress: &Progress) -> O
     };
     let select = vec![one.id];
     let document = document.with_one_for(ids, one)?;
-    Some(Edit { label: "Merge layers", document, select })
+    Some(Edit { label: "Merge layers", document, select, note: None })
 }
 
 #[cfg(test)]

@@ -190,6 +190,7 @@ fn blank(dice: &mut Dice) -> Vec<Action> {
         width: dice.value("new", "width"),
         height: dice.value("new", "height"),
         background: dice.value("new", "background"),
+        profile: dice.value("new", "profile"),
     })]
 }
 
@@ -199,6 +200,7 @@ fn drawing(dice: &mut Dice) -> Vec<Action> {
         width: 96,
         height: 72,
         background: Some(Color::WHITE),
+        profile: None,
     })];
     actions.push(Action::Layer(LayerAction::Add { kind: NewLayer::Paint }));
     for (color, from, to) in
