@@ -4,6 +4,7 @@
 
 mod ants;
 mod assistants;
+mod barrel;
 mod blocks;
 pub mod crop;
 mod follow;

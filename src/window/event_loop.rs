@@ -1,17 +1,21 @@
-//! The window's event loop: the tablet receives pointer events before the window does.
+//! The window's event loop: pens receive its events before the window does, and give it theirs.
 //! Floor 7.
 
-use super::pen::{self, PenDevices, SharedTablet};
+use super::pen::{self, PenFeed, SharedTablet};
 use eframe::{EframeWinitApplication, UserEvent};
+use std::time::Duration;
 use winit::application::ApplicationHandler;
 use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, EventLoop};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::WindowId;
+
+/// The time that a loop waits which would wait for ever.
+const LONGEST_WAIT: Duration = Duration::from_secs(60);
 
 /// If this is set to anything, the window is opened on Wayland where available.
 ///
 /// Otherwise it is opened through X11 if both are available: on Wayland this windowing library
-/// reports neither pen pressure nor dropped files.
+/// reports no dropped files, and a pen does not move the window by its frame.
 #[cfg(all(unix, not(target_os = "macos")))]
 const PREFERS_WAYLAND: &str = "RILIEVO_WAYLAND";
 
@@ -25,8 +29,8 @@ pub fn run(
 ) -> eframe::Result {
     let events = event_loop()?;
     let window = eframe::create_native("rilievo", options, start, &events);
-    let devices = pen::devices(&events);
-    events.run_app(&mut TabletListener { window, tablet, devices })?;
+    let feed = PenFeed::new(tablet, pen::devices(&events));
+    events.run_app(&mut PenListener { window, feed })?;
     Ok(())
 }
 
@@ -45,33 +49,28 @@ fn event_loop() -> eframe::Result<EventLoop<UserEvent>> {
     Ok(EventLoop::with_user_event().build()?)
 }
 
-/// The window, and the tablet, which receives its events.
-struct TabletListener<'a> {
+/// The window, and the pens, which receive its events.
+struct PenListener<'a> {
     window: EframeWinitApplication<'a>,
-    tablet: SharedTablet,
-    devices: Option<Box<dyn PenDevices>>,
+    feed: PenFeed,
 }
 
-impl TabletListener<'_> {
-    fn overhear(&mut self, event: &WindowEvent) {
-        let mut tablet = self.tablet.borrow_mut();
-        match *event {
-            WindowEvent::CursorMoved { position, .. } => {
-                if let Some(axes) = self.devices.as_mut().and_then(|devices| devices.change()) {
-                    tablet.follow(axes);
-                }
-                tablet.move_to([position.x, position.y]);
-            }
-            WindowEvent::AxisMotion { axis, value, .. } => tablet.axis(axis, value),
-            _ => {}
+impl PenListener<'_> {
+    /// Gives the window what the pens did on their own.
+    fn move_by_pens(&mut self, events: &ActiveEventLoop) {
+        self.feed.read_pens();
+        while let Some((window, event)) = self.feed.next_event() {
+            self.window.window_event(events, window.into(), event);
         }
     }
 }
 
-impl ApplicationHandler<UserEvent> for TabletListener<'_> {
+impl ApplicationHandler<UserEvent> for PenListener<'_> {
     fn window_event(&mut self, events: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
-        self.overhear(&event);
-        self.window.window_event(events, window, event);
+        self.move_by_pens(events);
+        if !self.feed.hear(window.into(), &event) {
+            self.window.window_event(events, window, event);
+        }
     }
 
     fn new_events(&mut self, events: &ActiveEventLoop, cause: StartCause) {
@@ -95,7 +94,13 @@ impl ApplicationHandler<UserEvent> for TabletListener<'_> {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        self.move_by_pens(events);
         self.window.about_to_wait(events);
+        // Whatever comes from the display while the loop waits for a time turns it; while it waits
+        // for nothing, only the windowing library's own events do.
+        if self.feed.is_unheard_by_loop() && events.control_flow() == ControlFlow::Wait {
+            events.set_control_flow(ControlFlow::wait_duration(LONGEST_WAIT));
+        }
     }
 
     fn exiting(&mut self, events: &ActiveEventLoop) {

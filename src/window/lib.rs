@@ -55,7 +55,7 @@ mod window;
 pub use clipboard::PastedContent;
 #[cfg(not(target_family = "wasm"))]
 pub use desktop::run;
-pub use pen::{AxisMeaning, PenAxes, PenAxis, SharedTablet};
+pub use pen::{AxisMeaning, PenAxes, PenAxis, PenState, SharedTablet};
 pub use window::MainWindow;
 
 // The lower floors, under their own names.

@@ -4,7 +4,7 @@
 
 use crate::math::{NumberSetting, Vec2, named::current_name, vec2};
 use crate::paint::Curve;
-use eframe::egui::Modifiers;
+use eframe::egui::{Modifiers, PointerButton};
 use serde_json::{Map, Value, json};
 
 rilievo_engine::named! {
@@ -45,6 +45,30 @@ impl PickKeys {
     }
 }
 
+rilievo_engine::named! {
+    /// What a button on the barrel of a pen does over the canvas.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum BarrelAction {
+        Size = "brush size" => "Brush size",
+        Pan = "pan" => "Move the view",
+        Turn = "turn" => "Turn the view",
+        Pick = "color" => "Take a color",
+        Erase = "erase" => "Erase",
+        Undo = "undo" => "Undo",
+        Nothing = "nothing" => "Nothing",
+    }
+}
+
+/// A button on the barrel of a pen: the system takes it for one of a mouse.
+pub struct BarrelButton {
+    pub button: PointerButton,
+    /// Its name in the settings file.
+    pub name: &'static str,
+    pub label: &'static str,
+    pub get: fn(&Preferences) -> BarrelAction,
+    pub set: fn(&mut Preferences, BarrelAction),
+}
+
 /// All of them, but those that have a file of their own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preferences {
@@ -57,6 +81,8 @@ pub struct Preferences {
     pub presses_by_speed: bool,
     /// From the pressure that a pen reports to the one that is painted with.
     pub pressure: Curve,
+    pub right_barrel: BarrelAction,
+    pub middle_barrel: BarrelAction,
     pub recent_files: usize,
     pub undo_steps: usize,
 }
@@ -86,6 +112,8 @@ impl Default for Preferences {
             has_own_file_dialog: false,
             presses_by_speed: false,
             pressure: PRESSED_AS_REPORTED,
+            right_barrel: BarrelAction::Size,
+            middle_barrel: BarrelAction::Pan,
             recent_files: 12,
             undo_steps: 200,
         }
@@ -172,6 +200,24 @@ impl Preferences {
         ),
     ];
 
+    /// The buttons on a pen's barrel.
+    pub const BARREL: [BarrelButton; 2] = [
+        BarrelButton {
+            button: PointerButton::Secondary,
+            name: "right pen button",
+            label: "Right click",
+            get: |all| all.right_barrel,
+            set: |all, to| all.right_barrel = to,
+        },
+        BarrelButton {
+            button: PointerButton::Middle,
+            name: "middle pen button",
+            label: "Middle click",
+            get: |all| all.middle_barrel,
+            set: |all, to| all.middle_barrel = to,
+        },
+    ];
+
     /// Whether a pen's pressure is painted with as it is reported.
     pub fn is_pressed_as_reported(&self) -> bool {
         self.pressure == PRESSED_AS_REPORTED
@@ -189,6 +235,9 @@ impl Preferences {
         }
         for (_, number) in Self::NUMBERS {
             out.insert(number.name.into(), (number.get)(self).into());
+        }
+        for barrel in Self::BARREL {
+            out.insert(barrel.name.into(), (barrel.get)(self).name().into());
         }
         out.insert(PICK.into(), self.pick_keys.name().into());
         if let Curve::Points(points) = &self.pressure {
@@ -208,6 +257,12 @@ impl Preferences {
         for (_, number) in Self::NUMBERS {
             if let Some(to) = value.get(number.name).and_then(Value::as_f64) {
                 number.put(&mut read, to as f32);
+            }
+        }
+        for barrel in Self::BARREL {
+            let action = value.get(barrel.name).and_then(Value::as_str).map(current_name);
+            if let Some(action) = action.and_then(BarrelAction::from_name) {
+                (barrel.set)(&mut read, action);
             }
         }
         let keys = value.get(PICK).and_then(Value::as_str).map(current_name);
@@ -243,11 +298,16 @@ mod tests {
         for (_, number) in Preferences::NUMBERS {
             number.put(&mut all, *number.range.start() + 7.0);
         }
+        for barrel in Preferences::BARREL {
+            (barrel.set)(&mut all, BarrelAction::Turn);
+            assert_eq!((barrel.get)(&all), BarrelAction::Turn, "{}", barrel.name);
+        }
         all.pick_keys = PickKeys::Ctrl;
         all.pressure = Curve::through(vec![vec2(0.25, 0.0), vec2(0.5, 1.0)]).unwrap();
         assert_eq!(Preferences::from_json(all.to_json().as_object().unwrap()), all);
         let wrong = json!({
             "pressure": [[0.5, 9], "x"], "undo steps": "many", "loupe": 3, "pick with": "shift",
+            "right pen button": "brew", "middle pen button": 3,
         });
         let read = Preferences::from_json(wrong.as_object().unwrap());
         assert_eq!(read, Preferences::default());

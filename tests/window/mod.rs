@@ -15,6 +15,7 @@ mod marks;
 mod panels;
 mod pasting;
 mod paths;
+mod pens;
 mod preferences;
 mod recovery;
 mod replayed;

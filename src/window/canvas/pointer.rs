@@ -1,6 +1,7 @@
 //! Turns events of pen and mouse on the canvas into actions. Strokes are made of events, one sample
 //! each, never of the pointer's position when a frame is drawn. Floor 7.
 
+use super::barrel::Barrel;
 use super::frame_input::{FrameInput, wheel};
 use super::rulers;
 use crate::math::{COORDINATE, Vec2, srgb::Color, vec2};
@@ -8,7 +9,7 @@ use crate::paint::{Curve, Sample};
 use crate::pen::{
     FilteredReport, PenPhase, PenReport, PenSource, ReportFilter, SharedTablet, WindowPen,
 };
-use crate::preferences::{PickKeys, Preferences};
+use crate::preferences::{BarrelAction, PickKeys, Preferences};
 use crate::session::actions::{EditAction, GuideAction, HandAction, PointerAction, ViewAction};
 use crate::session::{Action, CanvasView, Session};
 use crate::tools::{ModifierKeys, PenSample, ToolKind};
@@ -43,6 +44,9 @@ const TAP_PT: f32 = 12.0;
 /// The state between frames.
 pub struct PointerState {
     holding: PointerGesture,
+    /// The button that it began with.
+    held_by: PointerButton,
+    barrel: Barrel,
     last: Pos2,
     pen: WindowPen,
     /// While a stroke is drawn.
@@ -69,6 +73,8 @@ impl Default for PointerState {
     fn default() -> Self {
         Self {
             holding: PointerGesture::default(),
+            held_by: PointerButton::Primary,
+            barrel: Barrel::default(),
             last: Pos2::ZERO,
             pen: WindowPen::default(),
             watch: None,
@@ -99,6 +105,7 @@ impl PointerState {
     /// Uses the pen as the user prefers.
     pub fn prefer(&mut self, preferences: &Preferences) {
         self.pick_keys = preferences.pick_keys;
+        self.barrel.prefer(preferences);
         self.pressure.clone_from(&preferences.pressure);
     }
 
@@ -141,7 +148,8 @@ impl PointerState {
         // Alt sets the source point of a clone brush.
         let clones = session.tool == ToolKind::Brush && session.tools.brush.mode.is_clone();
         let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient) && !clones;
-        let picks = paints && self.pick_keys.are_held(self.keys);
+        let picks = paints
+            && (self.pick_keys.are_held(self.keys) || self.barrel.is_held(BarrelAction::Pick));
         match self.holding {
             PointerGesture::Nothing if self.space => ToolKind::Hand,
             PointerGesture::Nothing if picks => ToolKind::Eyedropper,
@@ -258,12 +266,20 @@ impl PointerState {
             }
             PenPhase::Down(_) => {}
             PenPhase::Move => self.move_to(&report, listening),
-            PenPhase::Up => {
+            PenPhase::Up(button) => {
+                self.barrel.release(button);
                 self.move_to(&report, listening);
-                self.release(listening);
+                if button == self.held_by {
+                    self.release(listening);
+                }
             }
-            PenPhase::Lost if self.holding == PointerGesture::Drawing => self.release(listening),
-            PenPhase::Lost => self.holding = PointerGesture::Nothing,
+            PenPhase::Lost => {
+                self.barrel.release_all();
+                if self.holding == PointerGesture::Drawing {
+                    self.release(listening);
+                }
+                self.holding = PointerGesture::Nothing;
+            }
         }
     }
 
@@ -291,14 +307,28 @@ impl PointerState {
     }
 
     fn press(&mut self, report: &PenReport, button: PointerButton, listening: &mut FrameInput) {
+        let barrel = self.barrel.press(report, button);
         if self.holding != PointerGesture::Nothing {
             return;
         }
         let pos = report.at;
-        self.last = pos;
+        (self.last, self.held_by) = (pos, button);
+        // The same as with the buttons of a mouse.
+        let button = match barrel {
+            None => button,
+            Some(BarrelAction::Size) => PointerButton::Secondary,
+            Some(BarrelAction::Pan) => PointerButton::Middle,
+            Some(BarrelAction::Turn) => return self.holding = PointerGesture::Turning,
+            Some(BarrelAction::Undo) => {
+                return listening.actions.push(Action::Edit(EditAction::Undo {}));
+            }
+            // They say what the tip does.
+            Some(BarrelAction::Pick | BarrelAction::Erase | BarrelAction::Nothing) => return,
+        };
         let session = listening.session;
+        let erases = report.is_eraser || self.barrel.is_held(BarrelAction::Erase);
         let tool = match self.tool(session) {
-            ToolKind::Brush if report.is_eraser => ToolKind::Eraser,
+            ToolKind::Brush if erases => ToolKind::Eraser,
             tool => tool,
         };
         let is_brush = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
@@ -349,6 +379,7 @@ impl PointerState {
         }
         let Some((watch, reading)) = ReportFilter::begin(report, false) else { return };
         (self.last, self.watch, self.pulls) = (report.at, Some(watch), true);
+        self.held_by = PointerButton::Primary;
         let (pen, px_per_pt) = (self.reading(reading, listening), 1.0 / listening.view.zoom);
         let vertical = rulers::is_upright_pull(area, &listening.view, report.at);
         listening.actions.push(Action::Guide(GuideAction::Pull { vertical, pen, px_per_pt }));

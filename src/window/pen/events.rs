@@ -1,6 +1,5 @@
 //! The window's own events as a pen: a mouse, a touch with the force that it reports (pens on
-//! Windows, phones and the web), or a pointer whose tablet reports pressure and tilt separately
-//! (pens on X11). Floor 7.
+//! an old Windows, phones), or a pointer whose tablet reports pressure and tilt separately. Floor 7.
 
 use super::tablet::PenState;
 use super::{PenPhase, PenReport, PenSource, SharedTablet};
@@ -55,7 +54,7 @@ impl WindowPen {
             Event::PointerButton { pos, button, pressed, .. } => {
                 self.at = pos;
                 self.is_down = pressed;
-                Some(if pressed { PenPhase::Down(button) } else { PenPhase::Up })
+                Some(if pressed { PenPhase::Down(button) } else { PenPhase::Up(button) })
             }
             // When the window loses the focus, the release of a mouse button is not reported.
             Event::WindowFocused(false) => Some(PenPhase::Lost),
@@ -88,8 +87,9 @@ impl WindowPen {
     }
 
     fn report(&self, phase: PenPhase, secs: f64) -> PenReport {
-        let PenState { pressure, tilt, is_eraser, .. } = self.held;
-        PenReport { phase, at: self.at, pressure: self.force.or(pressure), tilt, secs, is_eraser }
+        let PenState { pressure, tilt, twist, is_eraser, .. } = self.held;
+        let pressure = self.force.or(pressure);
+        PenReport { phase, at: self.at, pressure, tilt, twist, secs, is_eraser }
     }
 
     /// Whether the screen was touched with a finger since the program started.
@@ -147,11 +147,8 @@ mod tests {
             touch(TouchPhase::End, None),
             button(false),
         ];
-        let down = PenPhase::Down(PointerButton::Primary);
-        assert_eq!(
-            reports(&events),
-            [(down, Some(0.25)), (PenPhase::Move, Some(0.5)), (PenPhase::Up, None)]
-        );
+        let [down, up] = [PenPhase::Down, PenPhase::Up].map(|phase| phase(PointerButton::Primary));
+        assert_eq!(reports(&events), [(down, Some(0.25)), (PenPhase::Move, Some(0.5)), (up, None)]);
     }
 
     #[test]

@@ -79,11 +79,16 @@ pub struct PenAxes {
 /// The state of a pen at one motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PenState {
+    /// The device, by a number of the platform's; 0 is a mouse.
     pub device: u32,
     /// `[0, 1]`; `None` for a mouse.
     pub pressure: Option<f32>,
     /// Degrees from upright, right and down positive, `[-90, 90]`.
     pub tilt: (f32, f32),
+    /// How far it is turned about its own length, degrees clockwise, `[0, 360)`; `None` if it does
+    /// not say.
+    pub twist: Option<f32>,
+    /// It is held upside down.
     pub is_eraser: bool,
 }
 
@@ -109,10 +114,15 @@ impl Tablet {
 
     /// The pointer moved to a place of the window, px; its axes follow.
     pub fn move_to(&mut self, at_px: [f64; 2]) {
+        self.note(at_px, self.held);
+    }
+
+    /// The pointer comes to a place of the window, px, in a state of its own.
+    pub fn note(&mut self, at_px: [f64; 2], state: PenState) {
         if self.motions.len() == MOST_MOTIONS {
             self.motions.pop_front();
         }
-        self.motions.push_back((at_px, self.held));
+        self.motions.push_back((at_px, state));
     }
 
     /// Sets an axis of the last motion.

@@ -2,7 +2,7 @@
 //! pressure and tilt, by querying the server. The values of the axes come with the window's own
 //! events. Floor 7. X11 only. If the server does not reply, everything is a mouse.
 
-use super::{AxisMeaning, PenAxes, PenAxis, PenDevices};
+use super::{AxisMeaning, PenAxes, PenAxis, PenDevices, PenNews};
 use x11rb::connection::Connection;
 use x11rb::errors::ReplyError;
 use x11rb::protocol::Event;
@@ -87,7 +87,8 @@ impl X11Server {
 }
 
 impl PenDevices for X11Server {
-    fn change(&mut self) -> Option<PenAxes> {
+    /// Only the last device counts: the axes of a motion come with the window's events.
+    fn read(&mut self) -> Vec<PenNews> {
         let mut last = self.first.take();
         while !self.is_gone {
             match self.connection.poll_for_event() {
@@ -99,7 +100,7 @@ impl PenDevices for X11Server {
                 Err(_) => self.is_gone = true,
             }
         }
-        last
+        last.map(PenNews::Follow).into_iter().collect()
     }
 }
 
