@@ -69,8 +69,8 @@
 //! # }
 //! ```
 //!
-//! The repository's `examples` folder has a page each on rendering, gradients, strokes, and shapes
-//! made from drawings.
+//! The repository's `examples` folder has a page each on rendering, gradients, strokes, shapes made
+//! from drawings, and a shading model of one's own.
 //!
 //! | module | holds |
 //! |---|---|

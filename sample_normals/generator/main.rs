@@ -4,6 +4,7 @@
 
 mod cloth;
 mod decals;
+mod fossil;
 mod landscape;
 mod medal;
 mod muse;
@@ -11,6 +12,7 @@ mod noise;
 mod output;
 mod painting;
 mod patterns;
+mod photometry;
 mod pictures;
 mod render;
 mod sdf;
@@ -45,6 +47,9 @@ const SURFACES: [fn() -> Sample; 11] = [
 /// The studio as light.
 const LIGHT: &str = "studio_light.hdr";
 
+/// The surface that is measured from photographs.
+const FOSSIL: &str = "fossil";
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let out = PathBuf::from(arguments.next().ok_or("usage: make_samples OUT_DIR [NAME]")?);
@@ -68,6 +73,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let start = Instant::now();
         output::write_picture(&out.join("pictures").join(name), &make())?;
         println!("{name:<14} {:>4.1} s", start.elapsed().as_secs_f64());
+    }
+    if only.as_deref().is_none_or(|wanted| wanted == FOSSIL) {
+        let captured = photometry::capture();
+        output::write_captured(&out.join(FOSSIL), &captured)?;
+        println!("{FOSSIL}: the solved normals are {:.1}° off in the mean", captured.error);
     }
     if only.as_deref().is_none_or(|wanted| wanted == LIGHT) {
         let (width, height, light) = pictures::studio_lat_long();

@@ -10,6 +10,7 @@ use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, Rgb, Rgba, RgbaImage};
 
+use crate::photometry::Captured;
 use crate::render::Maps;
 
 type Outcome = Result<(), Box<dyn Error>>;
@@ -34,6 +35,14 @@ pub fn write_maps(folder: &Path, maps: &Maps) -> Outcome {
     write_png(&folder.join("normal.png"), &bytes(&normal), size, ExtendedColorType::Rgb16)?;
     write_png(&folder.join("depth.png"), &bytes(&depth), size, ExtendedColorType::L16)?;
     write_png(&folder.join("mask.png"), &mask, size, ExtendedColorType::L8)
+}
+
+/// Writes `normal.png`, `mask.png` and `photo.jpg` into `folder`: a rig gives no depth.
+pub fn write_captured(folder: &Path, captured: &Captured) -> Outcome {
+    write_picture(&folder.join("normal.png"), &captured.normals)?;
+    write_picture(&folder.join("photo.jpg"), &captured.photograph)?;
+    let size = captured.normals.dimensions();
+    write_png(&folder.join("mask.png"), &captured.mask, size, ExtendedColorType::L8)
 }
 
 /// A value in `[0, 1]` as 16 bits, rounded to a multiple of `2^(16 − bits)`.

@@ -11,7 +11,7 @@ use crate::sdf::v;
 pub const TEXTURE: u32 = 512;
 
 /// Linear light in `[0, 1]` as an sRGB byte.
-fn encoded(linear: f64) -> u8 {
+pub fn encoded(linear: f64) -> u8 {
     let c = linear.clamp(0.0, 1.0);
     let srgb = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
     (srgb * 255.0).round() as u8

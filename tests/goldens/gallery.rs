@@ -26,16 +26,25 @@ struct Shown {
 const WHITE: Rgb<u8> = Rgb([255; 3]);
 const WALL: Rgb<u8> = Rgb([0x2c, 0x2a, 0x2e]);
 const LIGHT_WALL: Rgb<u8> = Rgb([0xd9, 0xd4, 0xcc]);
+const CLOTH: Rgb<u8> = Rgb([0x14, 0x16, 0x1b]);
 const NIGHT: Rgb<u8> = Rgb([0x14, 0x1a, 0x24]);
 
 /// Layers that the gallery shows alone: picture, recipe, layer, background.
-const LAYERS: [(&str, &str, &str, Rgb<u8>); 27] = [
+const LAYERS: [(&str, &str, &str, Rgb<u8>); 35] = [
     ("noise_knot_1", "noise_knot", "γ 1", WHITE),
     ("noise_knot_2", "noise_knot", "γ 2", WHITE),
     ("noise_knot_3", "noise_knot", "γ 3", WHITE),
     ("noise_knot_4", "noise_knot", "α 0.5, β 1", WHITE),
     ("noise_knot_5", "noise_knot", "α -0.5, β 1", WHITE),
     ("noise_knot_6", "noise_knot", "α -0.5, β 3", WHITE),
+    ("noise_knot_7", "noise_knot", "Surface", WHITE),
+    ("captured_fossil_plain", "captured_fossil", "Plain", CLOTH),
+    ("warped_muse_1", "warped_muse", "Matt", WALL),
+    ("warped_muse_3", "warped_muse", "Matt, scaled", WALL),
+    ("warped_muse_4", "warped_muse", "Matt, turned", WALL),
+    ("warped_muse_6", "warped_muse", "Matt, turned, scaled", WALL),
+    ("warped_muse_7", "warped_muse", "Mirror", WALL),
+    ("warped_muse_9", "warped_muse", "Mirror, scaled", WALL),
     ("relief_muse_none", "relief_muse", "No scaling", WALL),
     ("relief_muse_low", "relief_muse", "α 0.2", WALL),
     ("relief_muse_high", "relief_muse", "α 0.8", WALL),
