@@ -154,7 +154,10 @@ impl PenPage {
                     };
                     let number = |value: f32| tr_number(&format!("{value:.3}")).into_owned();
                     let (pressure, painted) = (number(pressed), number(counts));
-                    row("Pressure", tr!("{pressure}, painted with as {painted}", pressure, painted));
+                    row(
+                        "Pressure",
+                        tr!("{pressure}, painted with as {painted}", pressure, painted),
+                    );
                     let [right, down] = [last.tilt.0, last.tilt.1].map(|tilt| format!("{tilt:.0}"));
                     row("Tilt", tr!("{right}° right, {down}° down", right, down));
                     if let Some(twist) = last.twist {
