@@ -5,7 +5,7 @@
 use std::{fs, path::Path};
 
 /// `docs/ARCHITECTURE.md` shows the same table.
-const FLOORS: [(&str, u32); 15] = [
+const FLOORS: [(&str, u32); 16] = [
     ("error", 0),
     ("math", 0),
     ("memory", 0),
@@ -17,6 +17,7 @@ const FLOORS: [(&str, u32); 15] = [
     ("document", 4),
     ("tools", 5),
     ("io", 5),
+    ("language", 6),
     ("session", 6),
     ("window", 7),
     ("cli", 7),
