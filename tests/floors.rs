@@ -18,6 +18,7 @@ const FLOORS: [(&str, u32); 16] = [
     ("tools", 5),
     ("language", 5),
     ("io", 5),
+    ("language", 6),
     ("session", 6),
     ("window", 7),
     ("cli", 7),

@@ -1,5 +1,5 @@
 //! The language of the window and of the command line. Texts stand in English where they are shown,
-//! and are looked up in the catalog of the chosen language as they are shown. Floor 5. Not here: the
+//! and are looked up in the catalog of the chosen language as they are shown. Floor 6. Not here: the
 //! texts of documents, files and scripts, which have no language.
 //!
 //! [`tr`] translates a text, [`tr!`](crate::tr) one with values in it, and [`tr_message`] what the

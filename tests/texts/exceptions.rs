@@ -19,7 +19,7 @@ pub const EXCEPT_TEXTS: &[(&str, &str, &str)] = &[
     ("src/engine/raster/lattice.rs", "Lattice of {} blocks", "for debugging"),
     ("src/io/palette/gpl.rs", "GIMP Palette\nName: {}\nColumns: {}\n#\n", "written to a file"),
     ("src/io/text/markup.rs", "'{}', sans-serif", "written to an SVG"),
-    ("src/program/cli.rs", "rilievo: {}", "the program's name"),
+    ("src/program/cli.rs", "rilievo: {sentence}", "the program's name"),
     (
         "src/program/cli/crash.rs",
         "Rilievo {}\n{} {}, {threads} threads\n\ninternal error: {what}\n\n\

@@ -222,7 +222,8 @@ fn item_end(tokens: &[Token], mut at: usize) -> usize {
 
 #[test]
 fn literals_are_read_as_the_program_has_them() {
-    let source = "let a = \"x \\\"y\\\"\\u{2026}\\\n   z\"; // \"no\"\n/* \"no\" */ b\"no\" r#\"raw \"q\"\"# '\"' &'a str";
+    let source = "let a = \"x \\\"y\\\"\\u{2026}\\\n   z\"; // \"no\"\n\
+                  /* \"no\" */ b\"no\" r#\"raw \"q\"\"# '\"' &'a str";
     let texts: Vec<Token> =
         tokens(source).into_iter().filter(|token| matches!(token, Token::Text(_))).collect();
     assert_eq!(texts, [Token::Text("x \"y\"…z".into()), Token::Text("raw \"q\"".into())]);

@@ -104,7 +104,7 @@ impl Catalog {
         }
         let templates = self.candidates(message);
         let (later, first): (Vec<&Template>, Vec<&Template>) =
-            templates.into_iter().partition(|template| template.begins_with_value());
+            templates.into_iter().partition(|template| template.has_value_first());
         let find = |templates: &[&Template]| {
             templates.iter().find_map(|template| self.translate_instance(template, message, depth))
         };

@@ -49,7 +49,7 @@ impl Template {
 
     /// Whether it begins with a value, which may hold what belongs to others: `{what} is {number}`.
     /// A value that a colon ends does not: `{file}: not supported: {reason}`.
-    pub fn begins_with_value(&self) -> bool {
+    pub fn has_value_first(&self) -> bool {
         let second = self.pieces().nth(1).unwrap_or_default();
         self.before[0].0.is_empty() && !(second.starts_with(": ") && second.len() > 2)
     }
