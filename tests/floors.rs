@@ -16,7 +16,6 @@ const FLOORS: [(&str, u32); 16] = [
     ("shape", 3),
     ("document", 4),
     ("tools", 5),
-    ("language", 5),
     ("io", 5),
     ("language", 6),
     ("session", 6),
