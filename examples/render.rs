@@ -34,14 +34,19 @@ pub fn render_file(document: &Path, picture: &Path) -> Result<()> {
     let terms = Terms::export(Overwrite::Anything, vec![document.to_owned()]);
     let options = ExportOptions::default();
     let output = OutputFile::new(picture, terms.clone())?;
-    output.write(&render(&painting), painting.size, &options)?;
+    output.write(&render(&painting), painting.size, &options, painting.profile)?;
 
     // Documents are values: a layer is looked up by name or id and never changes while it is
     // shared.
     if let Some(top) = painting.layers.last() {
         let alone = flatten_layer(&painting, top.id, &Progress::default()).unwrap_or_default();
         let beside = picture.with_extension("top.png");
-        OutputFile::new(&beside, terms)?.write(&alone, painting.size, &options)?;
+        OutputFile::new(&beside, terms)?.write(
+            &alone,
+            painting.size,
+            &options,
+            painting.profile,
+        )?;
     }
     Ok(())
 }

@@ -418,7 +418,15 @@ mod tests {
             assert_eq!(tile.is_16_bit(), at.col < 2, "{at:?}");
         }
         assert!(!is_16_bit(
-            encode(Path::new("a"), &tiles, Some(Rect::new(150, 5, 180, 9))).unwrap().file.bytes()
+            encode(
+                Path::new("a"),
+                &tiles,
+                Some(Rect::new(150, 5, 180, 9)),
+                ColorProfile::default()
+            )
+            .unwrap()
+            .file
+            .bytes()
         ));
         let short = Budget { memory_bytes: 100_000, ..Budget::default() };
         assert!(decode_tiles(encoded.file.bytes(), 0, 0, &short).is_none());
@@ -435,7 +443,8 @@ mod tests {
         let tiles = TileGrid::from_straight_rgba(&rgba, 100, 90, -30, -7);
         let encoded = encode(Path::new("a"), &tiles, None, ColorProfile::Srgb).unwrap();
         assert_eq!((encoded.x, encoded.y, encoded.size), (-10, 3, Size::new(51, 71)));
-        let nothing = encode(Path::new("a"), &TileGrid::default(), None).unwrap();
+        let nothing =
+            encode(Path::new("a"), &TileGrid::default(), None, ColorProfile::default()).unwrap();
         assert_eq!(nothing.size, Size::new(1, 1));
     }
 

@@ -5,6 +5,7 @@ pub const EXCEPT_FILES: &[(&str, &str)] = &[
     ("src/engine/shape/flats/area_names.rs", "names of parts belong to the document"),
     ("src/program/cli/info", "what `rilievo info` prints is read by programs"),
     ("src/program/language", "the names of languages are in their own"),
+    ("src/window/fonts.rs", "names of fonts"),
 ];
 
 /// A file whose texts all begin like sentences, and what its other phrases are.

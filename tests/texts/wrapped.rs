@@ -66,7 +66,6 @@ fn is_method_or_own(tokens: &[Token], at: usize, callee: &str) -> bool {
 }
 
 #[test]
-#[ignore = "the texts of the window are being wrapped"]
 fn texts_of_the_window_pass_through_the_catalog() {
     let window = sources().iter().filter(|source| source.file.starts_with("src/window"));
     let found: Vec<String> = window

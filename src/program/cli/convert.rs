@@ -116,6 +116,7 @@ fn picture(
         dots_per_inch: args.dpi,
         crop,
         bits: args.bits,
+        profile: None,
     };
     // Checked before the work of painting.
     let bits = format.bits(&args.to, args.bits)?;

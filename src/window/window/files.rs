@@ -13,7 +13,7 @@ use crate::io::platform;
 use crate::io::{Budget, Overwrite};
 use crate::jobs::{JobKind, JobResult, PastePlace, PictureUse, PinPosition, short};
 use crate::language::tr;
-use crate::math::Vec2;
+use crate::math::{ColorProfile, Vec2};
 use crate::paint::ColorAdjustment;
 use crate::paint::adjustment::ColorLookup;
 use crate::raster::Picture;
@@ -218,7 +218,8 @@ impl MainWindow {
         let center =
             self.session.shown_document().map_or(Vec2::ZERO, |document| document.size.center());
         let at = self.canvas.under.filter(|_| at == PinPosition::Pointer).unwrap_or(center);
-        place(&mut self.session, name, picture, at);
+        // Pictures are read in sRGB.
+        place(&mut self.session, name, picture, ColorProfile::default(), at);
         at
     }
 
