@@ -145,8 +145,23 @@ fn painted_beneath(radius: f32) {
     timing::row(&name, series(&document, next));
 }
 
-/// Twelve adjustments over 4096², a stroke beneath.
-fn twelve_adjustments() {
+/// Adjustments over 4096², a stroke beneath.
+fn stacked(adjustments: Vec<ColorAdjustment>) {
+    let count = adjustments.len();
+    let adjustments = adjustments.into_iter().map(|a| Layer::new("adjust", a));
+    let layers = std::iter::once(paint(LARGE)).chain(adjustments);
+    let document = of(LARGE, layers.collect());
+    let id = document.layers[0].id;
+    let tools = ToolSettings::default();
+    let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &tools) };
+    let frames = timing::frames(ToolKind::Brush, &context, timing::on_wave, 30);
+    timing::row(&format!("{count} adjustments, a stroke beneath, 4096²"), frames);
+}
+
+fn main() {
+    println!("{:56} {:>8} {:>8} {:>8}", "ms a frame", "least", "middle", "9 of 10");
+    PictureFilter::all().iter().for_each(dragged);
+    [4.0, 20.0, 100.0].into_iter().for_each(painted_beneath);
     let names = [
         "levels",
         "curves",
@@ -161,19 +176,11 @@ fn twelve_adjustments() {
         "black-white",
         "gradient-map",
     ];
-    let adjustments = names.into_iter().filter_map(ColorAdjustment::from_name);
-    let layers = std::iter::once(paint(LARGE)).chain(adjustments.map(|a| Layer::new("adjust", a)));
-    let document = of(LARGE, layers.collect());
-    let id = document.layers[0].id;
-    let tools = ToolSettings::default();
-    let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &tools) };
-    let frames = timing::frames(ToolKind::Brush, &context, timing::on_wave, 30);
-    timing::row("12 adjustments, a stroke beneath, 4096²", frames);
-}
-
-fn main() {
-    println!("{:56} {:>8} {:>8} {:>8}", "ms a frame", "least", "middle", "9 of 10");
-    PictureFilter::all().iter().for_each(dragged);
-    [4.0, 20.0, 100.0].into_iter().for_each(painted_beneath);
-    twelve_adjustments();
+    stacked(names.into_iter().filter_map(ColorAdjustment::from_name).collect());
+    // One of each kind, with settings that change something.
+    let moved = |mut adjustment: ColorAdjustment| {
+        adjustment.visit(&mut Nudge { by: 0.1, is_moved: false });
+        adjustment
+    };
+    stacked(ColorAdjustment::all().into_iter().map(moved).collect());
 }

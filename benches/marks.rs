@@ -7,8 +7,8 @@ mod timing;
 use rilievo::document::{Live, PixelLayer, PreparedDocument, StrokeList};
 use rilievo::math::{Vec2, vec2, vec3};
 use rilievo::paint::{
-    Adjust, Bristles, Brush, BrushGrain, BrushMode, Fill, Noise, Pickup, PictureSource, Sample,
-    Stroke, Tip,
+    Adjust, Bristles, Brush, BrushGrain, BrushMode, DualBrush, DualSettings, Fill, Noise, Pickup,
+    PictureSource, Sample, Stroke, Tip,
 };
 use rilievo::raster::{Picture, Plane, Tile, TileAt};
 use rilievo::surface::{CanvasPart, Scene};
@@ -75,6 +75,8 @@ fn brushes() -> Vec<(&'static str, Brush)> {
         ("bristles", with(Tip::Bristles(Bristles::default()))),
         ("noise", with(Tip::Noise(Noise::default()))),
         ("picture", with(Tip::Picture(PictureSource::new("leaf".into(), leaf, Adjust::default())))),
+        ("dual", Brush { dual: Some(Arc::new(DualBrush::default())), ..round.clone() }),
+        ("dual, scattered", Brush { dual: Some(Arc::new(scattered())), ..round.clone() }),
         ("grain", Brush { grain: Some(BrushGrain::default()), ..round.clone() }),
         (
             "picks paint up",
@@ -84,6 +86,12 @@ fn brushes() -> Vec<(&'static str, Brush)> {
         ("blur", mode(BrushMode::Blur { width: 0.5 })),
         ("clone", mode(BrushMode::Clone { aligned: true, picture: false })),
     ]
+}
+
+/// Many small dabs beside the way, which the first tip shows where they are.
+fn scattered() -> DualBrush {
+    let settings = DualSettings { size: 0.2, spacing: 0.5, scatter: 1.0, ..DualSettings::DEFAULT };
+    DualBrush { settings, ..DualBrush::default() }
 }
 
 /// ms from a frame's events (16 samples) to its flattened tiles.

@@ -6,8 +6,10 @@
 
 #![warn(missing_docs)]
 
+mod plain_paths;
 mod shapes;
 
+pub(crate) use plain_paths::{PaintedPaths, PlainPath, plain_paths};
 pub use shapes::{MOST_SHAPES, SvgShape, SvgShapes, read_shapes};
 
 use super::{Budget, pixels::Painted};
@@ -20,6 +22,7 @@ use rayon::prelude::*;
 use resvg::usvg::fontdb::{Database, Family, Query};
 use resvg::usvg::{ImageHrefResolver, Node, Options, Paint, Transform, Tree, WriteOptions};
 use resvg::{tiny_skia::Pixmap, usvg};
+use std::any::Any;
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -60,21 +63,39 @@ pub fn layer_scale(own: Vec2) -> f32 {
 /// side. The picture's file is the same SVG with its text as outlines.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let drawing = Drawing::parse(file, bytes, budget)?;
-    let own = vec2(drawing.tree.size().width(), drawing.tree.size().height());
-    let most = budget.side_px.min(8192) as f32;
-    let scale = layer_scale(own).min(most / own.max_element());
-    let (size, texels) = drawing.render(file, scale, budget)?;
-    let picture = Picture::srgb8(size, texels);
+    let (scale, size) = layer_size(file, raster::VectorDrawing::size(&drawing), budget)?;
+    let texels = drawing.paint(size, scale);
+    let texels = texels.ok_or_else(|| Error::decode(file, "the SVG cannot be painted"))?;
+    let picture = Picture::of_bytes(size, texels);
     let picture = picture.ok_or_else(|| Error::decode(file, "the drawing has no pixels"))?;
     let encoded = Some(drawing.outline_text(bytes));
     let drawing = Some(Arc::new(drawing) as Arc<dyn raster::VectorDrawing>);
     Ok(Picture { encoded, drawing, ..picture })
 }
 
+/// How much a drawing is enlarged for an image layer, and the size of its picture.
+pub(crate) fn layer_size(file: &Path, own: Vec2, budget: &Budget) -> Result<(f32, Size)> {
+    let most = budget.side_px.min(8192) as f32;
+    let scale = layer_scale(own).min(most / own.max_element());
+    Ok((scale, picture_size(file, own, scale, budget)?))
+}
+
+/// The size of the picture of a drawing at a scale, if there is room for it.
+fn picture_size(file: &Path, own: Vec2, scale: f32, budget: &Budget) -> Result<Size> {
+    // A length that was scaled to whole pixels may be a little above.
+    let side = |length: f32| (length * scale - 1e-3).ceil().max(1.0) as u64;
+    let size = budget.size(file, side(own.x), side(own.y))?;
+    // The pixels twice, and layers of groups with opacity, masks or filters.
+    budget.room(file, &format!("an SVG of {size} pixels"), 24 * size.area() as u64)?;
+    Ok(size)
+}
+
 /// Decodes an SVG as paint at its own size, its corner at a canvas pixel.
 pub fn decode_paint(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Result<Painted> {
     let drawing = Drawing::parse(file, bytes, budget)?;
-    let (size, texels) = drawing.render(file, 1.0, budget)?;
+    let size = picture_size(file, raster::VectorDrawing::size(&drawing), 1.0, budget)?;
+    let texels = drawing.paint(size, 1.0);
+    let texels = texels.ok_or_else(|| Error::decode(file, "the SVG cannot be painted"))?;
     let (w, h) = (size.width as usize, size.height as usize);
     let tiles = TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y);
     Ok(Painted { size, tiles, warning: drawing.warning() })
@@ -122,7 +143,11 @@ impl raster::VectorDrawing for Drawing {
 
     fn draw(&self, size: Size) -> Option<Vec<[u8; 4]>> {
         let scale = size.width as f32 / self.tree.size().width();
-        self.paint(size, scale)
+        Some(self.paint(size, scale)?.to_vec())
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
     }
 }
 
@@ -156,22 +181,12 @@ impl Drawing {
         Ok(Self { tree: tree(file, bytes, budget)?, has_text: has_text(bytes) })
     }
 
-    /// Straight bytes at a scale.
-    fn render(&self, file: &Path, scale: f32, budget: &Budget) -> Result<(Size, Vec<[u8; 4]>)> {
-        // A length that was scaled to whole pixels may be a little above.
-        let side = |length: f32| (length * scale - 1e-3).ceil().max(1.0) as u64;
-        let [width, height] = [self.tree.size().width(), self.tree.size().height()].map(side);
-        let size = budget.size(file, width, height)?;
-        // The pixels twice, and layers of groups with opacity, masks or filters.
-        budget.room(file, &format!("an SVG of {size} pixels"), 24 * size.area() as u64)?;
-        let texels = self.paint(size, scale);
-        let texels = texels.ok_or_else(|| Error::decode(file, "the SVG cannot be painted"))?;
-        Ok((size, texels))
-    }
-
     /// Straight bytes of a picture of a size, the drawing enlarged; `None` where it panics, or the
     /// picture cannot be had.
-    fn paint(&self, size: Size, scale: f32) -> Option<Vec<[u8; 4]>> {
+    fn paint(&self, size: Size, scale: f32) -> Option<Arc<[[u8; 4]]>> {
+        if let Some(paths) = plain_paths(self.tree.root()) {
+            return Some(PaintedPaths::paint(&paths, size, scale)?.texels);
+        }
         let mut texels = vec![[0u8; 4]; size.area()];
         let (mut bands, mut rest) = (Vec::new(), texels.as_mut_slice());
         let mut top = 0;
@@ -183,7 +198,7 @@ impl Drawing {
         let painted =
             bands.into_par_iter().map(|(top, band)| self.paint_band(top, scale, size, band));
         painted.collect::<Option<()>>()?;
-        Some(texels)
+        Some(texels.into())
     }
 
     /// Paints the rows of a picture from one on.

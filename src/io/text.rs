@@ -3,11 +3,13 @@
 //!
 //! A text becomes an SVG with one `text` element a line, which `usvg` shapes: ligatures, kerning,
 //! scripts from right to left, letters along a curve; columns are shaped here (`columns`). Its outlines
-//! are the file of the picture.
+//! are the file of the picture. A text that is typed keeps its lines (`shaped`), and of its picture what
+//! the key did not change (`drawing`).
 
 #![warn(missing_docs)]
 
 mod columns;
+mod drawing;
 mod installed;
 mod lines;
 mod markup;
@@ -20,8 +22,9 @@ use crate::Result;
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::Text;
 use crate::raster::Picture;
+use drawing::{PlacedLine, TextDrawing};
 use lines::{Line, lines};
-use resvg::usvg::{self, Node, Tree, WriteOptions};
+use resvg::usvg::{self, Node, Tree};
 use std::path::Path;
 
 /// The name of a text's file, for messages.
@@ -36,6 +39,9 @@ pub struct TextPicture {
     pub picture: Picture,
     /// Its sides at the size of its type, px.
     pub size: Vec2,
+    /// The texels that differ from those of the picture that it was laid out in the place of;
+    /// `None` where any may.
+    pub changed: Option<Rect>,
 }
 
 /// A place between letters.
@@ -58,18 +64,71 @@ pub struct Caret {
 /// Fails where its letters are too many or its picture does not fit the budget. An empty text is a
 /// picture of one transparent pixel.
 pub fn lay_out(text: &Text, budget: &Budget) -> Result<TextPicture> {
+    lay_out_over(text, None, within_box, budget)
+}
+
+/// The same, its picture no larger than what is inked, as documents that hold no outlines of a text
+/// place it.
+pub fn lay_out_inked(text: &Text, budget: &Budget) -> Result<TextPicture> {
+    lay_out_over(text, None, |_, _, inked| inked, budget)
+}
+
+/// The same in the place of another text's picture: what both have in common is not painted again.
+pub fn lay_out_again(text: &Text, old: &Picture, budget: &Budget) -> Result<TextPicture> {
+    lay_out_over(text, Some(old), within_box, budget)
+}
+
+/// * `around`: what the picture shows of a text in lines, of which so much is inked.
+fn lay_out_over(
+    text: &Text,
+    old: Option<&Picture>,
+    around: fn(&Text, &[Line], usvg::Rect) -> usvg::Rect,
+    budget: &Budget,
+) -> Result<TextPicture> {
     let file = Path::new(FILE);
-    let (mut elements, mut all) = (String::new(), None);
-    for line in &lines(text)? {
-        let inked = push_line(&mut elements, text, line)?;
-        all = join(all, inked);
-    }
-    let bounds = bounds(all);
+    let broken = lines(text)?;
+    let shaped: Vec<PlacedLine> = broken
+        .iter()
+        .map(|line| Ok(PlacedLine { shaped: shaped::shape(text, line)?, at: place(text, line) }))
+        .collect::<Result<_>>()?;
+    let all = shaped.iter().fold(None, |all, line| join(all, line.inked()));
+    let bounds = bounds(all.map(|inked| around(text, &broken, inked)));
+    let mut elements = String::new();
+    shaped
+        .iter()
+        .for_each(|line| markup::push_moved(&mut elements, &line.shaped.outlines, line.at));
     let outlines = markup::drawing_of(&elements, bounds);
-    let picture = svg::decode(file, outlines.as_bytes(), budget)?;
+    let drawn = TextDrawing::of(&shaped, bounds, old, budget)?;
+    let (picture, changed) = match drawn {
+        Some((picture, changed)) => {
+            (Picture { encoded: Some(outlines.into_bytes().into()), ..picture }, changed)
+        }
+        None => (svg::decode(file, outlines.as_bytes(), budget)?, None),
+    };
     let origin = vec2(-bounds.x0 as f32, -bounds.y0 as f32);
     let size = vec2(bounds.width() as f32, bounds.height() as f32);
-    Ok(TextPicture { text: Text { origin, ..text.clone() }, picture, size })
+    Ok(TextPicture { text: Text { origin, ..text.clone() }, picture, size, changed })
+}
+
+/// Where a line that was shaped at the origin lies.
+fn place(text: &Text, line: &Line) -> Vec2 {
+    let is_in_place = line.curve.is_some() && !text.is_in_columns();
+    if is_in_place { Vec2::ZERO } else { line.at }
+}
+
+/// What is inked, and the whole width of a text that is broken in lines: so its picture stays as
+/// large while it is typed.
+fn within_box(text: &Text, lines: &[Line], inked: usvg::Rect) -> usvg::Rect {
+    let paragraphs =
+        text.runs.iter().map(|run| run.string.matches('\n').count()).sum::<usize>() + 1;
+    if text.width <= 0.0 || lines.len() <= paragraphs {
+        return inked;
+    }
+    let whole = match text.is_in_columns() {
+        true => usvg::Rect::from_ltrb(inked.left(), 0.0, inked.right(), text.width),
+        false => usvg::Rect::from_ltrb(0.0, inked.top(), text.width, inked.bottom()),
+    };
+    whole.and_then(|whole| union(inked, whole)).unwrap_or(inked)
 }
 
 /// The places between the letters of a text, by their bytes.
@@ -104,22 +163,6 @@ pub fn missing_families(text: &Text) -> Vec<&str> {
 /// An SVG of ours with text, in the fonts of this machine.
 fn parse(markup: &str) -> Result<Tree> {
     svg::tree(Path::new(FILE), markup.as_bytes(), &Budget::default())
-}
-
-/// Adds the outlines of a line in its place; what is inked of it.
-fn push_line(elements: &mut String, text: &Text, line: &Line) -> Result<Option<usvg::Rect>> {
-    if text.is_in_columns() || line.curve.is_some() {
-        let tree = parse(&markup::of_line(text, line))?;
-        elements.push_str(markup::elements(&tree.to_string(&WriteOptions::default())));
-        return Ok(find_ink(&tree));
-    }
-    let shaped = shaped::shape(line, text.align)?;
-    markup::push_moved(elements, &shaped.outlines, line.at);
-    let (x, y) = (line.at.x, line.at.y);
-    Ok(shaped.inked.and_then(|inked| {
-        let (right, bottom) = (inked.right() + x, inked.bottom() + y);
-        usvg::Rect::from_ltrb(inked.left() + x, inked.top() + y, right, bottom)
-    }))
 }
 
 /// All that is inked of a drawing of ours.
@@ -175,10 +218,9 @@ fn texts(group: &usvg::Group) -> Vec<&usvg::Text> {
 /// A line of text as it is measured: where each of its letters begins along the line, and its end.
 fn advances(text: &Text, line: &Line) -> Vec<(usize, f32)> {
     if text.is_in_columns() {
-        let mut column = columns::lay(line);
+        let Ok(column) = shaped::lay(line, text.align) else { return vec![(0, 0.0)] };
         let begin = columns::begin(text.align, column.length());
-        column.letters.iter_mut().for_each(|(_, at)| *at += begin);
-        return column.letters;
+        return column.letters.iter().map(|(byte, at)| (*byte, at + begin)).collect();
     }
     shaped::measure(line, text.align).map_or_else(|_| vec![(0, 0.0)], |letters| letters.to_vec())
 }

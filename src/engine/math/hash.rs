@@ -2,6 +2,7 @@
 //! Floor 0. Not for cryptography.
 
 /// Mixes one 32-bit word (the "lowbias32" finaliser: xor-shift-multiply with full avalanche).
+#[inline(always)]
 pub const fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
@@ -11,6 +12,7 @@ pub const fn mix(mut x: u32) -> u32 {
 }
 
 /// A number in `[0, 1)` from a seed and up to two indices.
+#[inline(always)]
 pub fn unit(seed: u32, i: u32, j: u32) -> f32 {
     let h = mix(seed ^ mix(i.wrapping_add(0x9e37_79b9) ^ mix(j.wrapping_add(0x85eb_ca6b))));
     (h >> 8) as f32 * (1.0 / 16_777_216.0)

@@ -178,12 +178,22 @@ impl LiveFilter {
     /// The filtered pixels of one of its blocks.
     pub fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> FilterWindow {
         let mut pixels = self.params.kernel().apply(place, source);
-        for pixel in &mut pixels {
-            let a = pixel[3].max(0.0).min(1.0);
-            let most = a * place.brightest;
-            *pixel = [0, 1, 2, 3].map(|k| pixel[k].max(0.0).min(if k < 3 { most } else { a }));
-        }
+        limit(&mut pixels, place.brightest);
         FilterWindow::new(place.out, pixels)
+    }
+}
+
+crate::widest! {
+    /// Colors within their alpha, which is no more than 1.
+    fn limit(pixels: &mut [[f32; 4]], brightest: f32) {
+        for pixel in pixels {
+            let a = pixel[3].max(0.0).min(1.0);
+            let most = a * brightest;
+            for k in 0..3 {
+                pixel[k] = pixel[k].max(0.0).min(most);
+            }
+            pixel[3] = a;
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 use super::Asset;
 use super::tile::sixteen_bit::byte_of;
 use crate::math::{Size, Vec2, srgb, vec2};
+use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
@@ -31,6 +32,8 @@ pub trait VectorDrawing: fmt::Debug + Send + Sync {
     /// Draws it with sides of so many pixels: straight, encoded bytes, one for each pixel; `None`
     /// where they cannot be had.
     fn draw(&self, size: Size) -> Option<Vec<[u8; 4]>>;
+    /// What it is, for the code that made it.
+    fn as_any(&self) -> &dyn Any;
 }
 
 /// The two kinds of light a file can hold.
@@ -74,8 +77,13 @@ impl Picture {
 
     /// `None` unless there is one texel per pixel and at least one pixel.
     pub fn srgb8(size: Size, texels: Vec<[u8; 4]>) -> Option<Self> {
+        Self::of_bytes(size, texels.into())
+    }
+
+    /// As [`Picture::srgb8`], of texels that something else may share.
+    pub fn of_bytes(size: Size, texels: Arc<[[u8; 4]]>) -> Option<Self> {
         (size.area() > 0 && texels.len() == size.area())
-            .then(|| Self::of_texels(size, Texels::Srgb8(texels.into())))
+            .then(|| Self::of_texels(size, Texels::Srgb8(texels)))
     }
 
     /// As [`Picture::srgb8`], of 16 bits a channel: its bytes are these, rounded.

@@ -5,6 +5,7 @@
 use super::picture::{Picture, Texels};
 use crate::math::{Size, srgb};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 crate::named! {
@@ -97,7 +98,9 @@ impl Texture {
     pub fn new(picture: &Picture) -> Self {
         let texels = match &picture.texels {
             Texels::Srgb8(t) => {
-                t.iter().map(|&[r, g, b, a]| premultiplied_u8([r, g, b, a])).collect()
+                let mut texels = vec![[0; 4]; t.len()];
+                super::grid::premultiply(t.as_flattened(), texels.as_flattened_mut());
+                texels
             }
             Texels::Linear(t) => t
                 .par_iter()
@@ -153,37 +156,100 @@ impl<T: Texel> Texture<T> {
     }
 }
 
-fn premultiplied_u8(straight: [u8; 4]) -> [u8; 4] {
-    let mut out = [0; 4];
-    super::grid::premultiply(&straight, &mut out);
-    out
+impl Texture {
+    /// The texture of another picture of bytes of the same size that is the same beyond some rows;
+    /// `None` if it can be none.
+    pub fn repainted(&self, picture: &Picture, rows: Range<u32>) -> Option<Self> {
+        let Texels::Srgb8(straight) = &picture.texels else { return None };
+        if picture.size != self.size() || self.first != 0 {
+            return None;
+        }
+        let mut levels: Vec<MipLevel> = self.levels.to_vec();
+        let start = rows.start.min(picture.size.height);
+        let mut rows = start..rows.end.min(picture.size.height).max(start);
+        let width = picture.size.width as usize;
+        let part = rows.start as usize * width..rows.end as usize * width;
+        let first = levels[0].texels[part.clone()].as_flattened_mut();
+        super::grid::premultiply(straight[part].as_flattened(), first);
+        for i in 1..levels.len() {
+            let (above, beneath) = levels.split_at_mut(i);
+            let (level, half) = (&above[i - 1], &mut beneath[0]);
+            // A texel covers up to three rows.
+            let ratio = f64::from(level.size.height) / f64::from(half.size.height);
+            let first = (f64::from(rows.start) / ratio).floor() as u32;
+            let last = (f64::from(rows.end) / ratio).ceil() as u32;
+            rows = first.saturating_sub(1)..(last + 1).min(half.size.height);
+            halve_rows(level, half, rows.clone());
+        }
+        Some(Self { levels: levels.into(), first: 0 })
+    }
 }
 
 /// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side
 /// is odd, weighted by area).
 fn halve<T: Texel>(level: &MipLevel<T>) -> Option<MipLevel<T>> {
-    let Size { width: w, height: h } = level.size;
-    if w == 1 && h == 1 {
-        return None;
-    }
-    let size = Size::new((w / 2).max(1), (h / 2).max(1));
-    let (xs, ys) = (coverage_weights(w, size.width), coverage_weights(h, size.height));
-    let mut texels = Vec::with_capacity(size.area());
-    for y in &ys {
-        for x in &xs {
-            let mut sum = [0.0f32; 4];
-            for &(j, wy) in y {
-                for &(i, wx) in x {
-                    let t = level.texels[(j * w + i) as usize].value();
-                    for c in 0..4 {
-                        sum[c] += wx * wy * t[c];
-                    }
-                }
+    let size = half_size(level.size)?;
+    let mut half = MipLevel { size, texels: vec![T::default(); size.area()] };
+    halve_rows(level, &mut half, 0..size.height);
+    Some(half)
+}
+
+/// The size of the next mip level; `None` for the last one.
+fn half_size(Size { width, height }: Size) -> Option<Size> {
+    (width > 1 || height > 1).then(|| Size::new((width / 2).max(1), (height / 2).max(1)))
+}
+
+/// Makes rows of the next mip level.
+fn halve_rows<T: Texel>(level: &MipLevel<T>, half: &mut MipLevel<T>, rows: Range<u32>) {
+    let (from, to) = (level.size, half.size);
+    let are_pairs = from.width == 2 * to.width;
+    let xs = if are_pairs { Vec::new() } else { coverage_weights(from.width, to.width) };
+    let ys = coverage_weights(from.height, to.height);
+    let (wide, width) = (from.width as usize, to.width as usize);
+    let mut sums = vec![[0.0f32; 4]; width];
+    let rows = rows.start as usize..rows.end as usize;
+    for (y, covered) in ys.iter().enumerate().take(rows.end).skip(rows.start) {
+        sums.fill([0.0; 4]);
+        for &(j, weight) in covered {
+            let row = &level.texels[j as usize * wide..(j as usize + 1) * wide];
+            if are_pairs {
+                add_pairs(row, 0.5 * weight, &mut sums);
+            } else {
+                add_covered(row, &xs, weight, &mut sums);
             }
-            texels.push(T::of(sum));
+        }
+        let out = &mut half.texels[y * width..(y + 1) * width];
+        out.iter_mut().zip(&sums).for_each(|(texel, sum)| *texel = T::of(*sum));
+    }
+}
+
+/// Adds both texels that each one covers.
+fn add_pairs<T: Texel>(row: &[T], weight: f32, sums: &mut [[f32; 4]]) {
+    for (sum, pair) in sums.iter_mut().zip(row.as_chunks::<2>().0) {
+        for texel in pair {
+            let value = texel.value();
+            for c in 0..4 {
+                sum[c] += weight * value[c];
+            }
         }
     }
-    Some(MipLevel { size, texels })
+}
+
+/// Adds the texels that each one covers, by their weights.
+fn add_covered<T: Texel>(
+    row: &[T],
+    weights: &[Vec<(u32, f32)>],
+    weight: f32,
+    sums: &mut [[f32; 4]],
+) {
+    for (sum, covered) in sums.iter_mut().zip(weights) {
+        for &(i, share) in covered {
+            let value = row[i as usize].value();
+            for c in 0..4 {
+                sum[c] += share * weight * value[c];
+            }
+        }
+    }
 }
 
 /// For each of `to` cells, the cells of `from ≥ to` it covers and their weights, which add up to 1.
@@ -202,6 +268,7 @@ fn coverage_weights(from: u32, to: u32) -> Vec<Vec<(u32, f32)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::hash;
 
     #[test]
     fn mirror_repeats_the_border_texel() {
@@ -209,6 +276,29 @@ mod tests {
         assert_eq!(m, [2, 1, 0, 0, 1, 2, 2, 1, 0, 0]);
         assert_eq!(Outside::None.index(-1, 3), None);
         assert_eq!(Outside::Repeat.index(-1, 3), Some(2));
+    }
+
+    #[test]
+    fn rows_that_are_painted_again_leave_the_texture_of_the_whole_picture() {
+        let texels = |seed: u32, n: usize| -> Vec<[u8; 4]> {
+            let byte = |i: usize, c: u32| (hash::unit(seed, i as u32, c) * 256.0) as u8;
+            (0..n).map(|i| [byte(i, 0), byte(i, 1), byte(i, 2), byte(i, 3)]).collect()
+        };
+        for size in [Size::new(37, 53), Size::new(64, 48), Size::new(128, 33), Size::new(1, 90)] {
+            let old = texels(1, size.area());
+            let picture = Picture::srgb8(size, old.clone()).unwrap();
+            for rows in [0..1, 7..19, 20..33, 0..size.height, 5..5] {
+                let mut new = old.clone();
+                let part = (rows.start * size.width) as usize..(rows.end * size.width) as usize;
+                new[part.clone()].copy_from_slice(&texels(2, size.area())[part]);
+                let next = Picture::srgb8(size, new).unwrap();
+                let again = Texture::new(&picture).repainted(&next, rows.clone()).unwrap();
+                for (a, b) in again.levels().iter().zip(Texture::new(&next).levels()) {
+                    assert_eq!(a.size, b.size);
+                    assert!(a.texels == b.texels, "{size} {rows:?}, level of {}", a.size);
+                }
+            }
+        }
     }
 
     #[test]

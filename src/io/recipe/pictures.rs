@@ -76,7 +76,7 @@ impl PictureCache {
         text: &Text,
         adjust: Adjust,
     ) -> Result<PictureSource> {
-        let laid = text::lay_out(text, source.budget).map_err(|e| node.name_in_error(e))?;
+        let laid = text::lay_out_inked(text, source.budget).map_err(|e| node.name_in_error(e))?;
         let size = laid.picture.size;
         self.spend(source, size, laid.picture.bytes() + size.area() * 6)?;
         self.texts += 1;

@@ -1,10 +1,10 @@
 //! The SVG of a text. Floor 5.
 
-use super::columns;
+use super::columns::{self, Column};
 use super::lines::{Line, LineCurve};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Vec2};
-use crate::paint::{Text, TextAlign, TextRun, TextStyle};
+use crate::paint::{TextAlign, TextRun, TextStyle};
 use std::fmt::Write;
 
 /// What every SVG begins with.
@@ -12,7 +12,7 @@ const NAMESPACES: &str =
     r#"xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink""#;
 
 /// An SVG of ours with some elements.
-fn document(elements: &str) -> String {
+pub(super) fn document(elements: &str) -> String {
     format!(r#"<svg {NAMESPACES} width="1" height="1">{elements}</svg>"#)
 }
 
@@ -22,18 +22,26 @@ pub(super) fn of_straight_line(line: &Line, align: TextAlign) -> String {
     document(&format!(r#"<text xml:space="preserve" text-anchor="{anchor}">{runs}</text>"#))
 }
 
-/// An SVG of a line that is a column, or runs along a curve, in its place.
-pub(super) fn of_line(text: &Text, line: &Line) -> String {
+/// An SVG of a line that runs along a curve.
+pub(super) fn of_curve(line: &Line, curve: &LineCurve) -> String {
+    let LineCurve { data, start, align, below, .. } = curve;
+    let (anchor, runs) = (anchor(*align), runs(&line.pieces));
     let mut out = String::new();
-    if text.is_in_columns() {
-        push_column(&mut out, text, line);
-    } else if let Some(LineCurve { data, start, align, below, .. }) = &line.curve {
-        let (anchor, runs) = (anchor(*align), runs(&line.pieces));
-        let _ = write!(out, r##"<path id="c" fill="none" d="{data}"/>"##);
-        let text = format!(r#"text xml:space="preserve" text-anchor="{anchor}""#);
-        let place = format!(r##"xlink:href="#c" startOffset="{start}""##);
-        let runs = format!(r#"<tspan dy="{below}">{runs}</tspan>"#);
-        let _ = write!(out, "<{text}><textPath {place}>{runs}</textPath></text>");
+    let _ = write!(out, r##"<path id="c" fill="none" d="{data}"/>"##);
+    let text = format!(r#"text xml:space="preserve" text-anchor="{anchor}""#);
+    let place = format!(r##"xlink:href="#c" startOffset="{start}""##);
+    let runs = format!(r#"<tspan dy="{below}">{runs}</tspan>"#);
+    let _ = write!(out, "<{text}><textPath {place}>{runs}</textPath></text>");
+    document(&out)
+}
+
+/// An SVG of the outlines of a column that is held at the origin.
+pub(super) fn of_column(column: &Column, align: TextAlign) -> String {
+    let y = columns::begin(align, column.length());
+    let mut out = String::new();
+    for (data, style) in column.outlines.iter().filter(|(data, _)| !data.is_empty()) {
+        let look = look(style);
+        let _ = write!(out, r#"<path transform="translate(0 {y})" d="{data}"{look}/>"#);
     }
     document(&out)
 }
@@ -72,16 +80,6 @@ fn runs(pieces: &[TextRun]) -> String {
     let mut out = String::new();
     pieces.iter().for_each(|run| push_run(&mut out, run));
     out
-}
-
-/// The outlines of a column.
-fn push_column(out: &mut String, text: &Text, line: &Line) {
-    let column = columns::lay(line);
-    let (x, y) = (line.at.x, line.at.y + columns::begin(text.align, column.length()));
-    for (data, style) in column.outlines.iter().filter(|(data, _)| !data.is_empty()) {
-        let look = look(style);
-        let _ = write!(out, r#"<path transform="translate({x} {y})" d="{data}"{look}/>"#);
-    }
 }
 
 fn push_run(out: &mut String, run: &TextRun) {

@@ -28,7 +28,7 @@ fn ink(picture: &Picture, columns: usize, rows: usize) -> Vec<Vec<f32>> {
 fn a_text_is_outlines_in_its_color_and_its_file_shows_the_same() {
     let mut words = text("Ink");
     words.runs[0].style.color = crate::math::srgb::Color { r: 200, g: 40, b: 30, a: 255 };
-    let TextPicture { text: words, picture, size } = layout(&words);
+    let TextPicture { text: words, picture, size, .. } = layout(&words);
     assert!((20.0..60.0).contains(&size.x) && (12.0..30.0).contains(&size.y), "{size}");
     assert!(words.origin.x >= 0.0 && (10.0..20.0).contains(&words.origin.y), "{}", words.origin);
     let Texels::Srgb8(texels) = &picture.texels else { panic!("it is no picture of bytes") };
@@ -232,4 +232,90 @@ fn a_font_is_found_by_its_letters_and_a_preferred_family_comes_first() {
     assert_eq!((bytes.as_slice(), index), (epaint_default_fonts::HACK_REGULAR, 0));
     assert!(find_font("Aß", &["No such family"]).is_some());
     assert_eq!(find_font("A\u{10fffd}", &["Hack"]), None, "no font has that letter");
+}
+
+/// Texts of every kind.
+fn samples() -> [Text; 7] {
+    use crate::paint::{PathNode, Subpath, TextPath};
+    let nodes = [vec2(0.0, 0.0), vec2(120.0, 40.0), vec2(260.0, 0.0)].map(PathNode::corner);
+    let line = Subpath { nodes: nodes.to_vec(), closed: false };
+    let boxed = Text { width: 150.0, ..text("one two three four five six seven eight") };
+    let mut outlined = Text { leading: 0.7, ..boxed.clone() };
+    outlined.runs[0].style.outline = 2.5;
+    let two_styles =
+        Text { align: TextAlign::End, ..boxed.styled(4, 13, |style| style.size = 31.0) };
+    [
+        boxed.clone(),
+        text("lines\nof\ntheir own"),
+        Text { path: Some(TextPath { line, shift: 5.0 }), ..text("on a path\nand beneath") },
+        Text { vertical: true, width: 90.0, ..text("columns 日本 from the right") },
+        Text { align: TextAlign::End, width: 110.0, ..text("אבג דהו זחט יכל מנס") },
+        outlined,
+        two_styles,
+    ]
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::test_runner::Config::with_cases(40))]
+
+    #[test]
+    fn a_text_that_is_typed_is_the_one_that_is_laid_out_at_once(
+        sample in 0..7usize,
+        edits in proptest::collection::vec((0..1000usize, 0..9usize), 1..7),
+    ) {
+        let budget = Budget { side_px: 500, ..Budget::default() };
+        let mut text = samples()[sample].clone();
+        let mut shown = lay_out(&text, &budget).unwrap();
+        for (place, key) in edits {
+            let mut letters: Vec<char> = text.string().chars().collect();
+            let place = place % (letters.len() + 1);
+            match ["a", "W", "g", " ", "\n", "é", "א", "", "本"][key].chars().next() {
+                Some(letter) => letters.insert(place, letter),
+                None => drop((place < letters.len()).then(|| letters.remove(place))),
+            }
+            text = text.saying(&letters.into_iter().collect::<String>());
+            let typed = lay_out_again(&text, &shown.picture, &budget).unwrap();
+            let whole = lay_out(&text, &budget).unwrap();
+            assert!(typed.picture == whole.picture, "other texels: {:?}", text.string());
+            assert_eq!((&typed.text, typed.size), (&whole.text, whole.size));
+            let file = typed.picture.encoded.clone().unwrap();
+            assert!(Some(&file) == whole.picture.encoded.as_ref(), "another file");
+            let read = svg::decode(Path::new("text.svg"), file.bytes(), &budget).unwrap();
+            assert!(read == typed.picture, "its file shows another: {:?}", text.string());
+            if let Some(changed) = typed.changed {
+                assert_eq!(typed.picture.size, shown.picture.size);
+                let width = shown.picture.size.width as usize;
+                let [Texels::Srgb8(old), Texels::Srgb8(new)] =
+                    [&shown.picture.texels, &typed.picture.texels] else { panic!() };
+                for (i, (old, new)) in old.iter().zip(new.iter()).enumerate() {
+                    let is_within = changed.contains((i % width) as i32, (i / width) as i32);
+                    assert!(is_within || old == new, "beyond {changed:?}: {}", text.string());
+                }
+            }
+            shown = typed;
+        }
+    }
+}
+
+#[test]
+fn a_text_that_is_broken_in_lines_shows_its_whole_width() {
+    let [boxed, ..] = samples();
+    let inked = lay_out_inked(&boxed, &Budget::default()).unwrap();
+    assert!(inked.size.x < 148.0 && (150.0..156.0).contains(&layout(&boxed).size.x));
+    // One line is as wide as its letters.
+    let short = Text { width: 150.0, ..text("short") };
+    assert_eq!(layout(&short).size, lay_out_inked(&short, &Budget::default()).unwrap().size);
+}
+
+#[test]
+fn a_key_paints_the_lines_that_it_changes() {
+    let text = Text { width: 200.0, ..text(&"four words a line ".repeat(12)) };
+    let shown = layout(&text);
+    // In the last line.
+    let typed = text.saying(&format!("{}n", text.string()));
+    let again = lay_out_again(&typed, &shown.picture, &Budget::default()).unwrap();
+    let (changed, size) = (again.changed.unwrap(), again.picture.size);
+    assert!(changed.y0 > 0 && 8 * changed.height() < size.height as usize, "{changed:?} of {size}");
+    let same = lay_out_again(&typed, &again.picture, &Budget::default()).unwrap();
+    assert!(same.changed.is_some_and(Rect::is_empty));
 }

@@ -303,6 +303,11 @@ impl BoxLine {
         running_means(row, (self.whole, self.part, self.share), means);
     }
 
+    /// The means of a row that has margins, so many pixels apart.
+    pub fn means_apart(&self, row: &[[f32; 4]], apart: usize, means: &mut [[f32; 4]]) {
+        running_means_apart(row, (self.whole, self.part, self.share), apart, means);
+    }
+
     /// The means down columns: `rows` have margins above and beneath.
     fn means_down(&self, rows: &[[f32; 4]], width: usize, height: usize) -> Vec<[f32; 4]> {
         let row = |y: usize| rows[y * width..(y + 1) * width].as_flattened();
@@ -336,6 +341,37 @@ crate::widest! {
                 mean[k] = (sum[k] + part * (before[k] + behind[k])) * share;
                 sum[k] += behind[k] - first[k];
             }
+        }
+    }
+
+    /// The same, so many pixels apart.
+    fn running_means_apart(
+        row: &[[f32; 4]],
+        size: (usize, f32, f32),
+        apart: usize,
+        means: &mut [[f32; 4]]
+    ) {
+        let (whole, part, share) = size;
+        let mut sum = [0.0; 4];
+        for pixel in &row[1..2 * whole + 2] {
+            for k in 0..4 {
+                sum[k] += pixel[k];
+            }
+        }
+        let mut x = 0;
+        for mean in means {
+            let (before, behind) = (row[x], row[x + 2 * whole + 2]);
+            for k in 0..4 {
+                mean[k] = (sum[k] + part * (before[k] + behind[k])) * share;
+            }
+            let next = (x + apart).min(row.len() - 2 * whole - 3);
+            let pairs = row[x + 1..=next].iter().zip(&row[x + 2 * whole + 2..]);
+            for (first, behind) in pairs {
+                for k in 0..4 {
+                    sum[k] += behind[k] - first[k];
+                }
+            }
+            x = next;
         }
     }
 

@@ -175,7 +175,7 @@ impl FilmGrain {
         let mut across: Vec<f32> = x.map(|x| (x as f32 + 0.5) / size).collect();
         let mut rows = Vec::new();
         for (seed, share) in self.octaves(channel) {
-            rows.push((GradientRows::new(across.clone(), PERIOD, seed), share));
+            rows.push((GradientRows::new(&across, PERIOD, seed), share));
             across.iter_mut().for_each(|v| *v *= 2.0);
         }
         rows

@@ -1,8 +1,9 @@
 //! Blurs around a point: along circles, and toward it. Floor 3. On premultiplied encoded pixels.
 //!
 //! A part of the picture is read on circles and rays around the point, at most a pixel apart; the
-//! means along them are running sums, and a pixel is read between two of them. Circles and rays lie
-//! where they would for the whole picture.
+//! means along them are running sums, and a pixel is read between two of them. Means of many readings
+//! hardly differ from one to the next, so only some of them are kept. Circles and rays lie where they
+//! would for the whole picture.
 
 use super::blur::{BoxLine, mix};
 use super::window::{FilterSource, FilterWindow};
@@ -72,7 +73,8 @@ impl Parameters for SpinBlur {
 
 impl FilterKernel for SpinBlur {
     fn reach(&self, near: Rect, bounds: Rect) -> f32 {
-        let half = (0.25 * self.angle.to_radians()).max(0.0).min(0.5 * PI);
+        // The chord of half of the turn, and of a sixteenth of it that the last mean may be farther.
+        let half = (0.2813 * self.angle.to_radians()).max(0.0).min(0.5 * PI);
         2.0 * farthest(near, self.center.at(bounds)) * half.sin() + 4.0
     }
 
@@ -84,24 +86,26 @@ impl FilterKernel for SpinBlur {
         };
         let window = window_around(self, place, source);
         let (first, last) = part.rings();
-        let mut points = Vec::new();
+        let mut directions = KnownDirections::default();
         let mut read = Vec::new();
-        let circle = |radius: i32| {
+        let mut circles = PolarLines::new(first as f32, 1.0);
+        for radius in first..last {
             let step = ray_step(radius as f32);
-            let line = BoxLine::new(0.5 * ((turn / step).max(1.0) - 1.0));
+            let count = (turn / step).max(1.0);
+            let line = BoxLine::new(0.5 * (count - 1.0));
+            let apart = step_between(count);
             let (from, to) = part.rays_on_circle(radius as f32, step);
+            let kept = count_kept(to - from, apart);
             let margin = line.margin() as i32;
-            points.clear();
-            let directions = directions(step, from - margin..to + margin);
-            points.extend(directions.map(|along| center + radius as f32 * along));
-            read_points(&window, &points, &mut read);
-            let mut means = vec![[0.0; 4]; (to - from) as usize];
-            line.means(&read, &mut means);
-            PolarLine { first: from as f32, per_unit: 1.0 / step, means }
-        };
-        let circles: Vec<PolarLine> = (first..last).map(circle).collect();
-        let circles = PolarLines { lines: &circles, first: first as f32, per_unit: 1.0 };
-        part.read(place.out, |square, all| read_circles(&part, &circles, square, all))
+            let readings = from - margin..from + (kept as i32 - 1) * apart as i32 + 1 + margin;
+            read.resize(readings.len(), [0.0; 4]);
+            let along = directions.at(step, readings);
+            read_circle(&window, center, radius as f32, along, &mut read);
+            let per_unit = 1.0 / (step * apart as f32);
+            let means = circles.add(from as f32 / apart as f32, per_unit, kept);
+            line.means_apart(&read, apart, means);
+        }
+        part.read(place.out, |square, all| read_lines(&part, &circles, true, square, all))
     }
 }
 
@@ -132,7 +136,8 @@ impl Parameters for ZoomBlur {
 
 impl FilterKernel for ZoomBlur {
     fn reach(&self, near: Rect, bounds: Rect) -> f32 {
-        let half = 0.5 * (self.amount / 100.0).max(0.0);
+        // The last mean may be a sixteenth of the way farther out.
+        let half = 0.6 * (self.amount / 100.0).max(0.0);
         half * farthest(near, self.center.at(bounds)) + 4.0
     }
 
@@ -145,25 +150,85 @@ impl FilterKernel for ZoomBlur {
         let window = window_around(self, place, source);
         let step = ray_step(part.far);
         let (from, to) = part.rays(part.span, step);
-        let mut points = Vec::new();
-        let (mut read, mut sums) = (Vec::new(), Vec::new());
-        let ray = |along: Vec2| {
-            let (first, last) = part.rings_on_ray(along);
-            let [near, far] = [(first, 1.0 - 0.5 * share), (last, 1.0 + 0.5 * share)]
-                .map(|(radius, factor)| radius as f32 * factor);
-            let (near, far) = (near.floor() as i32 - 1, far.ceil() as i32 + 1);
-            points.clear();
-            points.extend((near..far).map(|radius| center + radius as f32 * along));
-            read_points(&window, &points, &mut read);
+        let (mut directions, mut read, mut sums) =
+            (KnownDirections::default(), Vec::new(), Vec::new());
+        let mut rays = PolarLines::new(from as f32, 1.0 / step);
+        for along in directions.at(step, from..to) {
+            let (first, last) = part.rings_on_ray(*along);
+            let ray = RayColumns::new(center, *along);
+            let (from, to) = (ray.column(first as f32), ray.column(last as f32) + 1);
+            let apart = step_between(share * ray.along(from));
+            let kept = count_kept(to - from, apart);
+            let to = from + (kept as i32 - 1) * apart as i32 + 1;
+            let near = (ray.along(from) * (1.0 - 0.5 * share)).floor() as i32 - 2;
+            let far = (ray.along(to) * (1.0 + 0.5 * share)).ceil() as i32 + 2;
+            read.resize((far - near).max(0) as usize, [0.0; 4]);
+            read_ray(&window, &ray, near, &mut read);
             sum_up(&read, &mut sums);
-            let mut means = Vec::with_capacity((last - first) as usize);
-            zoom_means(&sums, (near, first, last), share, &mut means);
-            PolarLine { first: first as f32, per_unit: 1.0, means }
-        };
-        let rays: Vec<PolarLine> = directions(step, from..to).map(ray).collect();
-        let rays = PolarLines { lines: &rays, first: from as f32, per_unit: 1.0 / step };
-        part.read(place.out, |square, all| read_rays(&part, &rays, square, all))
+            let means = rays.add(ray.along(from) / apart as f32, ray.per_px / apart as f32, kept);
+            let width = (share, ray.along(0));
+            zoom_means(&sums, (near, from, apart as i32), width, means);
+        }
+        part.read(place.out, |square, all| read_lines(&part, &rays, false, square, all))
     }
+}
+
+/// A ray that is read in the columns of pixels that it passes, or in the rows if it is steep: between
+/// two pixels of each.
+struct RayColumns {
+    /// It passes more columns than rows.
+    is_level: bool,
+    /// Columns in a px of it.
+    per_px: f32,
+    /// How far the first column is from the center, columns, in `[0, 1)`.
+    offset: f32,
+    /// The first column, and 1 or −1 to the next.
+    first: i32,
+    toward: i32,
+    /// Where it is in the first column, and how much farther in the next, pixels.
+    across: f32,
+    slope: f32,
+}
+
+impl RayColumns {
+    fn new(center: Vec2, along: Vec2) -> Self {
+        let is_level = along.x.abs() >= along.y.abs();
+        let turned = |v: Vec2| if is_level { v } else { vec2(v.y, v.x) };
+        let (center, along) = (turned(center), turned(along));
+        let toward = if along.x < 0.0 { -1 } else { 1 };
+        let sign = toward as f32;
+        let offset = (sign * (0.5 - center.x)).rem_euclid(1.0);
+        let (per_px, slope) = (along.x.abs(), along.y / along.x.abs());
+        Self {
+            is_level,
+            per_px,
+            offset,
+            first: (center.x + sign * offset - 0.5).round() as i32,
+            toward,
+            across: center.y + slope * offset - 0.5,
+            slope,
+        }
+    }
+
+    /// How far a column is from the center, columns.
+    fn along(&self, column: i32) -> f32 {
+        column as f32 + self.offset
+    }
+
+    /// The column before a distance from the center, px.
+    fn column(&self, radius: f32) -> i32 {
+        (radius * self.per_px - self.offset).floor() as i32
+    }
+}
+
+/// How far apart the means of so many readings are kept: a sixteenth of them changes little.
+fn step_between(readings: f32) -> usize {
+    (readings / 16.0).max(1.0).min(1e4) as usize
+}
+
+/// How many are kept of so many means, two at least; the last one is no farther in than these.
+fn count_kept(means: i32, apart: usize) -> usize {
+    (means.max(1) as usize - 1).div_ceil(apart).max(1) + 1
 }
 
 /// How far a rectangle reaches from a point, px.
@@ -192,17 +257,35 @@ fn ray_step(distance: f32) -> f32 {
     TAU / ((least / unit).ceil() * unit)
 }
 
-/// Unit, at multiples of an angle, image axes.
-fn directions(step: f32, rays: Range<i32>) -> impl Iterator<Item = Vec2> {
-    // Each is the one before, turned: in f64 the error stays below 1e-12.
-    let step = f64::from(step);
-    let (mut at, turned) =
-        (DVec2::from_angle(f64::from(rays.start) * step), DVec2::from_angle(step));
-    rays.map(move |_| {
-        let now = at;
-        at = turned.rotate(at);
-        now.as_vec2()
-    })
+/// Unit, at multiples of an angle, image axes; those that were found last are known.
+#[derive(Default)]
+struct KnownDirections {
+    step: f32,
+    first: i32,
+    known: Vec<Vec2>,
+}
+
+impl KnownDirections {
+    fn at(&mut self, step: f32, rays: Range<i32>) -> &[Vec2] {
+        let last = self.first + self.known.len() as i32;
+        if step != self.step || rays.start < self.first || rays.end > last {
+            // The next circle has some more.
+            let more = rays.len() as i32 / 8 + 8;
+            (self.step, self.first) = (step, rays.start - more);
+            // Each is the one before, turned: in f64 the error stays below 1e-12.
+            let step = f64::from(step);
+            let (mut at, turned) =
+                (DVec2::from_angle(f64::from(self.first) * step), DVec2::from_angle(step));
+            self.known.clear();
+            self.known.extend((self.first..rays.end + more).map(|_| {
+                let now = at;
+                at = turned.rotate(at);
+                now.as_vec2()
+            }));
+        }
+        let from = (rays.start - self.first) as usize;
+        &self.known[from..from + rays.len()]
+    }
 }
 
 /// A part of a picture, seen from a point.
@@ -315,119 +398,203 @@ impl PolarPart {
         }
         all
     }
-
-    /// The distance of a pixel's center, px, and its angle.
-    #[inline(always)]
-    fn place(&self, x: i32, y: i32) -> (f32, f32) {
-        let away = vec2(x as f32 + 0.5, y as f32 + 0.5) - self.center;
-        let angle = fast::atan2(away.y, away.x);
-        (away.length(), self.middle + angle_between(angle, self.middle))
-    }
 }
 
 /// From one angle to another, both of `[−π, π]`, within half a turn.
 #[inline(always)]
 fn angle_between(angle: f32, from: f32) -> f32 {
     let turn = angle - from;
-    if turn > PI {
-        turn - TAU
-    } else if turn < -PI {
-        turn + TAU
-    } else {
-        turn
-    }
+    let turn = if turn > PI { turn - TAU } else { turn };
+    if turn < -PI { turn + TAU } else { turn }
 }
 
-/// The means along a circle or a ray.
+/// Where the means along a circle or a ray are.
 struct PolarLine {
+    /// The number of the first one among those of all lines.
+    start: u32,
+    /// The last but one of its own, counted from 0.
+    last: f32,
     /// The place of the first one.
     first: f32,
     /// How many there are in a unit of places.
     per_unit: f32,
-    means: Vec<[f32; 4]>,
-}
-
-impl PolarLine {
-    #[inline(always)]
-    fn at(&self, place: f32) -> [f32; 4] {
-        let last = self.means.len() - 2;
-        let at = (place * self.per_unit - self.first).max(0.0);
-        let whole = (at as usize).min(last);
-        mix(self.means[whole], self.means[whole + 1], at - whole as f32)
-    }
 }
 
 /// Lines side by side, two at least.
-struct PolarLines<'a> {
-    lines: &'a [PolarLine],
+struct PolarLines {
+    lines: Vec<PolarLine>,
+    means: Vec<[f32; 4]>,
     /// The place of the first one.
     first: f32,
     /// How many there are in a unit of places.
     per_unit: f32,
 }
 
-impl PolarLines<'_> {
-    /// Between two of them.
+impl PolarLines {
+    fn new(first: f32, per_unit: f32) -> Self {
+        Self { lines: Vec::new(), means: Vec::new(), first, per_unit }
+    }
+
+    /// Adds a line; its means, to be found.
+    fn add(&mut self, first: f32, per_unit: f32, count: usize) -> &mut [[f32; 4]] {
+        let start = self.means.len();
+        let last = count as f32 - 2.0;
+        self.lines.push(PolarLine { start: start as u32, last, first, per_unit });
+        self.means.resize(start + count, [0.0; 4]);
+        &mut self.means[start..]
+    }
+
+    /// Between two lines, and between two means of each.
     #[inline(always)]
     fn at(&self, across: f32, along: f32) -> [f32; 4] {
-        let at = (across * self.per_unit - self.first).max(0.0);
-        let whole = (at as usize).min(self.lines.len() - 2);
-        let (low, high) = (&self.lines[whole], &self.lines[whole + 1]);
-        mix(low.at(along), high.at(along), at - whole as f32)
+        let last = (self.lines.len() - 2) as f32;
+        let at = (across * self.per_unit - self.first).max(0.0).min(last + 1.0);
+        let whole = at.floor().min(last);
+        let pair = &self.lines[whole as i32 as usize..][..2];
+        mix(self.on(&pair[0], along), self.on(&pair[1], along), at - whole)
+    }
+
+    #[inline(always)]
+    fn on(&self, line: &PolarLine, along: f32) -> [f32; 4] {
+        let at = (along * line.per_unit - line.first).max(0.0).min(line.last + 1.0);
+        let whole = at.floor().min(line.last);
+        let pair = &self.means[line.start as usize + whole as i32 as usize..][..2];
+        mix(pair[0], pair[1], at - whole)
     }
 }
 
 crate::widest! {
-    /// The pixels of a rectangle between circles.
-    fn read_circles(part: &PolarPart, circles: &PolarLines, out: Rect, all: &mut Vec<[f32; 4]>) {
+    /// The pixels of a rectangle, at most 64 wide, between circles or rays.
+    fn read_lines(
+        part: &PolarPart,
+        lines: &PolarLines,
+        are_circles: bool,
+        out: Rect,
+        all: &mut Vec<[f32; 4]>
+    ) {
+        let (mut radii, mut angles) = ([0.0f32; 64], [0.0f32; 64]);
+        let width = out.width().min(64);
         for y in out.y0..out.y1 {
-            for x in out.x0..out.x1 {
-                let (r, angle) = part.place(x, y);
-                all.push(circles.at(r, angle));
+            let down = y as f32 + 0.5 - part.center.y;
+            let first = out.x0 as f32 + 0.5 - part.center.x;
+            place_row((first, down), part.middle, &mut radii, &mut angles);
+            let places = radii[..width].iter().zip(&angles[..width]);
+            if are_circles {
+                for (r, angle) in places {
+                    all.push(lines.at(*r, *angle));
+                }
+            } else {
+                for (r, angle) in places {
+                    all.push(lines.at(*angle, *r));
+                }
             }
         }
     }
 
-    /// The pixels of a rectangle between rays.
-    fn read_rays(part: &PolarPart, rays: &PolarLines, out: Rect, all: &mut Vec<[f32; 4]>) {
-        for y in out.y0..out.y1 {
-            for x in out.x0..out.x1 {
-                let (r, angle) = part.place(x, y);
-                all.push(rays.at(angle, r));
+    /// A picture on a circle.
+    fn read_circle(
+        window: &FilterWindow,
+        center: Vec2,
+        radius: f32,
+        along: &[Vec2],
+        read: &mut [[f32; 4]]
+    ) {
+        const SIDE: usize = 64;
+        let (rect, pixels) = (window.rect(), window.pixels());
+        let width = rect.width();
+        if width < 2 || rect.height() < 2 {
+            for (value, along) in read.iter_mut().zip(along) {
+                *value = window.sample(center.x + radius * along.x, center.y + radius * along.y);
+            }
+            return;
+        }
+        // Beyond the window its border is repeated.
+        let (right, bottom) = ((width - 1) as f32, (rect.height() - 1) as f32);
+        let (left, top) = (rect.x0 as f32 + 0.5 - center.x, rect.y0 as f32 + 0.5 - center.y);
+        let (mut firsts, mut shares) = ([0u32; SIDE], [[0.0f32; 2]; SIDE]);
+        for (values, along) in read.chunks_mut(SIDE).zip(along.chunks(SIDE)) {
+            let places = firsts.iter_mut().zip(&mut shares);
+            for ((first, share), along) in places.zip(along) {
+                let x = (radius * along.x - left).max(0.0).min(right);
+                let y = (radius * along.y - top).max(0.0).min(bottom);
+                let (i, j) = (x.floor().min(right - 1.0), y.floor().min(bottom - 1.0));
+                *share = [x - i, y - j];
+                *first = j as u32 * width as u32 + i as u32;
+            }
+            for (value, (first, [fx, fy])) in values.iter_mut().zip(firsts.iter().zip(&shares)) {
+                let first = *first as usize;
+                let (upper, lower) = (&pixels[first..first + 2], &pixels[first + width..][..2]);
+                *value = mix(mix(upper[0], upper[1], *fx), mix(lower[0], lower[1], *fx), *fy);
             }
         }
     }
 
-    /// A picture at some points.
-    fn read_points(window: &FilterWindow, points: &[Vec2], read: &mut Vec<[f32; 4]>) {
-        read.clear();
-        for at in points {
-            read.push(window.sample(at.x, at.y));
+    /// A picture on a ray, from a column on.
+    fn read_ray(window: &FilterWindow, ray: &RayColumns, from: i32, read: &mut [[f32; 4]]) {
+        let (rect, pixels) = (window.rect(), window.pixels());
+        let width = rect.width();
+        // The first column and row, the last ones, and the way to the next pixel along and across.
+        let (corner, last, steps) = match ray.is_level {
+            true => ((rect.x0, rect.y0), (rect.x1 - 1 - rect.x0, rect.y1 - 1 - rect.y0), (1, width)),
+            false => ((rect.y0, rect.x0), (rect.y1 - 1 - rect.y0, rect.x1 - 1 - rect.x0), (width, 1)),
+        };
+        let (first, across) = (ray.first - corner.0, ray.across - corner.1 as f32);
+        let most = last.1 as f32;
+        let before_last = (most - 1.0).max(0.0);
+        let next = if last.1 > 0 { steps.1 } else { 0 };
+        for (i, value) in read.iter_mut().enumerate() {
+            let column = from + i as i32;
+            let x = (first + ray.toward * column).max(0).min(last.0) as usize;
+            let y = (across + ray.slope * column as f32).max(0.0).min(most);
+            let whole = y.floor().min(before_last);
+            let at = x * steps.0 + whole as usize * steps.1;
+            *value = mix(pixels[at], pixels[at + next], y - whole);
         }
     }
 
-    /// The means along a ray at whole radii, each as wide as a share of its radius.
+    /// The means along a ray, each as wide as a share of its distance.
     ///
-    /// * `radii`: of the first sum, and of the means.
-    fn zoom_means(sums: &[[f32; 4]], radii: (i32, i32, i32), share: f32, means: &mut Vec<[f32; 4]>) {
-        let (near, first, last) = radii;
-        for radius in first..last {
-            let width = (share * radius as f32).max(1.0);
-            means.push(mean_between(sums, (radius - near) as f32, width));
+    /// * `columns`: of the first sum, of the first mean, and from one mean to the next.
+    /// * `width`: the share, and how far the first column of the ray is from the center.
+    fn zoom_means(
+        sums: &[[f32; 4]],
+        columns: (i32, i32, i32),
+        width: (f32, f32),
+        means: &mut [[f32; 4]]
+    ) {
+        let ((near, first, apart), (share, offset)) = (columns, width);
+        for (i, mean) in means.iter_mut().enumerate() {
+            let column = first + i as i32 * apart;
+            let width = (share * (column as f32 + offset)).max(1.0);
+            *mean = mean_between(sums, (column - near) as f32, width);
         }
     }
 
     /// The sums of all values before each.
     fn sum_up(values: &[[f32; 4]], sums: &mut Vec<[f32; 4]>) {
-        sums.clear();
+        sums.resize(values.len() + 1, [0.0; 4]);
         let mut sum = [0.0; 4];
-        sums.push(sum);
-        for value in values {
+        sums[0] = sum;
+        for (total, value) in sums[1..].iter_mut().zip(values) {
             for k in 0..4 {
                 sum[k] += value[k];
             }
-            sums.push(sum);
+            *total = sum;
         }
+    }
+}
+
+/// Distances and angles of the pixels of a row.
+///
+/// * `first`: the center of the first one, from the point.
+/// * `middle`: the angle that others are within half a turn of.
+#[inline(always)]
+fn place_row(first: (f32, f32), middle: f32, radii: &mut [f32; 64], angles: &mut [f32; 64]) {
+    let (across, down) = first;
+    for (i, (radius, angle)) in radii.iter_mut().zip(angles).enumerate() {
+        let x = across + i as f32;
+        *radius = (x * x + down * down).sqrt();
+        *angle = middle + angle_between(fast::atan2(down, x), middle);
     }
 }
 

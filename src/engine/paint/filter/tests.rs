@@ -1,7 +1,7 @@
 //! What filters do to pixels, by values and by properties.
 
 use super::*;
-use crate::math::{Size, hash};
+use crate::math::{Size, Vec2, hash, vec2};
 
 const RECT: Rect = Rect::new(0, 0, 96, 80);
 
@@ -168,6 +168,51 @@ fn motion_spreads_a_dot_along_its_way_alone() {
     let rising = PictureFilter::MotionBlur(MotionBlur { angle: 45.0, length: 12.0 });
     let found = apply(&rising, &source, RECT);
     assert!(found.at(51, 37)[3] > 0.05 && found.at(45, 37)[3] == 0.0);
+}
+
+/// The mean of readings along a way through each pixel, as the words say.
+fn direct_means(source: &FilterWindow, at: impl Fn(Vec2, f32) -> Vec2) -> Vec<[f32; 4]> {
+    const READINGS: usize = 240;
+    let places = (RECT.y0..RECT.y1).flat_map(|y| (RECT.x0..RECT.x1).map(move |x| (x, y)));
+    let mean = |(x, y): (i32, i32)| {
+        let mut sum = [0.0; 4];
+        for i in 0..READINGS {
+            let place =
+                at(vec2(x as f32 + 0.5, y as f32 + 0.5), (i as f32 + 0.5) / READINGS as f32);
+            let value = source.sample(place.x, place.y);
+            (0..4).for_each(|k| sum[k] += value[k] / READINGS as f32);
+        }
+        sum
+    };
+    places.map(mean).collect()
+}
+
+#[test]
+fn spin_and_zoom_are_means_along_circles_and_rays() {
+    // Beyond the picture its border goes on; each channel has edges or noise.
+    let source = picture();
+    for (x, y) in [(50.0, 50.0), (-40.0, 130.0), (20.0, 60.0)] {
+        let center = BlurCenter { x, y };
+        let from = vec2(0.96 * x, 0.8 * y);
+        for (angle, share) in [(10.0f32, 20.0f32), (70.0, 80.0)] {
+            let spin = PictureFilter::SpinBlur(SpinBlur { angle, center });
+            let zoom = PictureFilter::ZoomBlur(ZoomBlur { amount: share, center });
+            let turned = |at: Vec2, t: f32| {
+                from + Vec2::from_angle((t - 0.5) * angle.to_radians()).rotate(at - from)
+            };
+            let nearer = |at: Vec2, t: f32| from + (at - from) * (1.0 + (t - 0.5) * share / 100.0);
+            for (filter, wanted) in
+                [(spin, direct_means(&source, turned)), (zoom, direct_means(&source, nearer))]
+            {
+                let found = apply(&filter, &source, RECT);
+                let both = found.pixels().as_flattened().iter().zip(wanted.as_flattened());
+                let off: Vec<f32> = both.map(|(a, b)| (a - b).abs() * 255.0).collect();
+                let mean = off.iter().sum::<f32>() / off.len() as f32;
+                // Readings of noise are between pixels twice, which shows where a way is short.
+                assert!(mean < 4.0, "{filter:?}: {mean} levels in the mean");
+            }
+        }
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::subpath::Subpath;
 use crate::math::{Rect, Size, Vec2, srgb::Color, vec2};
 use crate::memory;
 use crate::raster::{Picture, VectorDrawing};
+use std::any::Any;
 use std::sync::Arc;
 use tiny_skia::{
     FillRule, IntSize, LineCap, LineJoin, Paint, Path, PathBuilder, PathStroker, Pixmap, PixmapMut,
@@ -36,6 +37,10 @@ impl VectorDrawing for PathDrawing {
     fn draw(&self, size: Size) -> Option<Vec<[u8; 4]>> {
         let bytes = memory::fill(4 * size.area(), 0u8).ok()?;
         self.draw_into(size, bytes)
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
     }
 }
 
