@@ -68,7 +68,7 @@ impl PenListener<'_> {
 impl ApplicationHandler<UserEvent> for PenListener<'_> {
     fn window_event(&mut self, events: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
         self.move_by_pens(events);
-        if !self.feed.hear(window.into(), &event) {
+        if let Some(event) = self.feed.read_event(window.into(), event) {
             self.window.window_event(events, window, event);
         }
     }

@@ -96,13 +96,13 @@ pub trait PenDevices {
     fn rescale(&mut self, _window: u64, _px_per_pt: f64) {}
 
     /// Whether the platform moves no pointer for pens: their news are [`PenNews::Step`].
-    fn moves_pointer(&self) -> bool {
+    fn is_own_pointer(&self) -> bool {
         false
     }
 
     /// Whether every motion of the window's pointer is a [`PenNews::Feel`] before it comes, a
     /// mouse's too.
-    fn names_all_motions(&self) -> bool {
+    fn has_all_motions(&self) -> bool {
         false
     }
 

@@ -41,7 +41,7 @@ impl PenFeed {
     /// window; [`Self::next_event`] gives it to the window.
     pub fn read_pens(&mut self) {
         let is_own = |devices: &&mut Box<dyn PenDevices>| {
-            devices.moves_pointer() || devices.names_all_motions()
+            devices.is_own_pointer() || devices.has_all_motions()
         };
         if let Some(devices) = self.devices.as_mut().filter(is_own) {
             let news = devices.read();
@@ -88,24 +88,23 @@ impl PenFeed {
         Some((window, event))
     }
 
-    /// Takes an event of the window itself; returns whether the window shall not have it, since a
-    /// pen caused it.
-    pub fn hear(&mut self, window: u64, event: &WindowEvent) -> bool {
+    /// Takes an event of the window itself, and passes it on unless a pen caused it.
+    pub fn read_event(&mut self, window: u64, event: WindowEvent) -> Option<WindowEvent> {
         if let Some(devices) = &mut self.devices {
             if self.windows.insert(window) {
                 devices.open(window);
             }
             if let WindowEvent::ScaleFactorChanged { scale_factor, .. } = event {
-                devices.rescale(window, *scale_factor);
+                devices.rescale(window, scale_factor);
             }
         }
-        match *event {
+        match event {
             WindowEvent::CursorMoved { position, .. } => {
                 let at_px = [position.x, position.y];
                 if self.is_pens_own(at_px) {
-                    return true;
+                    return None;
                 }
-                self.hear_motion(at_px);
+                self.read_motion(at_px);
             }
             WindowEvent::AxisMotion { axis, value, .. } => {
                 self.tablet.borrow_mut().axis(axis, value)
@@ -113,13 +112,17 @@ impl PenFeed {
             // While a pen draws, it alone is the pointer.
             WindowEvent::MouseInput { .. }
             | WindowEvent::CursorEntered { .. }
-            | WindowEvent::CursorLeft { .. } => return self.held > 0,
+            | WindowEvent::CursorLeft { .. }
+                if self.held > 0 =>
+            {
+                return None;
+            }
             WindowEvent::Destroyed => {
                 self.windows.remove(&window);
             }
             _ => {}
         }
-        false
+        Some(event)
     }
 
     /// Whether the system moved its own pointer after a pen, or a hand touched the mouse while the
@@ -129,13 +132,13 @@ impl PenFeed {
         self.held > 0 || self.pen_px.is_some_and(is_same)
     }
 
-    fn hear_motion(&mut self, at_px: [f64; 2]) {
-        let names_all = self.devices.as_ref().is_some_and(|devices| devices.names_all_motions());
+    fn read_motion(&mut self, at_px: [f64; 2]) {
+        let has_all = self.devices.as_ref().is_some_and(|devices| devices.has_all_motions());
         if let Some(devices) = &mut self.devices {
             let news = devices.read();
             self.take_news(news);
         }
-        if !names_all {
+        if !has_all {
             self.tablet.borrow_mut().move_to(at_px);
         }
     }
@@ -161,7 +164,7 @@ mod tests {
     /// Pens that do what a test says.
     struct ToldPens {
         news: Rc<RefCell<Vec<PenNews>>>,
-        names_all: bool,
+        has_all: bool,
     }
 
     impl PenDevices for ToldPens {
@@ -169,20 +172,20 @@ mod tests {
             std::mem::take(&mut self.news.borrow_mut())
         }
 
-        fn moves_pointer(&self) -> bool {
-            !self.names_all
+        fn is_own_pointer(&self) -> bool {
+            !self.has_all
         }
 
-        fn names_all_motions(&self) -> bool {
-            self.names_all
+        fn has_all_motions(&self) -> bool {
+            self.has_all
         }
     }
 
     const WINDOW: u64 = 11;
 
-    fn feed(names_all: bool) -> (PenFeed, Rc<RefCell<Vec<PenNews>>>, SharedTablet) {
+    fn feed(has_all: bool) -> (PenFeed, Rc<RefCell<Vec<PenNews>>>, SharedTablet) {
         let (news, tablet) = (Rc::default(), SharedTablet::default());
-        let pens = ToldPens { news: Rc::clone(&news), names_all };
+        let pens = ToldPens { news: Rc::clone(&news), has_all };
         (PenFeed::new(tablet.clone(), Some(Box::new(pens))), news, tablet)
     }
 
@@ -198,6 +201,11 @@ mod tests {
     fn click() -> WindowEvent {
         let (device_id, state) = (DeviceId::dummy(), ElementState::Pressed);
         WindowEvent::MouseInput { device_id, state, button: MouseButton::Left }
+    }
+
+    /// Which of its own events the window has.
+    fn passed<const N: usize>(feed: &mut PenFeed, events: [WindowEvent; N]) -> [bool; N] {
+        events.map(|event| feed.read_event(WINDOW, event).is_some())
     }
 
     fn events(feed: &mut PenFeed) -> Vec<WindowEvent> {
@@ -220,22 +228,26 @@ mod tests {
         let taken = |x: f64| tablet.borrow_mut().take([x, 0.0]);
         assert_eq!((taken(5.0), taken(6.0)), (Some(pressed(0.25)), Some(pressed(0.5))));
         // The mouse is still while the pen draws, and free as it hovers.
-        assert!(feed.hear(WINDOW, &moved(90.0)) && feed.hear(WINDOW, &click()));
+        assert_eq!(passed(&mut feed, [moved(90.0), click()]), [false; 2]);
         news.borrow_mut().push(step(PenStep::Release(PointerButton::Primary)));
         events(&mut feed);
-        assert!(feed.hear(WINDOW, &moved(7.0)), "the system's pointer follows the pen");
-        assert!(!feed.hear(WINDOW, &moved(90.0)) && !feed.hear(WINDOW, &click()));
+        assert_eq!(
+            passed(&mut feed, [moved(7.0)]),
+            [false],
+            "the system's pointer follows the pen"
+        );
+        assert_eq!(passed(&mut feed, [moved(90.0), click()]), [true; 2]);
         assert_eq!(taken(90.0), Some(PenState::default()), "a mouse");
         news.borrow_mut().push(step(PenStep::Leave));
         events(&mut feed);
-        assert!(!feed.hear(WINDOW, &moved(6.0)));
+        assert_eq!(passed(&mut feed, [moved(6.0)]), [true]);
     }
 
     #[test]
     fn a_pen_that_the_window_moves_for_is_felt_where_the_pointer_comes() {
         let (mut feed, news, tablet) = feed(true);
         news.borrow_mut().push(PenNews::Feel([5.0, 0.0], pressed(0.75)));
-        assert!(!feed.hear(WINDOW, &moved(5.0)));
+        assert_eq!(passed(&mut feed, [moved(5.0)]), [true]);
         assert_eq!(tablet.borrow_mut().take([5.0, 0.0]), Some(pressed(0.75)));
         assert_eq!(events(&mut feed), [], "its pointer is the window's own");
     }
@@ -244,7 +256,7 @@ mod tests {
     fn without_pens_every_motion_is_a_mouses() {
         let tablet = SharedTablet::default();
         let mut feed = PenFeed::new(tablet.clone(), None);
-        assert!(!feed.hear(WINDOW, &moved(3.0)) && !feed.hear(WINDOW, &click()));
+        assert_eq!(passed(&mut feed, [moved(3.0), click()]), [true; 2]);
         assert_eq!(tablet.borrow_mut().take([3.0, 0.0]), Some(PenState::default()));
     }
 }

@@ -63,7 +63,7 @@ impl PenDevices for MacPens {
         std::mem::take(&mut self.news.borrow_mut())
     }
 
-    fn names_all_motions(&self) -> bool {
+    fn has_all_motions(&self) -> bool {
         true
     }
 }

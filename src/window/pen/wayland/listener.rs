@@ -108,7 +108,7 @@ impl PenDevices for WaylandPens {
         self.0.tools.scales.insert(window, px_per_pt);
     }
 
-    fn moves_pointer(&self) -> bool {
+    fn is_own_pointer(&self) -> bool {
         true
     }
 

@@ -84,7 +84,7 @@ impl PenDevices for WindowsPens {
         }
     }
 
-    fn moves_pointer(&self) -> bool {
+    fn is_own_pointer(&self) -> bool {
         true
     }
 }
