@@ -217,9 +217,10 @@ mod tests {
     fn a_frame_that_becomes_paint_still_clips() {
         use crate::document::{Group, Live, flatten};
         use crate::math::vec2;
-        use crate::paint::{Figure, LivePath, PlacedImage};
+        use crate::paint::{Figure, FigureKind, LivePath, PlacedImage};
         let size = Size::new(100, 80);
-        let figure = Figure { from: vec2(20.0, 10.0), to: vec2(60.5, 50.0), ..Figure::default() };
+        let (from, to) = (vec2(20.0, 10.0), vec2(60.5, 50.0));
+        let figure = Figure { kind: FigureKind::Rectangle, from, to, ..Figure::DEFAULT };
         let path = LivePath { outline: 4.0, frames: true, ..LivePath::new(figure) };
         let frame =
             Layer::new("Frame", Content::Image(Live::new(PlacedImage::of_path(size, path))));
