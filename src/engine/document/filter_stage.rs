@@ -110,6 +110,7 @@ impl StoredTile {
     fn copy_row(&self, from: usize, y: usize, row: &mut [[f32; 4]]) {
         match self {
             StoredTile::Nothing => row.fill([0.0; 4]),
+            StoredTile::Rounded(rows) => interleave_row(&rows[y], from, row),
             _ => row.iter_mut().zip(from..).for_each(|(to, x)| *to = self.pixel(x, y)),
         }
     }
@@ -145,6 +146,35 @@ impl StoredTile {
 }
 
 crate::widest! {
+    /// Pixels of a row of 16 bits, from one on, in floats.
+    fn interleave_row(rows16: &Row16, from: usize, row: &mut [[f32; 4]]) {
+        let to = from + row.len();
+        let [r, g, b, a] = rows16;
+        let channels = r[from..to].iter().zip(&g[from..to]).zip(&b[from..to]).zip(&a[from..to]);
+        for (pixel, (((r, g), b), a)) in row.iter_mut().zip(channels) {
+            *pixel = [
+                f32::from(*r) * (1.0 / 65535.0),
+                f32::from(*g) * (1.0 / 65535.0),
+                f32::from(*b) * (1.0 / 65535.0),
+                f32::from(*a) * (1.0 / 65535.0),
+            ];
+        }
+    }
+
+    /// Pixels in the channels of a row, from one on.
+    pub(super) fn part_row(pixels: &[[f32; 4]], from: usize, rgb: &mut [[f32; TILE]; 3], a: &mut [f32; TILE]) {
+        let to = from + pixels.len();
+        let [r, g, b] = rgb;
+        let channels = r[from..to]
+            .iter_mut()
+            .zip(&mut g[from..to])
+            .zip(&mut b[from..to])
+            .zip(&mut a[from..to]);
+        for (pixel, (((r, g), b), a)) in pixels.iter().zip(channels) {
+            (*r, *g, *b, *a) = (pixel[0], pixel[1], pixel[2], pixel[3]);
+        }
+    }
+
     /// A row of 16 bits in floats.
     fn read_row(rows16: &Row16, row: [&mut [f32; TILE]; 4]) {
         for (channel, values) in row.into_iter().zip(rows16) {

@@ -5,7 +5,7 @@
 use super::Progress;
 use super::compose::{ComposeFlow, Composer};
 use super::far_side::FarTile;
-use super::filter_stage::{FilterStage, ReadTiles, StoredTile};
+use super::filter_stage::{FilterStage, ReadTiles, StoredTile, part_row};
 use super::floats::FloatTiles;
 use super::prepare::PreparedDocument;
 use super::progress::in_parallel;
@@ -110,7 +110,7 @@ impl PreparedDocument {
                 let start = (inside.x0 - block.x0) as usize;
                 let from = &filtered.row(y)[start..start + inside.width()];
                 let first = (inside.x0 - tile.x0) as usize;
-                from.iter().zip(first..).for_each(|(pixel, x)| to.set(x, *pixel));
+                part_row(from, first, &mut to.rgb, &mut to.a);
             }
             stage.made[pass].set(at, StoredTile::of(pixels, floats.is_some()));
         }

@@ -35,6 +35,28 @@ impl Document {
     pub fn inside_of_frame(&self, id: LayerId) -> Option<Arc<CoverageGrid>> {
         inside(self.layer(id)?, &self.map_of(id)?.of_list(), &self.scene_of(id)?)
     }
+
+    /// With what a frame clips in a group of its own, whose mask is the inside of the frame: the same
+    /// picture, whatever becomes of the frame. `None` for a layer that is no frame of a group.
+    pub fn with_frame_as_mask(&self, id: LayerId) -> Option<Document> {
+        let place = self.place_of(id)?;
+        place.group?;
+        let inside = self.inside_of_frame(id)?;
+        let coverage = Arc::new(inside.to_plane(self.size.rect()));
+        let name = self.free_layer_name("Inside");
+        self.with_siblings(place, |layers, index| {
+            let clipped: Vec<Arc<Layer>> = layers.drain(..index).collect();
+            let group = Group { layers: clipped, pass_through: true };
+            let mask = LayerMask::new(MaskKind::File { file: String::new(), coverage });
+            let group = Layer {
+                mask: Some(mask),
+                clip_to_surface: false,
+                ..Layer::new(name, Content::Group(group))
+            };
+            layers.insert(0, Arc::new(group));
+            Some(())
+        })
+    }
 }
 
 /// What lies inside of a frame on the canvas; `None` for a layer that is none.
@@ -182,6 +204,37 @@ mod tests {
         let layers = vec![Arc::new(fill(RED)), Arc::new(frame(0.0))];
         let bare = Document { layers, ..Document::empty(SIZE) };
         assert_eq!(pixels(&bare, &[(5, 5)])[0][3], 255);
+    }
+
+    #[test]
+    fn a_mask_in_the_place_of_a_frame_clips_the_same() {
+        let oval = Figure {
+            kind: FigureKind::Ellipse,
+            from: vec2(30.0, 5.0),
+            to: vec2(90.3, 70.0),
+            ..Figure::DEFAULT
+        };
+        let path = LivePath { frames: true, ..LivePath::new(oval) };
+        let oval = Layer::new("oval", Content::Image(Live::new(PlacedImage::of_path(SIZE, path))));
+        let faint = Layer { opacity: 0.5, blend: BlendMode::Multiply, ..fill(BLUE) };
+        for passes in [false, true] {
+            let layers = vec![fill(RED), frame(3.0), faint.clone(), oval.clone(), faint.clone()];
+            let mut document = page(layers, passes);
+            document.layers.insert(0, Arc::new(fill(Color::rgb(90, 200, 120))));
+            let group = document.layers[1].content.group().unwrap();
+            let frames: Vec<LayerId> = group.frames().map(|place| group.layers[place].id).collect();
+            let before = flatten(&document, &Progress::default()).unwrap();
+            for id in frames {
+                let masked = document.with_frame_as_mask(id).unwrap();
+                let seen = flatten(&masked, &Progress::default()).unwrap();
+                for (x, y) in (0..100).flat_map(|x| (0..80).map(move |y| (x, y))) {
+                    let both = [before.pixel(x, y), seen.pixel(x, y)];
+                    let off = (0..4).map(|k| both[0][k].abs_diff(both[1][k])).max();
+                    assert!(off <= Some(1), "passes {passes}, {x} {y}: {both:?}");
+                }
+            }
+            assert!(document.with_frame_as_mask(document.layers[0].id).is_none());
+        }
     }
 
     #[test]

@@ -16,9 +16,10 @@ use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::memory::RemadeCell;
 use crate::raster::sampler::{Antialias, Bilinear, TapRule};
 use crate::raster::{FloatTexture, Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
-use crate::surface::{Bend, Deformation, deformation::DeformedRect};
+use crate::surface::{Bend, Deformation, Operator, deformation::DeformedRect};
 use std::cell::RefCell;
-use std::sync::{Arc, Mutex, Weak};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// P: where the picture lies on the canvas before it is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,6 +133,8 @@ struct DerivedTextures {
     enlarged: [RemadeCell<Option<Arc<Texture>>>; 3],
     /// Its finest levels of detail, which are left out of the texture.
     left_out: u32,
+    /// The texture of a picture that is the same beyond some rows, until this one's is made of it.
+    like: Mutex<Option<(Arc<Texture>, Range<u32>)>>,
     /// The texture in floats, as long as it is in use.
     floats: Mutex<Weak<FloatTexture>>,
     /// The stamps made from it if it is a brush's tip.
@@ -212,6 +215,26 @@ impl PictureSource {
         Self { derived: Arc::new(derived), ..self.clone() }
     }
 
+    /// Another picture in the place of this one, of which it differs in some rows alone: its texture
+    /// is made of this one's.
+    pub fn repainted(&self, file: String, picture: Picture, rows: Range<u32>) -> Self {
+        let next = Self::new(file, picture, self.adjust);
+        let derived = &self.derived;
+        if self.adjust == Adjust::default() && derived.left_out == 0 {
+            let lock = |derived: &DerivedTextures| {
+                derived.like.lock().unwrap_or_else(PoisonError::into_inner).clone()
+            };
+            let like = match derived.texture.get() {
+                Some(made) => Some((made, rows)),
+                None => lock(derived).map(|(made, older)| {
+                    (made, rows.start.min(older.start)..rows.end.max(older.end))
+                }),
+            };
+            *next.derived.like.lock().unwrap_or_else(PoisonError::into_inner) = like;
+        }
+        next
+    }
+
     /// Bytes of the textures that were made.
     pub fn texture_bytes(&self) -> u64 {
         let enlarged = self.derived.enlarged.iter().filter_map(|texture| texture.get().flatten());
@@ -270,7 +293,10 @@ impl PictureSource {
     /// that waits for this same texture.
     pub fn texture(&self) -> Arc<Texture> {
         self.derived.texture.get_or_make(|| {
-            let whole = Texture::new(&self.adjust.apply(&self.picture));
+            let like = self.derived.like.lock().unwrap_or_else(PoisonError::into_inner).take();
+            let repainted = like.and_then(|(of, rows)| of.repainted(&self.picture, rows));
+            let make = || Texture::new(&self.adjust.apply(&self.picture));
+            let whole = repainted.unwrap_or_else(make);
             Arc::new(match self.derived.left_out {
                 0 => whole,
                 levels => whole.coarser(levels),
@@ -334,6 +360,29 @@ impl PlacedImage {
     /// The same picture, bent.
     pub fn with_bend(self, bend: Bend) -> Self {
         Self { bend, ..self }
+    }
+
+    /// The pixels of a canvas that see some texels of its picture; `None` where these may be
+    /// anywhere.
+    pub fn seen_rect(&self, canvas: Size, texels: Rect) -> Option<Rect> {
+        if self.bend.operator != Operator::None || self.outside != Outside::None {
+            return None;
+        }
+        let to_frame =
+            self.placement.texels_from_canvas(canvas, self.source.picture.size).inverse();
+        let to_canvas = self.frame.as_affine()? * to_frame;
+        let corners = [(texels.x0, texels.y0), (texels.x1, texels.y0), (texels.x0, texels.y1)];
+        let [a, b, c] = corners.map(|(x, y)| to_canvas.transform_point2(vec2(x as f32, y as f32)));
+        let all = [a, b, c, b + c - a];
+        // A pixel is the mean of what lies around it, and so is a texel where it is enlarged.
+        let texel = to_canvas.matrix2.x_axis.length().max(to_canvas.matrix2.y_axis.length());
+        let reach = Vec2::splat(4.0 + 4.0 * texel);
+        let low = all.into_iter().fold(a, Vec2::min) - reach;
+        let high = all.into_iter().fold(a, Vec2::max) + reach;
+        let is_near = low.abs().max(high.abs()).max_element() < 1e7;
+        is_near.then(|| {
+            Rect::new(low.x as i32 - 1, low.y as i32 - 1, high.x as i32 + 1, high.y as i32 + 1)
+        })
     }
 
     /// One tile of the layer; `None` if it is transparent or beyond the canvas.

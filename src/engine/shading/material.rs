@@ -329,7 +329,7 @@ impl Shading {
         self.model == Model::LitSphere && self.strokes.on
     }
 
-    /// What its shadows and its ball's places keep of each pixel, bytes.
+    /// What its shadows, its ball's places and its solid glass keep of each pixel, bytes.
     pub fn kept_bytes(&self) -> u64 {
         let lamps = match self.model.has_lamps() && self.shadows.has_effect() {
             true => self.lights.len().min(Shadows::MOST_LAMPS),
@@ -337,7 +337,9 @@ impl Shading {
         };
         let contact = usize::from(self.model == Model::Painter);
         let strokes = usize::from(self.has_strokes());
-        ((lamps + contact) * Surface::SHADOW_BYTES + strokes * Surface::BALL_PLACE_BYTES) as u64
+        let glass = usize::from(self.is_solid_glass());
+        let of_shadows = (lamps + contact) * Surface::SHADOW_BYTES;
+        (of_shadows + strokes * Surface::BALL_PLACE_BYTES + glass * Surface::BODY_BYTES) as u64
     }
 
     /// Its lights with their shadows, as seen from the rows of a tile of a surface.

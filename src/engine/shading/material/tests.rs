@@ -309,3 +309,11 @@ fn scaling_brightens_ridges_and_darkens_valleys_in_the_light() {
     }
     assert!(told > 100);
 }
+
+#[test]
+fn the_body_of_solid_glass_counts_as_what_it_keeps() {
+    let solid = Shading::new(Model::Refraction);
+    let mut open = solid.clone();
+    open.solid.on = false;
+    assert_eq!(solid.kept_bytes() - open.kept_bytes(), Surface::BODY_BYTES as u64);
+}

@@ -371,6 +371,10 @@ impl HeapSize for SolidBody {
 }
 
 impl Surface {
+    /// What [`Surface::body`] keeps of each pixel, bytes: how far the front stands before the middle
+    /// of the body, with detail and without, and the back.
+    pub const BODY_BYTES: usize = 3 * size_of::<f32>();
+
     fn thickness(&self, rays: &RayMap) -> Arc<Thickness> {
         let base = self.base();
         base.derived.thicknesses.get_or_compute((), 1, |_| Thickness::of(base, rays))

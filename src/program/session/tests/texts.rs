@@ -145,3 +145,55 @@ fn a_text_is_as_sharp_at_eight_times_the_size() {
     let between = row.iter().filter(|a| (8..248).contains(*a)).count();
     assert!(edges >= 4 && between <= 3 * edges, "{between} pixels at {edges} edges");
 }
+
+/// Each key, as the window shows it, against the same document painted from nothing.
+#[test]
+fn what_is_typed_is_shown_as_if_it_were_painted_at_once() {
+    use crate::document::{Live, PreparedDocument, diff};
+    use crate::paint::PictureSource;
+    let text = |string: &str| {
+        format!(
+            r##"{{"string":"{string}","font":"Hack","size":13,"width":150,"color":"#c03020"}}"##
+        )
+    };
+    let start = "one two three four five six seven eight nine ten eleven twelve";
+    let write = format!(r#"{{"in":"layer","do":"write","at":[20,20],"text":{}}}"#, text(start));
+    let mut session = self::write(&[&write]);
+    let drawn = |session: &Session| session.active().unwrap().drawn_document();
+    let (mut shown, progress) = (drawn(&session), Progress::default());
+    let mut picture = render(&shown);
+    let mut kept = 0;
+    for (typed, done) in [
+        ("one two three four five six sevenn eight nine ten eleven twelve", false),
+        ("one two three four five six sevennn eight nine ten eleven twelve", false),
+        ("one two three four five six sevennn  eight nine ten eleven twelve", true),
+        ("one two three four five six sevennn o eight nine ten eleven twelve", false),
+        ("one two three four five six eight nine ten eleven twelve", false),
+        ("one two\\nthree four five six eight nine ten eleven twelve", true),
+        ("one two\\nthree four five six eight nine ten eleven twelvg", false),
+        ("one", true),
+    ] {
+        let set = format!(
+            r#"{{"in":"layer","do":"set","layer":"0","done":{done},"to":{{"do":"text","text":{}}}}}"#,
+            text(typed)
+        );
+        session.replay(Path::new("story"), &set).unwrap();
+        let next = drawn(&session);
+        let tiles: Vec<_> = diff(&shown, &next).into_iter().collect();
+        kept += usize::from(tiles.len() < 8);
+        let prepared = PreparedDocument::new(&next, &progress).unwrap();
+        picture = prepared.flatten_tiles(&picture, &tiles, &progress).unwrap();
+        let anew = next.with_layer(next.layers[0].id, |layer| {
+            let Content::Image(live) = &layer.content else { panic!() };
+            let mut image = live.params().clone();
+            let (file, picture) = (image.source.file.clone(), image.source.picture.clone());
+            image.source = PictureSource::new(file, picture, image.source.adjust);
+            layer.content = Content::Image(Live::new(image));
+        });
+        let rect = Size::new(200, 120).rect();
+        let whole = render(&anew.unwrap()).to_straight_rgba(rect);
+        assert!(picture.to_straight_rgba(rect) == whole, "{typed:?} is shown otherwise");
+        shown = next;
+    }
+    assert!(kept >= 3, "{kept} keys left tiles as they were");
+}

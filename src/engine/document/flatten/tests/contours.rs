@@ -5,7 +5,8 @@ use super::*;
 use crate::document::{Live, NormalLayer};
 use crate::math::srgb;
 use crate::paint::{
-    Brush, Gradient, GradientStop, ImageFilter, PictureSource, Placement, Sample, Stroke,
+    Brush, DualBrush, DualSettings, Gradient, GradientStop, ImageFilter, PictureSource, Placement,
+    Sample, Stroke,
 };
 use crate::raster::{Outside, Picture};
 use crate::shading::{Model, RadianceScaling, Scaling, Shading};
@@ -182,12 +183,17 @@ fn live_layers_are_rendered_for_both_sides_alike() {
         pieces: Vec::new(),
     };
     let brush = Brush { size: 300.0, hardness: 1.0, ..Brush::default() };
-    let stroke = |operator| {
+    // The second tip takes half of the first one's everywhere.
+    let settings = DualSettings { size: 4.0, hardness: 1.0, opacity: 0.5, ..DualSettings::DEFAULT };
+    let dual = DualBrush { settings, ..DualBrush::default() };
+    let dual = Brush { dual: Some(Arc::new(dual)), ..brush.clone() };
+    let stroke_of = |brush: &Brush, operator| {
         let samples = vec![Sample::at(crate::math::vec2(50.0, 5.0))];
         let strokes =
             vec![Arc::new(Stroke::new(brush.clone(), operator, color("#3060c0"), samples))];
         Layer::new("s", Content::Strokes(Live::new(crate::document::StrokeList { strokes })))
     };
+    let stroke = |operator| stroke_of(&brush, operator);
     let layers = [
         Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong)))),
         Layer::new("g", Content::Gradient(Live::new(gradient))),
@@ -195,6 +201,8 @@ fn live_layers_are_rendered_for_both_sides_alike() {
         with(fill("#ff0000"), |l| l.mask = mask(DerivedMask::Depth { from: 0.0, to: 1.0 })),
         stroke(Operator::None),
         stroke(Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.0 }),
+        stroke_of(&dual, Operator::None),
+        stroke_of(&dual, Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.0 }),
     ];
     for layer in layers {
         let doc = Document { surface: Some(surface.clone()), ..document(vec![layer.clone()]) };

@@ -120,7 +120,16 @@ impl LayerKind for Live<PlacedImage> {
         Ok(Some(Content::Image(Live::new(image))))
     }
 
-    fn difference_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
-        Changed::of_live(self, if let Content::Image(old) = old { Some(old) } else { None })
+    /// Where both are rendered, their tiles show it.
+    fn difference_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
+        let Content::Image(old) = old else { return Changed::Wholly };
+        if self.ptr_eq(old) {
+            return Changed::Nowhere;
+        }
+        let scene = scene();
+        let same = old.same_tiles(self, &scene);
+        let (kept, other): (Vec<TileAt>, Vec<TileAt>) =
+            TileAt::covering(scene.size.rect()).partition(|&at| same(at));
+        if kept.is_empty() { Changed::Wholly } else { Changed::Tiles(other) }
     }
 }

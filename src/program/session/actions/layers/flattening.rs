@@ -62,7 +62,11 @@ impl LayerAction {
                 } else {
                     "Turn layer into pixels"
                 };
-                let baked = |next: Document, id| bake(&next, next.layer(id)?, progress);
+                let baked = |next: Document, id| {
+                    // What a frame clips stays clipped.
+                    let next = next.with_frame_as_mask(id).unwrap_or(next);
+                    bake(&next, next.layer(id)?, progress)
+                };
                 let document = ids.into_iter().try_fold(document.clone(), baked)?;
                 Some(Edit { label, document, select: Vec::new(), note: None })
             }
@@ -207,5 +211,36 @@ mod tests {
         assert!(no_room(&merge, 31_000_000).unwrap().starts_with("Merging layers takes 32 MB"));
         assert_eq!(no_room(&LayerAction::Flatten {}, 16_000_000), None);
         assert!(no_room(&LayerAction::Flatten {}, 15_000_000).is_some());
+    }
+
+    #[test]
+    fn a_frame_that_becomes_paint_still_clips() {
+        use crate::document::{Group, Live, flatten};
+        use crate::math::vec2;
+        use crate::paint::{Figure, FigureKind, LivePath, PlacedImage};
+        let size = Size::new(100, 80);
+        let (from, to) = (vec2(20.0, 10.0), vec2(60.5, 50.0));
+        let figure = Figure { kind: FigureKind::Rectangle, from, to, ..Figure::DEFAULT };
+        let path = LivePath { outline: 4.0, frames: true, ..LivePath::new(figure) };
+        let frame =
+            Layer::new("Frame", Content::Image(Live::new(PlacedImage::of_path(size, path))));
+        let fill = Layer::new("Fill", Content::Fill(Color::rgb(200, 20, 10)));
+        let layers = vec![Arc::new(fill), Arc::new(frame)];
+        let group = Group { layers, pass_through: false };
+        let group = Layer::new("Panel", Content::Group(group));
+        let document = Document { layers: vec![Arc::new(group)], ..Document::empty(size) };
+        let frame = document.layers[0].content.group().unwrap().layers[1].id;
+        let bake = LayerAction::Bake { layer: LayerPaths::of(&document, &[frame]) };
+        let progress = Progress::default();
+        let baked = bake.perform_long(&document, &progress).unwrap().document;
+        assert!(matches!(baked.layer(frame).unwrap().content, Content::Pixels(_)));
+        let [before, after] =
+            [&document, &baked].map(|document| flatten(document, &progress).unwrap());
+        assert_eq!((before.pixel(5, 5)[3], before.pixel(40, 30)), (0, [200, 20, 10, 255]));
+        for (x, y) in (0..100).flat_map(|x| (0..80).map(move |y| (x, y))) {
+            let both = [before.pixel(x, y), after.pixel(x, y)];
+            let off = (0..4).map(|k| both[0][k].abs_diff(both[1][k])).max();
+            assert!(off <= Some(1), "{x} {y}: {both:?}");
+        }
     }
 }

@@ -191,13 +191,22 @@ pub(super) fn replace_texts(
     if ids.is_empty() {
         return Ok(None);
     }
-    let laid = text::lay_out(text, &Budget::of_this_machine())?;
     let (file, canvas) = (free_file(document, "text.svg"), document.size);
+    let budget = Budget::of_this_machine();
+    let mut laid: Vec<TextPicture> = Vec::new();
+    for id in &ids {
+        let Some(Content::Image(live)) = document.layer(*id).map(|layer| &layer.content) else {
+            continue;
+        };
+        laid.push(text::lay_out_again(text, &live.params().source.picture, &budget)?);
+    }
+    let mut laid = laid.into_iter();
     Ok(document.with_layers(&ids, |layer| {
         let Content::Image(live) = &layer.content else { return };
-        let (image, old) = (live.params(), live.params().source.text().cloned());
-        let image = with_text(image, canvas, file.clone(), laid.clone());
-        layer.content = Content::Image(Live::new(image));
+        let Some(laid) = laid.next() else { return };
+        let old = live.params().source.text().cloned();
+        let next = with_text(live, canvas, file.clone(), laid);
+        layer.content = Content::Image(next);
         if old.is_some_and(|old| layer.name == name(&old)) && layer.name != name(text) {
             layer.name = document.free_layer_name(&name(text));
         }
@@ -205,7 +214,13 @@ pub(super) fn replace_texts(
 }
 
 /// An image that shows another text at the same size, its first baseline where it was.
-fn with_text(image: &PlacedImage, canvas: Size, file: String, laid: TextPicture) -> PlacedImage {
+fn with_text(
+    live: &Live<PlacedImage>,
+    canvas: Size,
+    file: String,
+    laid: TextPicture,
+) -> Live<PlacedImage> {
+    let image = live.params();
     let (old, new) = (&image.source.picture, &laid.picture);
     let own = Placement::at_own_size(canvas, old, Vec2::ZERO).scale;
     let enlarged = image.placement.scale / own;
@@ -219,7 +234,25 @@ fn with_text(image: &PlacedImage, canvas: Size, file: String, laid: TextPicture)
     let moved = begin(was, old.own_size()) - begin(laid.text.origin, laid.size);
     let center = image.placement.center + moved;
     let placement = Placement { center, scale, rotation: image.placement.rotation };
-    PlacedImage { source: source(file, laid, image.source.adjust), placement, ..image.clone() }
+    let Some(changed) = laid.changed.filter(|_| is_near(&placement, &image.placement)) else {
+        let source = source(file, laid, image.source.adjust);
+        return Live::new(PlacedImage { source, placement, ..image.clone() });
+    };
+    // What a key did not change stays as it is drawn.
+    let rows = changed.y0.max(0) as u32..changed.y1.max(0) as u32;
+    let mut source = image.source.repainted(file, laid.picture, rows);
+    source.origin = PictureOrigin::Text(Arc::new(laid.text));
+    let next = PlacedImage { source, ..image.clone() };
+    match next.seen_rect(canvas, changed) {
+        Some(seen) => live.with(next, |at| seen.intersect(at.rect()).is_empty()),
+        None => Live::new(next),
+    }
+}
+
+/// Whether they are the same but for rounding.
+fn is_near(a: &Placement, b: &Placement) -> bool {
+    let is_in_place = a.center.distance(b.center) < 1e-3;
+    is_in_place && (a.scale / b.scale - 1.0).abs() < 1e-6 && a.rotation == b.rotation
 }
 
 fn source(file: String, laid: TextPicture, adjust: Adjust) -> PictureSource {
