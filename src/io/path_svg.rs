@@ -88,8 +88,8 @@ mod tests {
     use crate::paint::{Figure, FigureKind};
     use crate::raster::picture::Texels;
 
-    /// The greatest difference between a path and its SVG, drawn at the same size.
-    fn greatest_difference(path: &LivePath) -> u8 {
+    /// The greatest difference between a path and its SVG, drawn at the same size, and the mean one.
+    fn differences(path: &LivePath) -> (u8, f64) {
         let file = std::path::Path::new("path.svg");
         let drawing = crate::svg::decode(file, write(path).as_bytes(), &Budget::default()).unwrap();
         let size = path.picture_size();
@@ -97,7 +97,9 @@ mod tests {
         let drawn = drawing.drawing.unwrap().draw(size).unwrap();
         let Texels::Srgb8(texels) = &own.texels else { panic!("bytes") };
         let apart = |(a, b): (&[u8; 4], &[u8; 4])| a[3].abs_diff(b[3]);
-        texels.iter().zip(&drawn).map(apart).max().unwrap_or(0)
+        let all: Vec<u8> = texels.iter().zip(&drawn).map(apart).collect();
+        let sum: f64 = all.iter().map(|apart| f64::from(*apart)).sum();
+        (all.iter().copied().max().unwrap_or(0), sum / all.len() as f64)
     }
 
     #[test]
@@ -114,9 +116,9 @@ mod tests {
                 dashes: vec![12.0, 9.0],
                 ..LivePath::new(figure).with_fill(Color::rgb(200, 30, 20))
             };
-            let apart = greatest_difference(&path);
-            // The other library divides arcs and dashes otherwise.
-            assert!(apart <= 12, "{label}: {apart}");
+            let (most, mean) = differences(&path);
+            // The other library samples an edge 16 times, and divides arcs and dashes otherwise.
+            assert!(most <= 40 && mean < 1.0, "{label}: {most}, {mean}");
         }
     }
 }

@@ -19,6 +19,7 @@
 //! | `ramp` | how colors mix between those of a gradient |
 //! | `fill`, `fill_block`, `pattern`, `filled` | what fill layers are filled with, besides the pixels that show it |
 //! | `line` | the line around a shape |
+//! | `shape` | shapes as live paths, and paths as shapes |
 //! | `alpha_channels` | selections, the channels besides the colors |
 //! | `marks` | guides, and the colors of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
@@ -64,6 +65,7 @@ pub(super) mod pattern;
 mod profiled;
 mod ramp;
 mod restore;
+mod shape;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -76,7 +78,7 @@ pub use tree::read;
 
 use crate::document::{Document, LayerLabel};
 use crate::math::Rect;
-use crate::paint::ColorAdjustment;
+use crate::paint::{ColorAdjustment, LivePath};
 use blocks::ArtboardBackground;
 use effects::RecordEffects;
 use fill::LayerFill;
@@ -128,6 +130,8 @@ pub struct LayerRecord {
     pub effect_shape: Option<RecordMask>,
     /// Its masks that are paths.
     pub outline: Option<VectorPaths>,
+    /// The path that it is, if one says its shape, its color and its line.
+    pub path: Option<LivePath>,
     /// What it is filled with.
     pub fill: Option<LayerFill>,
     /// It adjusts what is beneath it.
@@ -183,6 +187,13 @@ impl LayerRecord {
         }
     }
 
+    /// Whether something lies between its shape and the line around it: what is clipped to it, or
+    /// effects within it.
+    fn is_parted_by(&self, has_clipped: bool) -> bool {
+        let has_within = self.effects.as_ref().is_some_and(RecordEffects::has_within);
+        !self.clipped && (has_clipped || has_within)
+    }
+
     /// A shape of one color that is thin or soft at its outline also paints beyond that, where its
     /// pixels end: its color and its mask tell more.
     pub fn show_beyond_shape(&mut self) {
@@ -218,6 +229,7 @@ impl Default for LayerRecord {
             mask: None,
             effect_shape: None,
             outline: None,
+            path: None,
             fill: None,
             adjustment: None,
             adjustment_of_black: None,

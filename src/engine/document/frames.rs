@@ -91,8 +91,8 @@ fn cover(layer: &Arc<Layer>, around: &LayerMap, scene: &Scene) -> Option<Coverag
 
 /// The inside of a path that is not bent, exactly.
 fn cover_flat(image: &PlacedImage, path: &LivePath, scene: &Scene) -> CoverageGrid {
-    let lines = path.flatten(|p| image.canvas_from_path(scene.size, p));
-    let polygons: Vec<_> = lines.iter().map(|line| &line.points[..]).collect();
+    let lines = path.flatten_for_area(|p| image.canvas_from_path(scene.size, p));
+    let polygons: Vec<_> = lines.iter().map(Vec::as_slice).collect();
     shapes::polygons(&polygons, path.rule == PathRule::EvenOdd, scene.size.rect())
 }
 

@@ -27,6 +27,7 @@ mod inputs;
 mod modifiers;
 mod order;
 mod outlines;
+mod path_area;
 mod part;
 pub mod pixel_art;
 mod placed_outlines;

@@ -1,11 +1,12 @@
 //! Coverage in sparse tiles of one byte a pixel, cheap to clone and shared tile by tile: what a
-//! selection holds. Floor 1. `shapes` draws exact coverage, `edges` moves and softens its edges,
+//! selection holds. Floor 1. `shapes` and `winding` draw exact coverage, `edges` moves and softens its edges,
 //! `contour` finds its outline. Not here: what a selection was made of (`paint::selection`).
 
 pub mod contour;
 pub mod edges;
 pub mod shapes;
 pub mod trace;
+pub mod winding;
 
 use super::bits::{TileBits, bytes_of};
 use super::grid::Grid;

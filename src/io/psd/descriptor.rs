@@ -75,6 +75,16 @@ impl DescriptorObject {
         self.list(name).iter().filter_map(DescriptorValue::number)
     }
 
+    /// The same as exactly as they are stored; finite.
+    pub fn doubles(&self, name: &str) -> impl Iterator<Item = f64> {
+        self.list(name).iter().filter_map(|value| match value {
+            DescriptorValue::Number(number) | DescriptorValue::Measure(_, number) => {
+                Some(*number).filter(|number| number.is_finite())
+            }
+            _ => None,
+        })
+    }
+
     fn list(&self, name: &str) -> &[DescriptorValue] {
         match self.get(name) {
             Some(DescriptorValue::List(list)) => list.as_slice(),

@@ -6,13 +6,13 @@ use super::isolation::can_be_isolated;
 use super::write::{FileMarks, encode_file, on_white};
 use super::{
     LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, adjustments,
-    alpha_channels, cursor, effects, marks, signature, verify,
+    alpha_channels, cursor, effects, marks, shape, signature, verify,
 };
 use crate::document::EncodedPixels;
 use crate::document::{
     Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten,
 };
-use crate::math::{ColorProfile, Rect, Size};
+use crate::math::{ColorProfile, Rect};
 use crate::memory;
 use crate::project::layer_preview::{self, Cancelable};
 use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
@@ -53,13 +53,18 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
     };
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
     let mut builder = RecordBuilder {
-        size: document.size,
+        document,
         profile: document.profile,
         previews: previews.into_iter(),
-        ..RecordBuilder::default()
+        records: Vec::new(),
+        shown: Vec::new(),
+        whole_rims: BTreeSet::new(),
+        notes: Vec::new(),
+        is_hidden: false,
     };
     builder.items(file, &items)?;
-    let RecordBuilder { records, shown, whole_rims, mut notes, .. } = builder;
+    let RecordBuilder { mut records, shown, whole_rims, mut notes, .. } = builder;
+    shape::drop_parted(&mut records);
     if records.len() > MOST_RECORDS {
         let reason = format!(
             "its layers would be {} for Photoshop, which may be {MOST_RECORDS}",
@@ -110,8 +115,8 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancelabl
 }
 
 /// Records in the making.
-struct RecordBuilder {
-    size: Size,
+struct RecordBuilder<'a> {
+    document: &'a Document,
     /// The previews of the plan's pictures, in their order.
     profile: ColorProfile,
     previews: std::vec::IntoIter<EncodedPixels>,
@@ -125,23 +130,7 @@ struct RecordBuilder {
     is_hidden: bool,
 }
 
-impl Default for RecordBuilder {
-    fn default() -> Self {
-        let previews = Vec::new().into_iter();
-        Self {
-            size: Size::new(1, 1),
-            profile: ColorProfile::default(),
-            previews,
-            records: Vec::new(),
-            shown: Vec::new(),
-            whole_rims: BTreeSet::new(),
-            notes: Vec::new(),
-            is_hidden: false,
-        }
-    }
-}
-
-impl RecordBuilder {
+impl RecordBuilder<'_> {
     fn items(&mut self, file: &Path, items: &[PlanItem]) -> Result<()> {
         items.iter().try_for_each(|item| self.item(file, item))
     }
@@ -160,8 +149,8 @@ impl RecordBuilder {
             self.items(file, items)?;
             self.is_hidden = around;
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
-            let is_isolated =
-                *isolated || (mask.is_some() && can_be_isolated(self.size, &self.records[first..]));
+            let is_isolated = *isolated
+                || (mask.is_some() && can_be_isolated(self.document.size, &self.records[first..]));
             if mask.is_some() && !is_isolated && item.visible && !self.is_hidden {
                 self.notes
                     .push(format!("“{}” passes through, and Krita ignores its mask", item.name));
@@ -203,9 +192,16 @@ impl RecordBuilder {
             ItemContent::Nothing(layer) => adjustments::as_read(&layer.content),
             _ => None,
         };
+        let mut made = LayerRecord { rect, rgba, mask, adjustment, ..record(item) };
+        if let ItemContent::Layer(layer) = &item.shows
+            && let Some(map) = self.document.map_of(layer.id)
+        {
+            shape::put(&mut made, self.document, &map.layer_on_canvas(layer));
+        }
         match &item.shows {
             ItemContent::Layer(layer) | ItemContent::Nothing(layer) => {
-                if !matches!(layer.content, Content::Pixels(_)) && adjustment.is_none() {
+                let is_said = made.adjustment.is_some() || made.path.is_some();
+                if !matches!(layer.content, Content::Pixels(_)) && !is_said {
                     self.notes.push(format!(
                         "“{}” is live here and pixels for other programs",
                         item.name
@@ -221,7 +217,7 @@ impl RecordBuilder {
                 .notes
                 .push(format!("“{}” is composed of several layers for other programs", item.name)),
         }
-        self.records.push(LayerRecord { rect, rgba, mask, adjustment, ..record(item) });
+        self.records.push(made);
         Ok(())
     }
 
@@ -244,7 +240,7 @@ impl RecordBuilder {
         }
         let way = |v: &u8| if mask.invert { 255 - v } else { *v };
         Some(RecordMask {
-            rect: self.size.rect(),
+            rect: self.document.size.rect(),
             outside: 0,
             values: coverage.values().iter().map(way).collect(),
             disabled: false,

@@ -2,14 +2,22 @@
 
 use super::colors::Colors;
 use super::cursor::ByteCursor;
-use super::descriptor::{self, DescriptorObject};
+use super::descriptor::{self, DescriptorObject, DescriptorWriter};
 use super::fill::{self, LayerFill, PatternFill, share};
 use super::ramp;
+use crate::math::srgb::Color;
 use crate::math::vec2;
 
 /// Reads the block of a fill; `None` where it holds what is not understood.
 pub fn read(key: [u8; 4], mut data: ByteCursor, colors: &Colors) -> Option<LayerFill> {
     of_kind(key, &descriptor::read(&mut data)?, colors)
+}
+
+/// The block of a fill of one color.
+pub fn of_color(color: Color) -> Vec<u8> {
+    let mut out = DescriptorWriter::default();
+    out.color("Clr ", color);
+    out.into_bytes()
 }
 
 /// The fill that a line is drawn with; `None` where it is not understood.

@@ -9,6 +9,7 @@ use super::{LayerRecord, RecordMask};
 use crate::document::{Content, Group, Layer, Live, PixelLayer};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
+use crate::paint::PlacedImage;
 use crate::raster::TileGrid;
 use std::sync::Arc;
 
@@ -22,6 +23,10 @@ const NO_LINE: &str = "the line around its shape is left out";
 
 /// The content of a layer. The shape that its fill's pixels show goes into its mask.
 pub fn content(record: &mut LayerRecord, size: Size, patterns: &[PatternResource]) -> Content {
+    if let Some(path) = record.path.take() {
+        (record.rgba, record.rgba16) = (Vec::new(), Vec::new());
+        return Content::Image(Live::new(PlacedImage::of_path(size, path)));
+    }
     match record.fill.take() {
         None => {
             if record.rgba.is_empty() {
@@ -151,7 +156,7 @@ fn show_fill(record: &mut LayerRecord, fill: LayerFill, size: Size) -> Content {
 }
 
 /// Whether its effects follow an edge beyond the canvas, where a fill with a mask has none.
-fn has_cut_effects(record: &LayerRecord, size: Size) -> bool {
+pub fn has_cut_effects(record: &LayerRecord, size: Size) -> bool {
     let is_shown = |effects: &RecordEffects| effects.list.iter().any(|effect| effect.on);
     record.rect.intersect(size.rect()) != record.rect
         && record.effects.as_ref().is_some_and(is_shown)

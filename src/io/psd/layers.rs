@@ -10,7 +10,8 @@ use super::fill::LayerFill;
 use super::header::PsdHeader;
 use super::masks::{MaskData, Softness};
 use super::outline::VectorPaths;
-use super::{LayerRecord, RecordMask};
+use super::shape::{self, ShapePaths};
+use super::{LayerRecord, RecordMask, filled};
 use crate::Budget;
 use crate::math::{Rect, Size};
 use crate::{Error, Result};
@@ -85,8 +86,7 @@ impl<'a> RecordReader<'a> {
         for i in 0..pending.len() {
             let has_clipped = pending.get(i + 1).is_some_and(|next| next.record.clipped);
             let record = &mut pending[i].record;
-            let has_within = record.effects.as_ref().is_some_and(RecordEffects::has_within);
-            record.line_is_over = record.stroked && !record.clipped && (has_clipped || has_within);
+            record.line_is_over = record.stroked && record.is_parted_by(has_clipped);
         }
         let is_16_bit = self.header.is_16_bit;
         let filled = |pending| match is_16_bit {
@@ -238,6 +238,12 @@ impl<'a> RecordReader<'a> {
             (None, None) => None,
         };
         if is_shape {
+            self.find_path(record, of_outline);
+        }
+        if record.path.is_some() {
+            return Ok(());
+        }
+        if is_shape {
             self.draw_effect_shape(record)?;
             self.draw_line_over(record)?;
         }
@@ -254,6 +260,9 @@ impl<'a> RecordReader<'a> {
             return Ok(());
         }
         let filled = outline.coverage(size);
+        if of_outline == Softness::HARD && self.try_find_covering(record, &outline, &filled) {
+            return Ok(());
+        }
         self.draw_line(record, &outline, &filled)?;
         let drawn = RecordMask::of_canvas(size, filled);
         let drawn = self.soften_mask(drawn, of_outline)?;
@@ -262,6 +271,74 @@ impl<'a> RecordReader<'a> {
             None => drawn,
         });
         Ok(())
+    }
+
+    /// The path that a shape is whose pixels are in the file, if it shows them.
+    fn find_path(&mut self, record: &mut LayerRecord, of_outline: Softness) {
+        let size = self.header.size;
+        // What lies between a shape and its line makes them two layers.
+        let is_parted = record.stroked && record.line_is_over;
+        let is_cut = filled::has_cut_effects(record, size);
+        if self.keeps_inks || is_parted || is_cut || of_outline != Softness::HARD {
+            return;
+        }
+        let found = match record.outline.as_ref() {
+            Some(outline) => ShapePaths::of(record, outline, size),
+            None => None,
+        };
+        match found {
+            None => {}
+            Some(Err(why)) => record.note_conversion(why),
+            Some(Ok(found)) if self.try_spend_for(&found, record) => {
+                match found.find_shown(size, record.rect, &record.rgba) {
+                    Ok(path) => (record.path, record.line) = (Some(path), None),
+                    Err(why) => record.note_conversion(why),
+                }
+            }
+            Some(Ok(_)) => record.note_conversion(shape::TOO_LARGE),
+        }
+    }
+
+    /// Finds the path that a shape is whose pixels are not in the file; whether there is one.
+    fn try_find_covering(
+        &mut self,
+        record: &mut LayerRecord,
+        outline: &VectorPaths,
+        filled: &[u8],
+    ) -> bool {
+        let size = self.header.size;
+        if !record.rgba.is_empty() || self.keeps_inks {
+            return false;
+        }
+        match ShapePaths::of(record, outline, size) {
+            None => {}
+            Some(Err(why)) => record.note_conversion(why),
+            Some(Ok(found)) if self.try_spend_for(&found, record) => {
+                match found.find_covering(size, filled) {
+                    Ok(path) => (record.path, record.line) = (Some(path), None),
+                    Err(why) => record.note_conversion(why),
+                }
+            }
+            Some(Ok(_)) => record.note_conversion(shape::TOO_LARGE),
+        }
+        record.path.is_some()
+    }
+
+    /// Reserves memory for the picture of a path that is shown instead of a record's own pixels;
+    /// whether there is enough.
+    fn try_spend_for(&mut self, found: &ShapePaths, record: &LayerRecord) -> bool {
+        let own = record.rect.width() as u64 * record.rect.height() as u64;
+        let drawn: u64 = found.paths.iter().map(shape::bounds_px).sum();
+        let pictures = found.paths.iter().map(|path| path.picture_size().area() as u64);
+        let used_px = self.used_px + pictures.max().unwrap_or(0).saturating_sub(own);
+        // To be compared, they are drawn at their own size.
+        let held = self.held_bytes().saturating_add(4 * drawn);
+        let has_room = self.budget.room(self.file, "drawing its shapes", held).is_ok();
+        if !has_room || used_px > self.budget.document_px || self.drawn_px + drawn > DRAWN_PX {
+            return false;
+        }
+        (self.used_px, self.drawn_px) = (used_px, self.drawn_px + drawn);
+        true
     }
 
     /// What the effects of a shape follow if a gradient leaves it translucent: all of the shape.

@@ -4,6 +4,7 @@ mod foreign;
 mod lines;
 mod made;
 mod marks;
+mod shapes;
 mod sixteen_bit;
 
 use super::*;

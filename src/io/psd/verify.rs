@@ -4,6 +4,7 @@
 use super::merged::remove_white;
 use super::parse::{ParsedPsd, parse};
 use super::restore::restore;
+use super::shape::TOO_LARGE;
 use super::{LayerRecord, RecordSection};
 use crate::Budget;
 use crate::document::{Document, Guides, NamedSelection};
@@ -64,7 +65,12 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
         ));
     }
     let differs = parsed.records.iter().zip(meant.records).find_map(|(read, meant)| {
-        let what = differing_field(read, meant)?;
+        // What is live in it is in our own part of the file, whatever room there was to draw it.
+        let is_too_large = meant.path.is_some() && read.converted.contains(&TOO_LARGE);
+        let what = match is_too_large {
+            true => differing_field(&without_shape(read), &without_shape(meant))?,
+            false => differing_field(read, meant)?,
+        };
         let of = if meant.section == RecordSection::End { "a group" } else { &meant.name };
         Some(format!("{what} of “{of}”"))
     });
@@ -91,6 +97,11 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
     (!are_kept).then(|| "the selections that are kept by name".into())
 }
 
+/// A record as programs see it that know no paths.
+fn without_shape(record: &LayerRecord) -> LayerRecord {
+    LayerRecord { path: None, outline: None, converted: Vec::new(), ..record.clone() }
+}
+
 fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static str> {
     let fields = [
         (read.name == meant.name, "the name"),
@@ -108,7 +119,10 @@ fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static s
         (read.label == meant.label, "the label"),
         (read.adjustment == meant.adjustment, "the adjustment"),
         (read.effects == meant.effects, "the effects"),
-        // Fills, outlines: none is written.
+        (
+            (&read.path, &read.outline, &read.fill) == (&meant.path, &meant.outline, &meant.fill),
+            "the shape",
+        ),
         (read == meant, "something that was not put there"),
     ];
     fields.into_iter().find(|(is_same, _)| !is_same).map(|(_, what)| what)

@@ -5,7 +5,7 @@ use super::channel::pack;
 use super::{
     ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO,
 };
-use super::{adjustments, alpha_channels, effects, marks};
+use super::{adjustments, alpha_channels, effects, marks, shape};
 use crate::document::{Guides, LayerLabel, NamedSelection};
 use crate::math::{ColorProfile, Rect, Size};
 use crate::paint::EffectLight;
@@ -229,6 +229,9 @@ fn header(out: &mut Vec<u8>, record: &LayerRecord, channels: &[(i16, Vec<u8>)], 
         block(&mut extra, &key, &data);
     }
     for (key, data) in record.adjustment.iter().flat_map(adjustments::blocks) {
+        block(&mut extra, &key, &data);
+    }
+    for (key, data) in shape::blocks(record) {
         block(&mut extra, &key, &data);
     }
     let kind: u32 = match record.section {

@@ -18,9 +18,6 @@ pub const MOST_NODES: usize = 1_000_000;
 /// Points as near as this are one, px.
 const SAME_PX: f32 = 1e-4;
 
-/// The miter limit that paths here have.
-const MITER: f32 = 4.0;
-
 /// A path of an SVG.
 pub struct SvgShape {
     /// Its id, or that of the innermost group around it that has one; may be empty.
@@ -182,7 +179,8 @@ impl ShapeReader<'_> {
             && is_similar(map.matrix2)
             && stroke.dashoffset() == 0.0
             && dashes.len() <= LivePath::MOST_DASHES
-            && (stroke.linejoin() != usvg::LineJoin::Miter || stroke.miterlimit().get() == MITER)
+            && (stroke.linejoin() != usvg::LineJoin::Miter
+                || stroke.miterlimit().get() == LivePath::MITER)
             && stroke.linejoin() != usvg::LineJoin::MiterClip;
         self.is_exact &= is_kept;
         let color = self.color(stroke.paint());

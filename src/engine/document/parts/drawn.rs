@@ -66,6 +66,15 @@ impl DrawnLayer {
         })
     }
 
+    pub(super) fn layer(&self) -> &Arc<Layer> {
+        &self.layer
+    }
+
+    /// Whether a mesh or a liquify displaces it.
+    pub(super) fn is_displaced(&self) -> bool {
+        self.warped.is_some()
+    }
+
     /// Where the layer's pixels are.
     pub fn map(&self) -> &LayerMap {
         &self.map

@@ -243,6 +243,11 @@ impl OutlineKey {
         let mut is_lost = false;
         let outline = match self {
             Self::Layer(drawn, color) => {
+                if color.is_none()
+                    && let Some(area) = drawn.path_area(document.size)
+                {
+                    return Some((outline_coverage(&area, most_px)?, false));
+                }
                 let tiles = drawn.pixels(document)?;
                 let rect = tiles.bounds();
                 if rect.is_empty()

@@ -1,7 +1,7 @@
 //! Paths as pictures on the canvas: unless they were moved, their points are canvas points. Floor 3.
 
 use super::{PictureOrigin, PictureSource, PlacedImage, Placement};
-use crate::math::{Affine2, Rect, Size, Vec2, vec2};
+use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::paint::adjust::Adjust;
 use crate::paint::path::LivePath;
 use crate::surface::{Anchor, Bend};
@@ -9,6 +9,9 @@ use std::sync::Arc;
 
 /// A difference of maps that nobody sees, px over the picture.
 const SAME_PX: f32 = 1e-3;
+
+/// A difference of sides that no outline shows, as a share.
+const SAME_ASPECT: f32 = 1e-4;
 
 impl PictureSource {
     /// The picture of a path, which [`LivePath::fits`].
@@ -50,6 +53,35 @@ impl PlacedImage {
     pub fn path_from_canvas(&self, canvas: Size, point: Vec2) -> Option<Vec2> {
         let (in_frame, _) = self.frame.from_canvas(point)?;
         Some(self.frame_from_path(canvas)?.inverse().transform_point2(in_frame))
+    }
+
+    /// Its path with the points, the outline and the dashes that it has on the canvas; `None` for
+    /// what is no path, and where no path looks like it: bent, blurred or seen in perspective, or
+    /// stretched with an outline.
+    pub fn path_on_canvas(&self, canvas: Size) -> Option<LivePath> {
+        let path = self.source.path()?;
+        let is_plain = self.bend.operator.is_identity() && self.source.adjust == Adjust::default();
+        if !is_plain {
+            return None;
+        }
+        if self.frame == PlaneMap::IDENTITY && self.is_unmoved(canvas) {
+            return Some(LivePath::clone(path));
+        }
+        let map = self.frame.as_affine()? * self.frame_from_path(canvas)?;
+        let ([x, y], scale) = (map.matrix2.to_cols_array_2d(), map.matrix2.determinant());
+        let (x, y, scale) = (Vec2::from(x), Vec2::from(y), scale.abs().sqrt());
+        let is_stretched = (x.length() - y.length()).abs() > SAME_ASPECT * scale
+            || x.dot(y).abs() > SAME_ASPECT * scale * scale;
+        if is_stretched && path.outline > 0.0 {
+            return None;
+        }
+        let lines = path.subpaths();
+        let lines = lines.iter().map(|line| line.mapped(|p| map.transform_point2(p))).collect();
+        Some(LivePath {
+            outline: path.outline * scale,
+            dashes: path.dashes.iter().map(|dash| dash * scale).collect(),
+            ..path.with_lines(lines)
+        })
     }
 
     /// Another path in the same plane, placed and bent as this one is; `None` for what is no path.
@@ -139,6 +171,30 @@ mod tests {
         let same = PlacedImage::of_path(CANVAS, star()).with_path(CANVAS, star().moved(Vec2::X));
         let made = PlacedImage::of_path(CANVAS, star().moved(Vec2::X));
         assert!(same.is_some_and(|same| same == made), "what was not moved is as if made anew");
+    }
+
+    #[test]
+    fn a_path_on_the_canvas_looks_like_the_picture_of_it() {
+        let image = PlacedImage::of_path(CANVAS, LivePath { outline: 3.0, ..star() });
+        let own = |path: &LivePath| Some((path.outline, path.subpaths()[0].nodes[1].at));
+        let same = image.path_on_canvas(CANVAS);
+        assert_eq!(same.as_ref(), image.source.path().map(|path| &**path));
+        let turned =
+            Placement { rotation: 90.0, scale: 2.0 * image.placement.scale, ..image.placement };
+        let seen =
+            PlacedImage { placement: turned, ..image.clone() }.path_on_canvas(CANVAS).unwrap();
+        let (outline, at) = own(&seen).unwrap();
+        let from = same.unwrap().subpaths()[0].nodes[1].at - image.placement.center;
+        assert!((outline - 6.0).abs() < 1e-3, "{outline}");
+        let meant = image.placement.center + 2.0 * vec2(from.y, -from.x);
+        assert!(at.distance(meant) < 1e-3, "{at} {meant}");
+        let stretched = PlaneMap::affine([2.0, 0.0, 0.0, 1.0, 0.0, 0.0]).unwrap();
+        let wide = PlacedImage { frame: stretched, ..image.clone() };
+        assert!(wide.path_on_canvas(CANVAS).is_none(), "a stretched outline is no outline");
+        let bare = PlacedImage::of_path(CANVAS, star());
+        let wide = PlacedImage { frame: stretched, ..bare }.path_on_canvas(CANVAS);
+        let x = |path: &LivePath| path.subpaths()[0].nodes[0].at.x;
+        assert!((x(&wide.unwrap()) - 2.0 * x(&star())).abs() < 1e-3);
     }
 
     #[test]

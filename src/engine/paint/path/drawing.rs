@@ -2,15 +2,15 @@
 
 use super::live_path::{LivePath, PathCap, PathJoin, PathRule};
 use super::ribbon;
-use super::subpath::Subpath;
+use super::subpath::{PathNode, Subpath};
 use crate::math::{Rect, Size, Vec2, srgb::Color, vec2};
 use crate::memory;
-use crate::raster::{Picture, VectorDrawing};
+use crate::raster::coverage::{product, shapes, winding};
+use crate::raster::{CoverageGrid, Picture, Plane, VectorDrawing};
 use std::any::Any;
 use std::sync::Arc;
 use tiny_skia::{
-    FillRule, IntSize, LineCap, LineJoin, Paint, Path, PathBuilder, PathStroker, Pixmap, PixmapMut,
-    Stroke, StrokeDash, Transform,
+    LineCap, LineJoin, Path, PathBuilder, PathSegment, PathStroker, Point, Stroke, StrokeDash,
 };
 
 /// The longest side of a path's picture before it is drawn larger, px.
@@ -19,8 +19,8 @@ const BASE_PX: u32 = 4096;
 /// The least sides of a picture, px: placements of smaller ones on large canvases leave their range.
 const LEAST_PX: i32 = 8;
 
-/// How much longer than an outline's width a sharp corner may be.
-const MITER: f32 = 4.0;
+/// How much finer than pixels an outline's own curves are, whose areas are to be exact.
+const FINER: f32 = 8.0;
 
 /// A path and the rectangle of its plane that its picture shows.
 #[derive(Debug)]
@@ -78,6 +78,29 @@ impl LivePath {
         size_within(self.bounds())
     }
 
+    /// The exact share of each pixel that it paints, however opaque its colors are; its plane is the
+    /// canvas.
+    pub fn area(&self, within: Rect) -> CoverageGrid {
+        let is_filled = self.fill.is_some_and(|fill| fill.a > 0);
+        let filled = if is_filled { self.inside(within) } else { CoverageGrid::default() };
+        let outline = self.outline_path(FINER).filter(|_| self.outline_color.a > 0);
+        let Some(outline) = outline else { return filled };
+        let lines = LivePath::new(lines_of(&outline)).flatten_for_area(Some);
+        let mut plane = Plane::full(Size::new(within.width() as u32, within.height() as u32), 0);
+        winding::visit_rows(&lines, within, |y, row| {
+            plane.row_mut((y - within.y0) as usize).copy_from_slice(row);
+        });
+        let outlined = CoverageGrid::from_plane(&plane, within.x0, within.y0);
+        filled.combined(&outlined, |a, b| 255 - product(255 - a, 255 - b))
+    }
+
+    /// The exact share of each pixel that lies inside of it, whether it is filled or not.
+    pub fn inside(&self, within: Rect) -> CoverageGrid {
+        let lines = self.flatten_for_area(Some);
+        let lines: Vec<&[Vec2]> = lines.iter().map(Vec::as_slice).collect();
+        shapes::polygons(&lines, self.rule == PathRule::EvenOdd, within)
+    }
+
     /// The corners of the box that holds all that it inks.
     fn inked_box(&self) -> Option<[Vec2; 2]> {
         let lines = path_of(&self.subpaths());
@@ -115,7 +138,7 @@ impl LivePath {
         }
         Stroke {
             width: self.outline,
-            miter_limit: MITER,
+            miter_limit: Self::MITER,
             line_cap: match self.cap {
                 PathCap::Butt => LineCap::Butt,
                 PathCap::Round => LineCap::Round,
@@ -132,33 +155,78 @@ impl LivePath {
 }
 
 impl PathDrawing {
-    /// Draws into bytes that are zero.
+    /// Draws into bytes that are zero: each pixel by the exact share of it that is covered.
     fn draw_into(&self, size: Size, mut bytes: Vec<u8>) -> Option<Vec<[u8; 4]>> {
         let scale = size.width as f32 / self.bounds.width() as f32;
         let corner = vec2(self.bounds.x0 as f32, self.bounds.y0 as f32);
-        let place = Transform::from_translate(-corner.x, -corner.y).post_scale(scale, scale);
-        let mut pixmap = PixmapMut::from_bytes(&mut bytes, size.width, size.height)?;
-        let rule = match self.path.rule {
-            PathRule::Nonzero => FillRule::Winding,
-            PathRule::EvenOdd => FillRule::EvenOdd,
-        };
-        if let (Some(fill), Some(lines)) = (self.path.fill, path_of(&self.path.subpaths())) {
-            pixmap.fill_path(&lines, &paint(fill), rule, place, None);
+        let place = |p: Vec2| Some((p - corner) * scale);
+        let width = size.width as usize;
+        let texels = bytes.as_chunks_mut::<4>().0;
+        if let Some(fill) = self.path.fill {
+            let lines = self.path.flatten_for_area(place);
+            let lines: Vec<&[Vec2]> = lines.iter().map(Vec::as_slice).collect();
+            let has_holes = self.path.rule == PathRule::EvenOdd;
+            shapes::visit_rows(&lines, has_holes, size.rect(), |y, row| {
+                cover_row(&mut texels[y as usize * width..], row, fill);
+            });
         }
-        if let Some(outline) = self.path.outline_path(scale) {
-            let color = paint(self.path.outline_color);
-            pixmap.fill_path(&outline, &color, FillRule::Winding, place, None);
+        if let Some(outline) = self.path.outline_path(scale * FINER) {
+            let lines = LivePath::new(lines_of(&outline)).flatten_for_area(place);
+            let color = self.path.outline_color;
+            winding::visit_rows(&lines, size.rect(), |y, row| {
+                cover_row(&mut texels[y as usize * width..], row, color);
+            });
         }
-        let size = IntSize::from_wh(size.width, size.height)?;
-        let straight = Pixmap::from_vec(bytes, size)?.take_demultiplied();
-        Some(straight.as_chunks().0.to_vec())
+        Some(bytes.as_chunks().0.to_vec())
     }
 }
 
-fn paint(color: Color) -> Paint<'static> {
-    let mut paint = Paint { anti_alias: true, ..Paint::default() };
-    paint.set_color_rgba8(color.r, color.g, color.b, color.a);
-    paint
+/// Lays a color over a row of straight texels, where it is covered.
+fn cover_row(texels: &mut [[u8; 4]], row: &[u8], color: Color) {
+    let [r, g, b, a] = [color.r, color.g, color.b, color.a];
+    for (texel, covered) in texels.iter_mut().zip(row).filter(|(_, covered)| **covered > 0) {
+        let alpha = product(a, *covered);
+        *texel = match (alpha, texel[3]) {
+            (0, _) => *texel,
+            (255, _) | (_, 0) => [r, g, b, alpha],
+            (_, beneath) => {
+                let over = f32::from(alpha);
+                let left = f32::from(beneath) * (1.0 - over / 255.0);
+                let mix = |own: u8, other: u8| {
+                    let sum = f32::from(own) * over + f32::from(other) * left;
+                    (sum / (over + left) + 0.5) as u8
+                };
+                let [x, y, z, _] = *texel;
+                [mix(r, x), mix(g, y), mix(b, z), (over + left + 0.5) as u8]
+            }
+        };
+    }
+}
+
+/// The lines of what the drawing library drew.
+fn lines_of(path: &Path) -> Vec<Subpath> {
+    let at = |p: Point| vec2(p.x, p.y);
+    let mut lines: Vec<Subpath> = Vec::new();
+    for segment in path.segments() {
+        if let PathSegment::MoveTo(p) = segment {
+            lines.push(Subpath::polygon([at(p)]));
+            continue;
+        }
+        let Some(line) = lines.last_mut() else { continue };
+        let Some(last) = line.nodes.last_mut() else { continue };
+        let (after, before, end) = match segment {
+            PathSegment::LineTo(p) => (Vec2::ZERO, Vec2::ZERO, at(p)),
+            PathSegment::QuadTo(b, p) => {
+                let (b, p) = (at(b), at(p));
+                ((b - last.at) * (2.0 / 3.0), (b - p) * (2.0 / 3.0), p)
+            }
+            PathSegment::CubicTo(b, c, p) => (at(b) - last.at, at(c) - at(p), at(p)),
+            PathSegment::Close | PathSegment::MoveTo(_) => continue,
+        };
+        last.after = after;
+        line.nodes.push(PathNode { before, ..PathNode::corner(end) });
+    }
+    lines
 }
 
 /// The size at which a path within bounds is drawn at first.

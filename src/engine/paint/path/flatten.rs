@@ -7,6 +7,10 @@ use crate::math::Vec2;
 /// How far a straight piece may run from its curve, px.
 const ERROR_PX: f32 = 0.05;
 
+/// The same where exact areas are wanted: a whole circle's area is then one of 255 off in the pixels
+/// of its edge.
+const AREA_ERROR_PX: f32 = 1.0 / 256.0;
+
 /// The most pieces of a curve.
 const MOST_PIECES: f32 = 512.0;
 
@@ -25,12 +29,26 @@ impl LivePath {
     pub fn flatten(&self, map: impl Fn(Vec2) -> Option<Vec2>) -> Vec<FlatLine> {
         self.subpaths().iter().filter_map(|line| line.flatten(&map)).collect()
     }
+
+    /// The same in pieces so short that areas between them are exact.
+    pub fn flatten_for_area(&self, map: impl Fn(Vec2) -> Option<Vec2>) -> Vec<Vec<Vec2>> {
+        let flat = |line: &Subpath| Some(line.flatten_within(AREA_ERROR_PX, &map)?.points);
+        self.subpaths().iter().filter_map(flat).collect()
+    }
 }
 
 impl Subpath {
     /// The line in straight pieces, each point moved by a map; `None` where the map has none for
     /// one.
     pub fn flatten(&self, map: &impl Fn(Vec2) -> Option<Vec2>) -> Option<FlatLine> {
+        self.flatten_within(ERROR_PX, map)
+    }
+
+    fn flatten_within(
+        &self,
+        error_px: f32,
+        map: &impl Fn(Vec2) -> Option<Vec2>,
+    ) -> Option<FlatLine> {
         let mut out = FlatLine::default();
         if let Some(first) = self.nodes.first() {
             out.points.push(map(first.at)?);
@@ -39,7 +57,7 @@ impl Subpath {
         for (i, curve) in self.curves().enumerate() {
             let [a, b] = self.ends(i).map(|node| node.width);
             let moved = [map(curve[0])?, map(curve[1])?, map(curve[2])?, map(curve[3])?];
-            let pieces = count_pieces(moved);
+            let pieces = count_pieces(moved, error_px);
             for piece in 1..=pieces {
                 let t = piece as f32 / pieces as f32;
                 out.points.push(map(even_point_at(curve, t))?);
@@ -98,10 +116,10 @@ impl FlatLine {
 }
 
 /// Enough pieces that none runs farther from its curve than is allowed.
-fn count_pieces([a, b, c, d]: [Vec2; 4]) -> usize {
+fn count_pieces([a, b, c, d]: [Vec2; 4], error_px: f32) -> usize {
     // A cubic differs from its chord by at most an eighth of its second derivative.
     let bend = (a - 2.0 * b + c).length().max((b - 2.0 * c + d).length());
-    (0.75 * bend / ERROR_PX).sqrt().ceil().max(1.0).min(MOST_PIECES) as usize
+    (0.75 * bend / error_px).sqrt().ceil().max(1.0).min(MOST_PIECES) as usize
 }
 
 #[cfg(test)]

@@ -86,6 +86,8 @@ impl From<Vec<Subpath>> for PathGeometry {
 impl LivePath {
     /// The range of an outline, px.
     pub const OUTLINE: Range = 0.0..=4096.0;
+    /// How much longer than an outline's width a sharp corner may be.
+    pub const MITER: f32 = 4.0;
     /// The range of a dash, px.
     pub const DASH: Range = 0.0..=65_536.0;
     /// The most dashes and gaps.

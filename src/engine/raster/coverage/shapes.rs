@@ -70,7 +70,7 @@ pub fn polygon(corners: &[Vec2], within: Rect) -> CoverageGrid {
 ///
 /// * `has_holes`: what lies inside of an even number of them is outside.
 pub fn polygons(lines: &[&[Vec2]], has_holes: bool, within: Rect) -> CoverageGrid {
-    let lines = || lines.iter().filter(|corners| corners.len() >= 3);
+    let lines = || lines.iter().copied().filter(|corners| corners.len() >= 3);
     let corners = || lines().flat_map(|corners| corners.iter());
     if corners().next().is_none() || !corners().all(|p| p.is_finite()) {
         return CoverageGrid::default();
@@ -78,15 +78,47 @@ pub fn polygons(lines: &[&[Vec2]], has_holes: bool, within: Rect) -> CoverageGri
     let low = corners().fold(Vec2::INFINITY, |low, p| low.min(*p)).floor().as_ivec2();
     let high = corners().fold(Vec2::NEG_INFINITY, |high, p| high.max(*p)).ceil().as_ivec2();
     let area = Rect::new(low.x, low.y, high.x, high.y).intersect(within);
-    let closed = lines().flat_map(|corners| corners.iter().zip(corners.iter().cycle().skip(1)));
-    // Level edges part nothing above from below.
-    let edges: Vec<[Vec2; 2]> = closed.map(|(a, b)| [*a, *b]).filter(|[a, b]| a.y != b.y).collect();
+    let edges = edges(lines());
     let bands: Vec<Rect> = bands(area).collect();
-    let share = if has_holes { odd_share } else { inner_share };
+    let share = share_by(has_holes);
     let made: Vec<Vec<_>> = bands.par_iter().map(|&band| band_tiles(&edges, band, share)).collect();
     let mut grid = CoverageGrid::for_rect(area);
     made.into_iter().flatten().for_each(|(at, tile)| grid.set(at, tile));
     grid
+}
+
+/// The same over the rows of a rectangle that the polygons reach, the top row first: on the calling
+/// thread alone, for pictures that others wait for.
+///
+/// * `visit`: is told a row's y and its coverage.
+pub fn visit_rows(
+    lines: &[&[Vec2]],
+    has_holes: bool,
+    within: Rect,
+    mut visit: impl FnMut(i32, &[u8]),
+) {
+    let lines = || lines.iter().copied().filter(|corners| corners.len() >= 3);
+    let corners = || lines().flatten();
+    if !corners().all(|p| p.is_finite()) {
+        return;
+    }
+    let top = corners().fold(f32::INFINITY, |top, p| top.min(p.y)).floor() as i32;
+    let bottom = corners().fold(f32::NEG_INFINITY, |bottom, p| bottom.max(p.y)).ceil() as i32;
+    let reached = Rect { y0: within.y0.max(top), y1: within.y1.min(bottom), ..within };
+    let edges = edges(lines());
+    for band in bands(reached) {
+        visit_band(&edges, band, share_by(has_holes), &mut visit);
+    }
+}
+
+/// The edges of closed polygons, without level ones, which part nothing above from below.
+pub(super) fn edges<'a>(lines: impl Iterator<Item = &'a [Vec2]>) -> Vec<[Vec2; 2]> {
+    let closed = lines.flat_map(|corners| corners.iter().zip(corners.iter().cycle().skip(1)));
+    closed.map(|(a, b)| [*a, *b]).filter(|[a, b]| a.y != b.y).collect()
+}
+
+fn share_by(has_holes: bool) -> fn(f32) -> f32 {
+    if has_holes { odd_share } else { inner_share }
 }
 
 /// How much of a pixel lies inside, of its winding number averaged over it.
@@ -115,26 +147,15 @@ fn band_tiles(
     band: Rect,
     share: fn(f32) -> f32,
 ) -> Vec<(TileAt, Option<std::sync::Arc<CoverageTile>>)> {
-    let width = band.width();
-    let mut turned = vec![0.0f32; (width + 2) * band.height()];
-    for &[a, b] in edges {
-        add_edge(&mut turned, band, a, b);
-    }
-    let mut row = vec![0u8; width];
     let mut tiles: Vec<_> = TileAt::covering(band).map(|at| (at, blank(0))).collect();
-    for (y, turned) in (band.y0..).zip(turned.chunks_exact(width + 2)) {
-        let mut winding = 0.0f32;
-        for (to, change) in row.iter_mut().zip(turned) {
-            winding += change;
-            *to = (share(winding) * 255.0 + 0.5) as u8;
-        }
+    visit_band(edges, band, share, &mut |y, row| {
         for (at, bytes) in &mut tiles {
             let (tile, area) = (at.rect(), at.rect().intersect(band));
             let to = (y - tile.y0) as usize * TILE + (area.x0 - tile.x0) as usize;
             bytes[to..to + area.width()]
                 .copy_from_slice(&row[(area.x0 - band.x0) as usize..][..area.width()]);
         }
-    }
+    });
     tiles
         .into_iter()
         .map(|(at, mut bytes)| {
@@ -142,6 +163,29 @@ fn band_tiles(
             (at, CoverageTile::new(bytes))
         })
         .collect()
+}
+
+/// The rows of a band, and how much of each pixel is covered.
+fn visit_band(
+    edges: &[[Vec2; 2]],
+    band: Rect,
+    share: fn(f32) -> f32,
+    visit: &mut impl FnMut(i32, &[u8]),
+) {
+    let width = band.width();
+    let mut turned = vec![0.0f32; (width + 2) * band.height()];
+    for &[a, b] in edges {
+        add_edge(&mut turned, band, a, b);
+    }
+    let mut row = vec![0u8; width];
+    for (y, turned) in (band.y0..).zip(turned.chunks_exact(width + 2)) {
+        let mut winding = 0.0f32;
+        for (to, change) in row.iter_mut().zip(turned) {
+            winding += change;
+            *to = (share(winding) * 255.0 + 0.5) as u8;
+        }
+        visit(y, &row);
+    }
 }
 
 /// Adds what an edge changes along each row of a band, so that the running sum along a row is the
@@ -166,7 +210,7 @@ fn add_edge(turned: &mut [f32], band: Rect, a: Vec2, b: Vec2) {
 }
 
 /// One edge within one row, between two columns; parts beyond the row's ends are moved onto them.
-fn add_piece(row: &mut [f32], width: f64, a: f64, b: f64, height: f64) {
+pub(super) fn add_piece(row: &mut [f32], width: f64, a: f64, b: f64, height: f64) {
     let (low, high) = (a.min(b), a.max(b));
     if high <= 0.0 || low >= width || high - low < 1e-9 {
         let x = low.max(0.0).min(width);

@@ -74,6 +74,18 @@ impl DescriptorWriter {
         }
     }
 
+    /// A list of numbers of a unit.
+    pub fn measures(&mut self, name: &str, unit: &str, list: &[f64]) {
+        self.name(name);
+        self.values.extend(b"VlLs");
+        self.values.extend((list.len() as u32).to_be_bytes());
+        for value in list {
+            self.values.extend(b"UntF");
+            self.values.extend(unit.as_bytes());
+            self.values.extend(value.to_be_bytes());
+        }
+    }
+
     pub fn color(&mut self, name: &str, color: Color) {
         let mut inner = DescriptorWriter::default();
         for (name, byte) in [("Rd  ", color.r), ("Grn ", color.g), ("Bl  ", color.b)] {
@@ -92,9 +104,14 @@ impl DescriptorWriter {
 
     /// The descriptor after its version.
     pub fn into_bytes(self) -> Vec<u8> {
+        self.into_bytes_of("null")
+    }
+
+    /// The same of a class.
+    pub fn into_bytes_of(self, class: &str) -> Vec<u8> {
         const VERSION: u32 = 16;
         let mut out = VERSION.to_be_bytes().to_vec();
-        self.put(&mut out, "null");
+        self.put(&mut out, class);
         out
     }
 }

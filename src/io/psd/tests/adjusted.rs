@@ -5,7 +5,7 @@ use crate::math::Size;
 use crate::psd::merged::Merged;
 use crate::psd::parse::parse;
 use crate::psd::tree::build_document;
-use crate::psd::{self, compare};
+use crate::psd::{self, LayerRecord, compare};
 use crate::{Budget, pixels};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -68,7 +68,7 @@ fn layers_beside_the_pictures_in_the_files() {
     let folder = std::env::var("PSD_FOLDER").expect("PSD_FOLDER names a folder");
     let pictures = std::env::var("PSD_PICTURES").ok();
     let only = std::env::var("PSD_ONLY").unwrap_or_default();
-    let mut counts = BTreeMap::new();
+    let (mut counts, mut shapes) = (BTreeMap::new(), BTreeMap::new());
     for file in files_of(Path::new(&folder)) {
         let name = file.strip_prefix(&folder).unwrap_or(&file).to_string_lossy().into_owned();
         if !name.contains(&only) {
@@ -87,6 +87,7 @@ fn layers_beside_the_pictures_in_the_files() {
         let mut parsed = parse(Path::new(&name), &bytes, &budget).unwrap();
         let merged = parsed.merged.take().filter(|merged| merged.is_real);
         let has_layers = !parsed.records.is_empty();
+        parsed.records.iter().for_each(|record| count_shape(record, &mut shapes));
         let (document, _) = build_document(&mut parsed, &budget, &mut Vec::new());
         let verdict = match &merged {
             _ if !has_layers => "no layers",
@@ -114,4 +115,13 @@ fn layers_beside_the_pictures_in_the_files() {
         }
     }
     println!("{counts:?}");
+    println!("shapes: {shapes:#?}");
+}
+
+/// Counts a shape: whether it is a live path, and if not, why.
+fn count_shape(record: &LayerRecord, shapes: &mut BTreeMap<&'static str, usize>) {
+    let why = record.converted.iter().find(|what| what.starts_with("it is no live path"));
+    if let Some(what) = record.path.as_ref().map(|_| "live paths").or(why.copied()) {
+        *shapes.entry(what).or_default() += 1;
+    }
 }

@@ -3,7 +3,7 @@
 use super::made::*;
 use super::read_back;
 use crate::Budget;
-use crate::document::{Content, Document, MaskKind, Progress, flatten};
+use crate::document::{Content, Document, Progress, flatten};
 use crate::math::hash::mix;
 use crate::math::srgb::Color;
 use crate::paint::{EffectKind, RampStyle};
@@ -235,7 +235,7 @@ pub fn rectangle([x0, y0, x1, y1]: [f32; 4]) -> Vec<u8> {
 }
 
 #[test]
-fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
+fn a_solid_fill_with_a_vector_mask_is_a_path() {
     let fill = descriptor(&[("Clr ", rgb([200, 10, 20]))]);
     let mask = rectangle([0.0, 0.0, 0.5, 1.0]);
     let mut made = plain(4, 4, [100; 3]);
@@ -246,8 +246,9 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
     let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
     let layer = &back.document.layers[1];
-    assert!(matches!(layer.content, Content::Fill(Color { r: 200, g: 10, b: 20, a: 255 })));
-    assert!(matches!(layer.mask.as_ref().map(|mask| &mask.kind), Some(MaskKind::File { .. })));
+    let Content::Image(live) = &layer.content else { panic!("no path") };
+    let fill = live.params().source.path().and_then(|path| path.fill);
+    assert_eq!((fill, layer.mask.is_none()), (Some(Color::rgb(200, 10, 20)), true));
     assert_eq!(
         [pixel(&back.document, 1, 2), pixel(&back.document, 2, 2)],
         [[200, 10, 20, 255], [100, 100, 100, 255]]
@@ -259,7 +260,7 @@ fn a_solid_fill_with_a_vector_mask_is_a_fill_with_a_mask() {
     made.layers.as_mut().unwrap()[1] = with_pixels;
     let back = open(&made);
     assert_eq!(back.notes, [""; 0]);
-    assert!(matches!(back.document.layers[1].content, Content::Fill(_)));
+    assert!(matches!(back.document.layers[1].content, Content::Image(_)));
     assert_eq!(
         [pixel(&back.document, 1, 2), pixel(&back.document, 2, 2)],
         [[200, 10, 20, 255], [100, 100, 100, 255]]
@@ -280,7 +281,9 @@ fn colors_of_fills_are_light_where_channels_have_32_bits() {
     let back = open(&made);
     assert!(!back.notes.iter().any(|note| note.contains("differ")), "{:?}", back.notes);
     let [layer] = &back.document.layers[..] else { panic!("not one layer") };
-    assert!(matches!(layer.content, Content::Fill(Color { r: 128, g: 255, b: 0, a: 255 })));
+    let Content::Image(live) = &layer.content else { panic!("no path") };
+    let fill = live.params().source.path().and_then(|path| path.fill);
+    assert_eq!(fill, Some(Color::rgb(128, 255, 0)));
     assert_eq!(pixel(&back.document, 3, 0), [0; 4]);
 }
 

@@ -83,7 +83,7 @@ fn a_line_that_cannot_be_drawn_is_noted() {
 }
 
 #[test]
-fn a_shape_of_newer_blocks_is_a_fill() {
+fn a_shape_of_newer_blocks_is_a_path() {
     let fill = [b"SoCo".to_vec(), descriptor(&[("Clr ", rgb([200, 10, 20]))])].concat();
     let mask = rectangle([0.25, 0.25, 0.75, 0.75]);
     let mut made = plain(8, 8, [100; 3]);
@@ -91,6 +91,6 @@ fn a_shape_of_newer_blocks_is_a_fill() {
     made.layers.as_mut().unwrap().push(shape);
     made.merged = vec![vec![255; 64]; 3];
     let opened = open(&made);
-    assert!(matches!(opened.document.layers[1].content, Content::Fill(_)));
+    assert!(matches!(opened.document.layers[1].content, Content::Image(_)));
     assert_eq!(left_side(&opened), [GROUND, FILL, FILL, FILL]);
 }

@@ -140,3 +140,46 @@ fn the_ground_of_a_drawing_is_no_part_of_it() {
     let (session, _folder) = open_svg(script, &alone);
     assert_eq!(parts(&session), ["ground"], "there is no other");
 }
+
+#[test]
+fn the_outline_of_a_part_is_the_exact_area_of_its_path() {
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="64" height="48">
+        <clipPath id="c"><path d="M4.3 3 L60 9.1 L31.4 47 Z"/></clipPath>
+        <g clip-path="url(#c)"><path id="ring" fill="#c04040" fill-opacity="0.6" fill-rule="evenodd"
+            d="M6.2 5.1 L57.7 3.4 L50.3 40.9 L9.9 44.6 Z M20 14.5 L33.3 16 L25.1 27.2 Z"/></g></svg>"##;
+    let script = r#"{"in":"file","do":"open","file":"FILE"}
+{"in":"part","do":"shape paths","layer":"0","file":"FILE","preset":"pillow"}"#;
+    let (session, _folder) = open_svg(script, svg);
+    let document = session.active().unwrap().document();
+    let surface = document.surface.as_ref().unwrap();
+    let scale = document.size.width as f32 / 64.0;
+    let polygons: [&[(f32, f32)]; 3] = [
+        &[(6.2, 5.1), (57.7, 3.4), (50.3, 40.9), (9.9, 44.6)],
+        &[(20.0, 14.5), (33.3, 16.0), (25.1, 27.2)],
+        &[(4.3, 3.0), (60.0, 9.1), (31.4, 47.0)],
+    ];
+    let is_within = |polygon: &[(f32, f32)], (x, y): (f32, f32)| {
+        let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
+        let crosses = |((ax, ay), (bx, by)): &(&(f32, f32), &(f32, f32))| {
+            (*ay <= y) != (*by <= y) && x < ax + (y - ay) / (by - ay) * (bx - ax)
+        };
+        sides.filter(crosses).count() % 2 == 1
+    };
+    let is_inside = |p: (f32, f32)| {
+        is_within(polygons[0], p) && !is_within(polygons[1], p) && is_within(polygons[2], p)
+    };
+    let (mut most, mut edges) = (0.0f32, 0);
+    for (x, y) in
+        (0..document.size.height).flat_map(|y| (0..document.size.width).map(move |x| (x, y)))
+    {
+        let points = (0..1024).map(|i| {
+            let (i, j) = ((i % 32) as f32, (i / 32) as f32);
+            ((x as f32 + (i + 0.5) / 32.0) / scale, (y as f32 + (j + 0.5) / 32.0) / scale)
+        });
+        let share = points.filter(|p| is_inside(*p)).count() as f32 / 1024.0;
+        let covered = f32::from(surface.coverage(x as usize, y as usize));
+        most = most.max((covered - 255.0 * share).abs());
+        edges += usize::from(share > 0.0 && share < 1.0);
+    }
+    assert!(edges > 150 && most < 6.0, "{most} of 255 at {edges} edges");
+}

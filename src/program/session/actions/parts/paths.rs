@@ -14,7 +14,7 @@ use crate::math::{Affine2, Size, Vec2};
 use crate::paint::path::StraightCut;
 use crate::paint::{LivePath, PathRule, PlacedImage, Subpath};
 use crate::raster::CoverageGrid;
-use crate::raster::coverage::{product, shapes};
+use crate::raster::coverage::product;
 use crate::shape::flats::areas::LEAST_SHARE;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -149,11 +149,7 @@ fn is_solid(shape: &SvgShape) -> bool {
 
 /// How much of the canvas a shape covers, px.
 fn visible_area_px(shape: &SvgShape, canvas: Size) -> f64 {
-    let inside = |path: &LivePath| -> CoverageGrid {
-        let lines = path.flatten(Some);
-        let polygons: Vec<&[Vec2]> = lines.iter().map(|line| &line.points[..]).collect();
-        shapes::polygons(&polygons, path.rule == PathRule::EvenOdd, canvas.rect())
-    };
+    let inside = |path: &LivePath| path.inside(canvas.rect());
     let clipped = |own: CoverageGrid, clip: &LivePath| own.combined(&inside(clip), product);
     shape.clips.iter().fold(inside(&shape.path), clipped).area_px()
 }
