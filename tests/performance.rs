@@ -2,6 +2,8 @@
 
 #[path = "../benches/page/figures.rs"]
 mod figures;
+#[path = "../benches/page/plot.rs"]
+mod plot;
 
 use figures::Figures;
 use std::fs;
@@ -18,6 +20,10 @@ fn the_page_of_speed_holds_the_kept_figures() {
     let template = read("benches/page/template.md");
     assert!(
         figures.fill(&template) == read("docs/PERFORMANCE.md"),
+        "run: cargo run --example performance_page"
+    );
+    assert!(
+        plot::lamps(&figures) == read("docs/lamps.svg"),
         "run: cargo run --example performance_page"
     );
     // A dash is what the run does not hold.
@@ -70,4 +76,19 @@ fn figures_of_benches_that_did_not_run_stay() {
     );
     let expected = "another\nengine; copy; 0.9\nframe; a zoom; 14.4 15.5\n";
     assert_eq!(before.with_run(run).print(), expected);
+}
+
+#[test]
+fn times_become_curves_on_round_scales() {
+    let figures = Figures::parse(
+        "a machine\nlamps; layer_plain/1; 40 45 50\nlamps; layer_plain/250; 360 365 370\n\
+         lamps; canvas_plain/(2000, 1000); 30 35 40\nother; layer_plain/9; 9 9 9\n",
+    );
+    assert_eq!(figures.under("lamps", "layer_plain", 3), [("1", 50.0), ("250", 370.0)]);
+    let svg = plot::lamps(&figures);
+    // 250 lamps and 400 ms end the first panel, 2 megapixels and 30 ms the second.
+    for ends in ["M46.8 175.8L246.0 46.2\"", "M246.0 30.0\"", ">250<", ">400<", ">30<", ">0.5<"] {
+        assert!(svg.contains(ends), "{ends} in {svg}");
+    }
+    assert_eq!(svg.matches("<circle").count(), 3, "{svg}");
 }

@@ -81,6 +81,21 @@ impl Figures {
         page
     }
 
+    /// The rows of a bench whose names begin with a branch, such as `plain/8`: what follows it, and
+    /// one of the columns, from 1 on.
+    pub fn under(&self, bench: &str, branch: &str, column: usize) -> Vec<(&str, f64)> {
+        let mut found = Vec::new();
+        for row in self.rows.iter().filter(|row| row.bench == bench) {
+            let value = row.values.get(column.saturating_sub(1)).and_then(|v| v.parse().ok());
+            if let (Some((first, rest)), Some(value)) = (row.name.split_once('/'), value)
+                && first == branch
+            {
+                found.push((rest, value));
+            }
+        }
+        found
+    }
+
     fn value(&self, place: &str) -> Option<String> {
         if place == "machine" {
             return Some(self.machine.clone());

@@ -1,4 +1,4 @@
-//! Makes `docs/PERFORMANCE.md` of what the benches printed.
+//! Makes `docs/PERFORMANCE.md` and its plots of what the benches printed.
 //!
 //! ```sh
 //! cargo bench 2>&1 | tee bench.txt
@@ -10,6 +10,7 @@
 //! arguments the page is made again from the figures as they are.
 
 mod figures;
+mod plot;
 
 use figures::Figures;
 use std::path::Path;
@@ -27,5 +28,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let page = figures.fill(&std::fs::read_to_string(root.join("benches/page/template.md"))?);
     std::fs::write(kept, figures.print())?;
     std::fs::write(root.join("docs/PERFORMANCE.md"), page)?;
+    std::fs::write(root.join("docs/lamps.svg"), plot::lamps(&figures))?;
     Ok(())
 }
