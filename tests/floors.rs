@@ -95,7 +95,7 @@ fn named_modules(code: &str) -> Vec<&str> {
     let mut named = named_beneath(code, "crate::");
     // What is re-exported at the top (types, macros) is on floor 0.
     named.retain(|name| {
-        name.starts_with(|c: char| c.is_lowercase()) && !["widest", "named"].contains(name)
+        name.starts_with(|c: char| c.is_lowercase()) && !["widest", "named", "tr"].contains(name)
     });
     named
 }

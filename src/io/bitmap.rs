@@ -153,6 +153,9 @@ pub fn icc_profile(file: &Path, bytes: &[u8], budget: &Budget) -> Option<Vec<u8>
         return Some(icc);
     }
     let profile = || {
+        if format == ImageFormat::Tiff {
+            return tiff::icc_profile(bytes);
+        }
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         reader.limits(limits(format, bytes, budget));
         reader.into_decoder().ok()?.icc_profile().ok()?

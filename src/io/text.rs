@@ -91,7 +91,7 @@ fn lay_out_over(
         .iter()
         .map(|line| Ok(PlacedLine { shaped: shaped::shape(text, line)?, at: place(text, line) }))
         .collect::<Result<_>>()?;
-    let all = shaped.iter().fold(None, |all, line| join(all, line.inked()));
+    let all = shaped.iter().fold(None, |all, line| join(all, line.inked_rect()));
     let bounds = bounds(all.map(|inked| around(text, &broken, inked)));
     let mut elements = String::new();
     shaped

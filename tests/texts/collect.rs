@@ -228,7 +228,17 @@ fn shown_as(
     if is_of_files && is_key(text, tokens, at, open) {
         return None;
     }
-    is_text(text, is_of_files).then(|| template(text))
+    let is_phrases_only = is_of_files && !is_label_of_choice(tokens, at);
+    is_text(text, is_phrases_only).then(|| template(text))
+}
+
+/// The label in `Variant = "name" => ("Label", …)`.
+fn is_label_of_choice(tokens: &[Token], at: usize) -> bool {
+    let Some(from) = at.checked_sub(4) else { return false };
+    matches!(
+        tokens[from..at],
+        [Token::Text(_), Token::Mark('='), Token::Mark('>'), Token::Mark('(')]
+    )
 }
 
 /// What an opening mark belongs to: the name before it, with the mark of a macro.

@@ -26,6 +26,9 @@ const SHOW: &[&str] = &[
     "weak",
 ];
 
+/// The program's name, which is the same in every language.
+const PROGRAM: &str = "Rilievo";
+
 /// Types of the toolkit that are made of a text.
 const MADE_OF: &[&str] = &["Button", "CollapsingHeader", "RichText", "Window"];
 
@@ -50,7 +53,9 @@ fn unwrapped_texts(source: &Source) -> Vec<String> {
                 open.push(shows);
             }
             Token::Mark(')' | ']' | '}') => drop(open.pop()),
-            Token::Text(text) if open.last() == Some(&true) && is_text(text, false) => {
+            Token::Text(text)
+                if open.last() == Some(&true) && is_text(text, false) && text != PROGRAM =>
+            {
                 found.push(text.clone());
             }
             _ => {}
@@ -61,7 +66,10 @@ fn unwrapped_texts(source: &Source) -> Vec<String> {
 
 /// A method of the toolkit, or the function that names a widget.
 fn is_method_or_own(tokens: &[Token], at: usize, callee: &str) -> bool {
+    // `colors::button` is the window's own, which translates its name.
+    let is_own = at >= 4 && tokens[at - 4].word() == Some("colors");
     let is_method = at >= 2 && (tokens[at - 2].is_mark('.') || tokens[at - 2].is_mark(':'));
+    let is_method = is_method && !is_own;
     SHOW.contains(&callee) && (is_method || callee == "set_accessible_name")
 }
 

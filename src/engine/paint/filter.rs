@@ -189,10 +189,11 @@ crate::widest! {
         for pixel in pixels {
             let a = pixel[3].max(0.0).min(1.0);
             let most = a * brightest;
-            for k in 0..3 {
-                pixel[k] = pixel[k].max(0.0).min(most);
+            let [r, g, b, alpha] = pixel;
+            for value in [r, g, b] {
+                *value = value.max(0.0).min(most);
             }
-            pixel[3] = a;
+            *alpha = a;
         }
     }
 }

@@ -65,6 +65,11 @@ enum AlphaKind {
     Associated,
 }
 
+/// The ICC profile of the first picture of a TIFF.
+pub fn icc_profile(bytes: &[u8]) -> Option<Vec<u8>> {
+    Decoder::new(Cursor::new(bytes)).ok()?.get_tag_u8_vec(Tag::IccProfile).ok()
+}
+
 /// Decodes the first picture of a TIFF.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let entry = photometric(bytes);

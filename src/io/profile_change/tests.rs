@@ -165,7 +165,7 @@ fn each_kind_of_layer_looks_the_same_once_it_is_converted() {
     files.0.insert("level.png".into(), png(64, 64, |_, _| [128, 128, 255, 255]));
     let gray = json!({ "name": "ground", "kind": "fill", "color": "#808080" });
     let ramp = |color: &str| json!([[0, color], [1, color]]);
-    let pattern = json!({ "name": "p", "width": 1, "height": 1, "pixels": "KKBa/w==" });
+    let pattern = json!({ "name": "p", "width": 1, "height": 1, "pixels": "KKBa/w" });
     let line = json!([[0, 32], [64, 32]]);
     let kinds = [
         ("fill", json!({ "kind": "fill", "color": "#c83c32" })),

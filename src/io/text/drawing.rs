@@ -20,7 +20,7 @@ pub(super) struct PlacedLine {
 
 impl PlacedLine {
     /// All that is inked of it, px.
-    pub fn inked(&self) -> Option<usvg::Rect> {
+    pub fn inked_rect(&self) -> Option<usvg::Rect> {
         let (x, y) = (self.at.x, self.at.y);
         let inked = self.shaped.inked?;
         let (left, top) = (inked.left() + x, inked.top() + y);

@@ -212,9 +212,9 @@ impl ExportDialog {
     fn profile(&mut self, ui: &mut Ui, document: Option<&Document>) {
         if document.is_some_and(|document| document.profile != ColorProfile::Srgb) {
             let mut is_converted = self.settings.profile == Some(ColorProfile::Srgb);
-            check_box(ui, &mut is_converted, "Convert to sRGB").on_hover_text(
-                "For programs that ignore color profiles; else the file names the document's",
-            );
+            let hint =
+                "For programs that ignore color profiles; else the file names the document's";
+            check_box(ui, &mut is_converted, "Convert to sRGB").on_hover_text(tr(hint));
             self.settings.profile = is_converted.then_some(ColorProfile::Srgb);
         }
     }

@@ -86,7 +86,7 @@ impl NewDialog {
             }
         });
         ui.horizontal(|ui| {
-            ui.label("Color profile");
+            ui.label(tr("Color profile"));
             profile_choice(ui, &mut self.profile);
         });
         match buttons(ui, "Create", true) {

@@ -21,11 +21,13 @@ const NEWS: &[VersionNews] = &[
         rows: &[
             (
                 "A shape from a drawing",
-                "Give a cut-out drawing a shape: one part, or one for each flat color. Puff, tilt, touch and sculpt it.",
+                "Give a cut-out drawing a shape: one part, or one for each flat color. Puff, tilt, touch \
+                 and sculpt it.",
             ),
             (
                 "A painter's light",
-                "Key, fill, bounce, rim and cast shadows in six moods; the lamp is dragged on the canvas. Ink stays ink.",
+                "Key, fill, bounce, rim and cast shadows in six moods; the lamp is dragged on the canvas. \
+                 Ink stays ink.",
             ),
             (
                 "Materials and looks",
@@ -41,7 +43,8 @@ const NEWS: &[VersionNews] = &[
             ),
             (
                 "Adjustments, filters, effects",
-                "Sixteen adjustments, nineteen filters and ten layer effects, live, and read from Photoshop files and written to them.",
+                "Sixteen adjustments, nineteen filters and ten layer effects, live, and read from \
+                 Photoshop files and written to them.",
             ),
             (
                 "Selections and transforms",

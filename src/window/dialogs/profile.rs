@@ -3,10 +3,12 @@
 
 use super::{DialogAnswer, buttons, set_width};
 use crate::io::profile_change::ProfileChange;
+use crate::language::tr;
 use crate::math::ColorProfile;
 use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::CanvasAction;
+use crate::tr;
 use crate::widgets::radio;
 use eframe::egui::Ui;
 
@@ -26,12 +28,13 @@ impl ProfileDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 360.0);
-        ui.heading("Color profile");
-        ui.weak(format!("The document's numbers mean colors of {} now.", self.from.label()));
+        ui.heading(tr("Color profile"));
+        let profile = self.from.label();
+        ui.weak(tr!("The document's numbers mean colors of {profile} now.", profile));
         ui.horizontal(|ui| profile_choice(ui, &mut self.to));
         for (change, label) in ProfileChange::LABELS {
             radio(ui, &mut self.change, change, label);
-            ui.weak(change.hint());
+            ui.weak(tr(change.hint()));
         }
         match buttons(ui, "Change", self.to != self.from) {
             Some(true) => {

@@ -2,6 +2,7 @@
 //! the current one. Floor 7.
 
 use super::brush;
+use super::words::{preset_about, preset_name};
 use crate::brush_shelf::BrushShelf;
 use crate::file_purpose::FilePurpose;
 use crate::icons::{BUTTON_PT, Icon, icon_button};
@@ -100,22 +101,6 @@ fn presets(
     }
     if let Some((key, on)) = marked {
         shelf.mark(&key, on);
-    }
-}
-
-/// What a preset is called: the program's own in the language of the window.
-pub fn preset_name(preset: &BrushPreset) -> &str {
-    match preset.group {
-        PresetGroup::Imported => &preset.name,
-        _ => tr(&preset.name),
-    }
-}
-
-/// What is said about a preset.
-pub fn preset_about(preset: &BrushPreset) -> &str {
-    match preset.group {
-        PresetGroup::Imported => &preset.about,
-        _ => tr(&preset.about),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The second tip of the current brush. Floor 7. Not here: the rest of the brush (`brush`).
 
 use super::brush_tip::{self, TipChoice};
-use super::brushes::preset_name;
+use super::words::preset_name;
 use crate::io::recipe::PresetGroup;
 use crate::language::tr;
 use crate::math::NumberSetting;

@@ -1,7 +1,7 @@
 //! Properties of drawings by the form: which lines, brush and color, the hand, the light. Floor 7.
 
-use super::brushes::{preset_about, preset_name};
 use super::setter::LayerSetter;
+use super::words::{preset_about, preset_name};
 use super::{colors, painter};
 use crate::document::{Content, Layer};
 use crate::io::recipe::presets;

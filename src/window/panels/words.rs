@@ -1,5 +1,6 @@
-//! Labels of the window within its sentences. Floor 7.
+//! Labels of the window within its sentences, and the names of what comes with the program. Floor 7.
 
+use crate::io::recipe::{BrushPreset, PresetGroup};
 use crate::language::{Language, language, tr};
 use std::borrow::Cow;
 
@@ -9,6 +10,22 @@ pub fn translate_within(label: &str) -> Cow<'_, str> {
     match language() {
         Language::English => Cow::Owned(label.to_lowercase()),
         _ => Cow::Borrowed(tr(label)),
+    }
+}
+
+/// What a preset is called: the program's own in the language of the window.
+pub fn preset_name(preset: &BrushPreset) -> &str {
+    match preset.group {
+        PresetGroup::Imported => &preset.name,
+        _ => tr(&preset.name),
+    }
+}
+
+/// What is said about a preset.
+pub fn preset_about(preset: &BrushPreset) -> &str {
+    match preset.group {
+        PresetGroup::Imported => &preset.about,
+        _ => tr(&preset.about),
     }
 }
 

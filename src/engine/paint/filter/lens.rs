@@ -324,8 +324,8 @@ crate::widest! {
     fn divide(sums: &mut [[f32; 4]], covered: &[f32]) {
         for (sum, covered) in sums.iter_mut().zip(covered) {
             let per = 1.0 / covered.max(1e-4);
-            for k in 0..4 {
-                sum[k] *= per;
+            for value in sum {
+                *value *= per;
             }
         }
     }

@@ -7,6 +7,7 @@ use crate::io::export::ExportOptions;
 use crate::io::export::high_depth::encode_document;
 use crate::io::project::{self, Archive};
 use crate::io::{Budget, picture, psd, recipe};
+use crate::math::ColorProfile;
 use crate::raster::picture::Texels;
 use crate::session::actions::Action;
 use crate::session::memory::HeldDocuments;
@@ -211,7 +212,7 @@ fn is_kept(document: &Document, all_formats: bool) -> Kept {
     }
     let picture = render(document)?;
     same_bytes("reopened, another picture", &picture, &render(&read.document)?)?;
-    same_bytes("the merged picture", &picture, &read_merged(file, &bytes)?)?;
+    same_bytes("the merged picture", &picture, &read_merged(file, &bytes, document.profile)?)?;
     let again = project::write(file, &read.document, &progress)
         .map_err(|error| Broken::from_message("not saved again", error))?;
     if again.is_none_or(|again| again != bytes) {
@@ -252,7 +253,7 @@ fn compare_exports(
             same_bytes(
                 "exported, another picture",
                 once.as_deref().unwrap_or(picture),
-                &decode(file, &bytes[0])?,
+                &decode(file, &bytes[0], document.profile)?,
             )?;
         }
     }
@@ -279,14 +280,16 @@ fn is_kept_by_photoshop(document: &Document, picture: &[u8]) -> Kept {
 }
 
 /// The picture in a project.
-fn read_merged(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
+fn read_merged(file: &Path, bytes: &[u8], profile: ColorProfile) -> Result<Vec<u8>, Broken> {
     let archive = Archive::open(file, bytes, &Budget::default());
     let merged = archive.and_then(|archive| archive.bytes("mergedimage.png", u64::MAX));
-    decode(file, &merged.map_err(|error| Broken::from_message("no merged picture", error))?)
+    let merged = merged.map_err(|error| Broken::from_message("no merged picture", error))?;
+    decode(file, &merged, profile)
 }
 
-fn decode(file: &Path, bytes: &[u8]) -> Result<Vec<u8>, Broken> {
-    let picture = picture::decode(file, bytes, &Budget::default())
+/// The numbers of a picture in the profile of a document.
+fn decode(file: &Path, bytes: &[u8], profile: ColorProfile) -> Result<Vec<u8>, Broken> {
+    let picture = picture::decode(file, bytes, &Budget { profile, ..Budget::default() })
         .map_err(|error| Broken::from_message("not decoded", error))?;
     match picture.texels {
         Texels::Srgb8(texels) => Ok(texels.as_flattened().to_vec()),
