@@ -1,6 +1,6 @@
 //! From the event to the pixel, in the real window on a display of its own: an anchor of a photo on
 //! a map of 3840 × 2160 dragged; a brush and a pan on it and on a project of ten layers of 4096 ×
-//! 4096. Milliseconds from the pointer's motion until the screen changes there, or for the brush
+//! 4096; a gloss brush on ten layers of 2048 × 2048 over a dome. Milliseconds from the pointer's motion until the screen changes there, or for the brush
 //! until it is dark beneath the pen.
 //!
 //! `cargo bench --bench window`. Needs Xvfb and xdotool, and says so if they are missing. A program
@@ -21,11 +21,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 mod x11 {
     use image::RgbImage;
     use rilievo::document::PixelLayer;
-    use rilievo::{Content, Document, Layer, Progress, Size, TileGrid};
+    use rilievo::math::vec3;
+    use rilievo::raster::Plane;
+    use rilievo::{Content, Document, Layer, Maps, Progress, Size, Surface, TileGrid};
     use rilievo_engine::math::hash;
     use rilievo_io::project;
     use std::path::{Path, PathBuf};
     use std::process::{Child, Command, Stdio};
+    use std::sync::Arc;
     use std::thread::sleep;
     use std::time::{Duration, Instant};
     use x11rb::connection::Connection;
@@ -57,12 +60,16 @@ mod x11 {
             "{:<44} {:>8} {:>8} {:>8}",
             "ms from the event to the pixel", "middle", "9 of 10", "slowest"
         );
-        let (map, project) = (photo_on_a_map(folder.path())?, ten_layers(folder.path())?);
+        let map = photo_on_a_map(folder.path())?;
+        let project = ten_layers(&folder.path().join("layers.ora"), 4096, None)?;
+        let dome = Some(dome(2048)?.into());
+        let dome = ten_layers(&folder.path().join("dome.ora"), 2048, dome)?;
         let mut stage = Stage::new(&map, folder.path())?;
         stage.drag_anchor("3840 × 2160")?;
         stage.paint_and_look("3840 × 2160")?;
         drop(stage);
-        Stage::new(&project, folder.path())?.paint_and_look("ten layers of 4096²")
+        Stage::new(&project, folder.path())?.paint_and_look("ten layers of 4096²")?;
+        Stage::new(&dome, folder.path())?.paint_gloss("ten layers of 2048²")
     }
 
     /// Pale, so that black paint is seen anywhere.
@@ -99,8 +106,24 @@ mod x11 {
         Ok(file)
     }
 
-    fn ten_layers(folder: &Path) -> Result<PathBuf> {
-        const LARGE: u32 = 4096;
+    /// Normals lean outward, each differently, so that a bent dab is seen once.
+    fn dome(side: u32) -> Result<Surface> {
+        let size = Size::new(side, side);
+        let from_middle = |v: usize| 1.6 * (v as f32 / side as f32 - 0.5);
+        let normal = |x: usize, y: usize| {
+            let (x, y) = (from_middle(x), -from_middle(y));
+            vec3(0.8 * x, 0.8 * y, (1.0 - 0.64 * (x * x + y * y)).max(0.01).sqrt())
+        };
+        Ok(Surface::new(Maps {
+            normals: Plane::from_fn(size, normal),
+            depth: Plane::from_fn(size, |x, y| {
+                0.2 + 0.5 * (from_middle(x).powi(2) + from_middle(y).powi(2))
+            }),
+            coverage: Plane::full(size, 255),
+        })?)
+    }
+
+    fn ten_layers(file: &Path, side: u32, surface: Option<Arc<Surface>>) -> Result<PathBuf> {
         let layer = |i: u32| {
             let alpha = |x: u32, y: u32| {
                 if i == 0 { 255 } else { hash::mix(x / 256 + 61 * (y / 256) + i) as u8 / 2 }
@@ -109,8 +132,8 @@ mod x11 {
                 [pale(x + i, y, 0), pale(x, y + i, 1), pale(x, y, 2 + i), alpha(x, y)]
             };
             let rgba: Vec<u8> =
-                (0..LARGE).flat_map(|y| (0..LARGE).flat_map(move |x| pixel(x, y))).collect();
-            let tiles = TileGrid::from_straight_rgba(&rgba, LARGE as usize, LARGE as usize, 0, 0);
+                (0..side).flat_map(|y| (0..side).flat_map(move |x| pixel(x, y))).collect();
+            let tiles = TileGrid::from_straight_rgba(&rgba, side as usize, side as usize, 0, 0);
             Layer::new(
                 format!("{i}"),
                 Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }),
@@ -119,14 +142,12 @@ mod x11 {
         };
         let document = Document {
             layers: (0..10).map(layer).collect(),
-            ..Document::empty(Size::new(LARGE, LARGE))
+            surface,
+            ..Document::empty(Size::new(side, side))
         };
-        let file = folder.join("layers.ora");
-        std::fs::write(
-            &file,
-            project::write(&file, &document, &Progress::default())?.ok_or("canceled")?,
-        )?;
-        Ok(file)
+        let bytes = project::write(file, &document, &Progress::default())?.ok_or("canceled")?;
+        std::fs::write(file, bytes)?;
+        Ok(file.to_path_buf())
     }
 
     /// A program that ends with it.
@@ -312,6 +333,16 @@ mod x11 {
             self.wait_until_still()?;
             self.paint(&format!("a brush, a part of {of}"), 50)?;
             self.drag(&format!("a pan over {of}"), "2", (12, 7), (100, 100))
+        }
+
+        /// A gloss brush, three steps larger than at first: 138 px.
+        fn paint_gloss(&mut self, of: &str) -> Result<()> {
+            self.xdotool(&["key", "b", "F3", "bracketright", "bracketright", "bracketright"])?;
+            self.wait_until_still()?;
+            self.paint(&format!("a gloss brush, all of {of}"), 40)?;
+            self.xdotool(&["key", "1"])?;
+            self.wait_until_still()?;
+            self.paint(&format!("a gloss brush, a part of {of}"), 80)
         }
 
         /// Four lines; `step` px between two motions, more than a radius.

@@ -99,12 +99,15 @@ impl ShapeLine {
 
     /// The outline of a path, which has one; `None` where the format cannot hold it.
     pub fn of_path(path: &LivePath) -> Option<Self> {
+        if path.outline <= 0.0 || path.outline > WIDEST_PX {
+            return None;
+        }
         let opacity = f32::from(path.outline_color.a) / 255.0;
         let mut dashes = path.dashes.clone();
         if dashes.len() % 2 == 1 {
             dashes.extend_from_within(..);
         }
-        (path.outline > 0.0 && path.outline <= WIDEST_PX).then(|| Self {
+        Some(Self {
             fill: LayerFill::Solid(Color { a: 255, ..path.outline_color }),
             opacity,
             blend: BlendMode::Normal,

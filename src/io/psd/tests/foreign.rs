@@ -247,8 +247,8 @@ fn a_solid_fill_with_a_vector_mask_is_a_path() {
     assert_eq!(back.notes, [""; 0]);
     let layer = &back.document.layers[1];
     let Content::Image(live) = &layer.content else { panic!("no path") };
-    let fill = live.params().source.path().and_then(|path| path.fill);
-    assert_eq!((fill, layer.mask.is_none()), (Some(Color::rgb(200, 10, 20)), true));
+    let inside = live.params().source.path().and_then(|path| path.fill);
+    assert_eq!((inside, layer.mask.is_none()), (Some(Color::rgb(200, 10, 20)), true));
     assert_eq!(
         [pixel(&back.document, 1, 2), pixel(&back.document, 2, 2)],
         [[200, 10, 20, 255], [100, 100, 100, 255]]
