@@ -102,12 +102,16 @@ impl ShapeLine {
         if path.outline <= 0.0 || path.outline > WIDEST_PX {
             return None;
         }
+        Some(Self::of_outline(path))
+    }
+
+    fn of_outline(path: &LivePath) -> Self {
         let opacity = f32::from(path.outline_color.a) / 255.0;
         let mut dashes = path.dashes.clone();
         if dashes.len() % 2 == 1 {
             dashes.extend_from_within(..);
         }
-        Some(Self {
+        Self {
             fill: LayerFill::Solid(Color { a: 255, ..path.outline_color }),
             opacity,
             blend: BlendMode::Normal,
@@ -127,13 +131,13 @@ impl ShapeLine {
             dashes,
             dash_offset_px: 0.0,
             coverage: None,
-        })
+        }
     }
 
     /// What is written of a shape without a line.
     pub fn unseen() -> Self {
         let black = LivePath { outline: 1.0, ..LivePath::new(Vec::new()) };
-        Self::of_path(&black).unwrap_or_else(|| unreachable!("it has an outline"))
+        Self::of_outline(&black)
     }
 
     /// A path with this line as its outline; what is noted where no path has it.

@@ -48,7 +48,11 @@ fn a_line_lies_within_around_or_on_the_edge_of_its_shape() {
     assert_eq!(left_side(&inside), [GROUND, LINE, FILL, FILL]);
     let Content::Group(group) = &inside.document.layers[1].content else { panic!("a group") };
     assert!(group.layers.iter().all(|layer| matches!(layer.content, Content::Fill(_))));
-    assert!(!inside.notes.iter().any(|note| note.contains("line")), "{:?}", inside.notes);
+    assert!(
+        inside.notes[0].contains("the line of a path here lies half inside"),
+        "{:?}",
+        inside.notes
+    );
     let outside = shape_with_line("strokeStyleAlignOutside", px(1.0), &[]);
     assert_eq!(left_side(&outside), [LINE, FILL, FILL, FILL]);
     let center = shape_with_line("strokeStyleAlignCenter", px(2.0), &[]);
