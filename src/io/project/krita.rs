@@ -9,7 +9,8 @@ use super::reader::ProjectReader;
 use crate::document::{
     Content, Document, Group, Layer, LayerLock, LayerMask, MaskKind, PixelLayer,
 };
-use crate::math::Size;
+use crate::icc_profiles::is_display_p3;
+use crate::math::{ColorProfile, Size};
 use crate::raster::{BlendMode, Plane, TileGrid};
 use crate::{Error, Result};
 use maindoc::KritaNode;
@@ -18,21 +19,35 @@ use std::sync::Arc;
 
 /// The entry that lists the layers.
 pub const MAINDOC: &str = "maindoc.xml";
+/// How the name of the entry with the image's ICC profile ends.
+const IMAGE_PROFILE: &str = "/annotations/icc";
 
-/// A document of the layers that `maindoc.xml` lists.
+/// A document of the layers that `maindoc.xml` lists, in Display P3 if the image is.
 pub fn document(reading: &mut ProjectReader) -> Result<Document> {
     let text = reading.archive.bytes(MAINDOC, reading.budget.json_bytes)?;
     let image = maindoc::read(reading.file, &text, reading.budget)?;
+    let profile = image_profile(reading);
     let entries = reading.archive.names().into_iter().filter(|name| name.contains("/layers/"));
     let entries = entries.map(str::to_owned).collect();
-    let mut reader = KritaReader { size: image.size, reading, entries, used_px: 0, used_bytes: 0 };
+    let size = image.size;
+    let mut reader = KritaReader { size, profile, reading, entries, used_px: 0, used_bytes: 0 };
     let layers = reader.layers(&image.layers)?;
-    Ok(Document { layers, ..Document::empty(image.size) })
+    Ok(Document { layers, profile, ..Document::empty(size) })
+}
+
+fn image_profile(reading: &ProjectReader) -> ColorProfile {
+    let names = reading.archive.names();
+    let entry = names.into_iter().find(|name| name.ends_with(IMAGE_PROFILE));
+    let icc = entry.and_then(|name| reading.archive.bytes(name, reading.budget.file_bytes).ok());
+    let is_p3 = icc.is_some_and(|icc| is_display_p3(&icc));
+    if is_p3 { ColorProfile::DisplayP3 } else { ColorProfile::Srgb }
 }
 
 struct KritaReader<'a, 'b> {
     reading: &'a mut ProjectReader<'b>,
     size: Size,
+    /// The document's.
+    profile: ColorProfile,
     /// Entries of layers.
     entries: Vec<String>,
     used_px: u64,
@@ -154,10 +169,16 @@ impl KritaReader<'_, '_> {
         let Some(pixels) = self.read_pixels(node, "")? else { return Ok(layer) };
         let icc = self.entry(node, ".icc").and_then(|entry| self.bytes(&entry).ok());
         let is_srgb = node.text("profile").to_lowercase().starts_with("srgb");
-        layer.tiles =
-            pixels.tiles(format, icc.filter(|_| !is_srgb).as_deref()).ok_or_else(|| {
-                Error::decode(self.reading.file, format!("“{}” is damaged", node.text("name")))
-            })?;
+        let has_own =
+            self.profile == ColorProfile::DisplayP3 && icc.as_deref().is_some_and(is_display_p3);
+        let icc = icc.filter(|_| !is_srgb && !has_own);
+        layer.tiles = pixels.tiles(format, icc.as_deref()).ok_or_else(|| {
+            Error::decode(self.reading.file, format!("“{}” is damaged", node.text("name")))
+        })?;
+        let conversion = ColorProfile::Srgb.conversion_to(self.profile).filter(|_| !has_own);
+        if let Some(by) = conversion {
+            layer.tiles = layer.tiles.converted(by).0;
+        }
         if !self.reading.budget.sixteen_bit_paint {
             layer.tiles = layer.tiles.rounded();
         }

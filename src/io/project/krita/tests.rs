@@ -100,6 +100,47 @@ fn layers_groups_masks_and_modes_come_back_and_what_is_lost_is_named() {
 }
 
 #[test]
+fn an_image_in_display_p3_keeps_its_numbers_and_converts_layers_of_other_profiles() {
+    use crate::icc_profiles::icc_of;
+    use crate::math::ColorProfile;
+    let node = |name: &str, profile: &str| {
+        format!(
+            r#"<layer name="{name}" nodetype="paintlayer" filename="{name}" colorspacename="RGBA" profile="{profile}"/>"#
+        )
+    };
+    let main = format!(
+        r#"<DOC><IMAGE width="64" height="64"><layers>{}{}{}</layers></IMAGE></DOC>"#,
+        node("other", "Wide"),
+        node("srgb", "sRGB-elle-V2-srgbtrc.icc"),
+        node("own", "Display P3")
+    );
+    let p3 = icc_of(ColorProfile::DisplayP3);
+    let wide = moxcms::ColorProfile::new_adobe_rgb().encode().unwrap();
+    let red = tiles(&[0, 0, 255, 255], &[(0, 0)], false);
+    let mut packer = ZipPacker::default();
+    packer.store("mimetype", b"application/x-krita").unwrap();
+    packer.deflate(MAINDOC, main.as_bytes()).unwrap();
+    let entries =
+        [("own.icc", p3), ("srgb.icc", icc_of(ColorProfile::Srgb)), ("other.icc", &wide[..])];
+    for (name, bytes) in entries {
+        packer.deflate(&format!("a/layers/{name}"), bytes).unwrap();
+        packer.deflate(&format!("a/layers/{}", name.replace(".icc", "")), &red).unwrap();
+    }
+    packer.deflate("a/annotations/icc", p3).unwrap();
+    let read = read(Path::new("a.kra"), &packer.finish().unwrap(), &Budget::default()).unwrap();
+    assert_eq!((read.document.profile, read.is_whole), (ColorProfile::DisplayP3, true));
+    let pixel = |layer: &Arc<Layer>| {
+        let Content::Pixels(pixels) = &layer.content else { panic!("pixels") };
+        pixels.tiles.pixel(5, 5)
+    };
+    let [own, srgb, other] = &read.document.layers[..] else { panic!("three layers") };
+    assert_eq!([pixel(own), pixel(srgb)], [[255, 0, 0, 255], [234, 51, 35, 255]]);
+    // The red of Adobe RGB is as far out as that of sRGB, and brighter.
+    let [r, g, b, _] = pixel(other);
+    assert!(r > 234 && g < 60 && b < 50, "{:?}", pixel(other));
+}
+
+#[test]
 fn a_cut_file_is_read_or_gets_a_sentence() {
     let bytes = kra();
     for length in (100..bytes.len()).step_by(61) {
