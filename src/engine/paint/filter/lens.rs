@@ -10,6 +10,7 @@ mod layers;
 
 use self::disk::{blurred, reach_px};
 use self::layers::blur_layers;
+use super::draft::{SoftKernel, detail_of_mean};
 use super::sharpen::straight;
 use super::window::FilterSource;
 use super::{FilterKernel, FilterPlace};
@@ -17,6 +18,7 @@ use crate::math::{Rect, srgb};
 use crate::paint::adjustment::parameters::{
     NumberParameter, ParameterVisitor, Parameters, parameter_name,
 };
+use std::f32::consts::PI;
 
 /// The blur of a lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,11 +82,30 @@ impl LensBlur {
 
     fn depth_of(&self, place: &FilterPlace, x: i32, y: i32) -> f32 {
         let Some(surface) = place.scene.surface.as_deref() else { return 1.0 };
+        let (x, y) = (x * place.canvas_px, y * place.canvas_px);
         // Off the surface all is as far as can be.
         match surface.coverage_plane().get(x, y) {
             Some(coverage) if coverage > 0 => surface.depth_plane().at_clamped(x, y),
             _ => 1.0,
         }
+    }
+
+    fn is_by_depth(&self, place: &FilterPlace) -> bool {
+        self.by_depth && place.scene.surface.is_some()
+    }
+
+    /// The radii of the disks at the pixels of a rectangle, row by row; beyond the picture its border
+    /// is repeated.
+    fn disks(&self, place: &FilterPlace, rect: Rect, bounds: Rect) -> Vec<f32> {
+        let mut disks = Vec::with_capacity(rect.width() * rect.height());
+        for y in rect.y0..rect.y1 {
+            let y = y.max(bounds.y0).min(bounds.y1 - 1);
+            disks.extend((rect.x0..rect.x1).map(|x| {
+                let x = x.max(bounds.x0).min(bounds.x1 - 1);
+                self.disk(self.depth_of(place, x, y))
+            }));
+        }
+        disks
     }
 
     /// A pixel in linear light, lights brighter.
@@ -159,23 +180,48 @@ impl FilterKernel for LensBlur {
         let reach = self.reach(out, out).ceil() as i32;
         let mut window = source.window(out.grown(reach));
         brighten_all(self, window.pixels_mut());
-        let is_flat = !self.by_depth || place.scene.surface.is_none();
-        if is_flat {
+        if !self.is_by_depth(place) {
             let mut blurred = blurred(&window, out, self.radius);
             encode_all(&mut blurred);
             return blurred;
         }
-        let bounds = source.bounds();
-        let mut disks = Vec::with_capacity(window.pixels().len());
-        for y in window.rect().y0..window.rect().y1 {
-            let y = y.max(bounds.y0).min(bounds.y1 - 1);
-            disks.extend((window.rect().x0..window.rect().x1).map(|x| {
-                let x = x.max(bounds.x0).min(bounds.x1 - 1);
-                self.disk(self.depth_of(place, x, y))
-            }));
-        }
+        let disks = self.disks(place, window.rect(), source.bounds());
         let mut blurred = blur_layers(&window, &disks, self.radius, out);
         encode_all(&mut blurred);
         blurred
+    }
+
+    fn as_soft(&self) -> Option<&dyn SoftKernel> {
+        Some(self)
+    }
+}
+
+impl SoftKernel for LensBlur {
+    /// Beside what is in focus too, so that its edge stays.
+    fn detail_left(&self, place: &FilterPlace, bounds: Rect) -> Vec<f32> {
+        let out = place.out;
+        let left = |disk: f32| {
+            let radius = disk * place.canvas_px as f32;
+            detail_of_mean(PI * radius * radius)
+        };
+        if !self.is_by_depth(place) {
+            return vec![left(self.radius); out.width() * out.height()];
+        }
+        let around = out.grown(1);
+        let mut own = self.disks(place, around, bounds);
+        own.iter_mut().for_each(|disk| *disk = left(*disk));
+        let width = around.width();
+        let mut all = Vec::with_capacity(out.width() * out.height());
+        for y in 0..out.height() {
+            let rows = [y, y + 1, y + 2].map(|y| &own[y * width..(y + 1) * width]);
+            for x in 0..out.width() {
+                let mut most = 0.0f32;
+                for row in rows {
+                    most = most.max(row[x]).max(row[x + 1]).max(row[x + 2]);
+                }
+                all.push(most);
+            }
+        }
+        all
     }
 }

@@ -17,6 +17,7 @@ mod zoom;
 pub use spin::SpinBlur;
 pub use zoom::ZoomBlur;
 
+use super::draft::{SoftKernel, detail_of_mean};
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, Vec2, vec2};
@@ -68,6 +69,22 @@ fn count_kept(means: i32, apart: usize) -> usize {
 fn farthest(rect: Rect, from: Vec2) -> f32 {
     let across = (rect.x0 as f32 - from.x).abs().max((rect.x1 as f32 - from.x).abs());
     across.hypot((rect.y0 as f32 - from.y).abs().max((rect.y1 as f32 - from.y).abs()))
+}
+
+/// How much detail the means at each pixel of a place leave, by its distance from the center.
+///
+/// * `length`: of the way of a mean, by that distance.
+fn detail_by_distance(place: &FilterPlace, center: Vec2, length: f32) -> Vec<f32> {
+    let (out, length) = (place.out, length * place.canvas_px as f32);
+    let mut all = vec![0.0; out.width() * out.height()];
+    for (y, row) in (out.y0..out.y1).zip(all.chunks_exact_mut(out.width().max(1))) {
+        let down = y as f32 + 0.5 - center.y;
+        for (x, left) in (out.x0..out.x1).zip(row) {
+            let across = x as f32 + 0.5 - center.x;
+            *left = detail_of_mean(length * (across * across + down * down).sqrt());
+        }
+    }
+    all
 }
 
 /// What a kernel reads of a picture.

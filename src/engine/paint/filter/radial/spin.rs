@@ -1,7 +1,9 @@
 //! As if the picture turned about a point: means along circles. Floor 3.
 
 use super::polar::{KnownDirections, PolarLines, PolarPart, ray_step, read_lines};
-use super::{BlurCenter, count_kept, farthest, step_between, window_around};
+use super::{
+    BlurCenter, SoftKernel, count_kept, detail_by_distance, farthest, step_between, window_around,
+};
 use crate::math::{Rect, Vec2};
 use crate::paint::adjustment::parameters::{
     NumberParameter, ParameterVisitor, Parameters, parameter_name,
@@ -69,6 +71,16 @@ impl FilterKernel for SpinBlur {
             line.means_apart(&read, apart, means);
         }
         part.read(place.out, |square, all| read_lines(&part, &circles, true, square, all))
+    }
+
+    fn as_soft(&self) -> Option<&dyn SoftKernel> {
+        Some(self)
+    }
+}
+
+impl SoftKernel for SpinBlur {
+    fn detail_left(&self, place: &FilterPlace, bounds: Rect) -> Vec<f32> {
+        detail_by_distance(place, self.center.at(bounds), self.angle.to_radians().min(TAU))
     }
 }
 

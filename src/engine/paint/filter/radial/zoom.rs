@@ -1,7 +1,9 @@
 //! As if the camera came nearer: means along rays. Floor 3.
 
 use super::polar::{KnownDirections, PolarLines, PolarPart, ray_step, read_lines};
-use super::{BlurCenter, count_kept, farthest, step_between, window_around};
+use super::{
+    BlurCenter, SoftKernel, count_kept, detail_by_distance, farthest, step_between, window_around,
+};
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::adjustment::parameters::{
     NumberParameter, ParameterVisitor, Parameters, parameter_name,
@@ -70,6 +72,16 @@ impl FilterKernel for ZoomBlur {
             zoom_means(&sums, (near, from, apart as i32), width, means);
         }
         part.read(place.out, |square, all| read_lines(&part, &rays, false, square, all))
+    }
+
+    fn as_soft(&self) -> Option<&dyn SoftKernel> {
+        Some(self)
+    }
+}
+
+impl SoftKernel for ZoomBlur {
+    fn detail_left(&self, place: &FilterPlace, bounds: Rect) -> Vec<f32> {
+        detail_by_distance(place, self.center.at(bounds), self.amount / 100.0)
     }
 }
 
