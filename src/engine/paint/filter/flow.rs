@@ -271,15 +271,16 @@ fn bending_direction([hxx, hxy, hyy]: [f32; 3]) -> Vec2 {
 
 /// Where a surface goes on from a pixel of a smaller picture to the next ones: over all pixels of its
 /// own between.
+#[inline(always)]
 fn links_over(linked: &Plane<u8>, (x, y): (i32, i32), side: i32) -> u8 {
     let (x, y) = (x * side, y * side);
-    let mut open = ALL;
-    for i in 0..side {
-        let link = |dx: i32, dy: i32| linked.get(x + dx, y + dy).unwrap_or(0);
-        open &= link(-i, 0) & links::LEFT
-            | link(i, 0) & links::RIGHT
-            | link(0, -i) & links::UP
-            | link(0, i) & links::DOWN;
+    let link = |x: i32, y: i32| linked.get(x, y).unwrap_or(0);
+    let mut open = link(x, y);
+    for i in 1..side {
+        open &= link(x - i, y) & links::LEFT
+            | link(x + i, y) & links::RIGHT
+            | link(x, y - i) & links::UP
+            | link(x, y + i) & links::DOWN;
     }
     open
 }
