@@ -45,7 +45,7 @@ fn ball() -> Scene {
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
 }
 
-fn drafted() -> Vec<PictureFilter> {
+fn filters_with_drafts() -> Vec<PictureFilter> {
     let is_drafted = |filter: &PictureFilter| LiveFilter::new(filter.clone()).drafted().is_some();
     PictureFilter::all().into_iter().filter(is_drafted).collect()
 }
@@ -73,9 +73,9 @@ fn share_beyond(a: &FilterWindow, b: &FilterWindow, levels: f32) -> f32 {
 
 #[test]
 fn the_four_costly_and_soft_filters_have_drafts_that_are_other_filters() {
-    let names: Vec<&str> = drafted().iter().map(|filter| filter.name()).collect();
+    let names: Vec<&str> = filters_with_drafts().iter().map(|filter| filter.name()).collect();
     assert_eq!(names, ["spin-blur", "zoom-blur", "lens-blur", "flow-blur"]);
-    for filter in drafted() {
+    for filter in filters_with_drafts() {
         let whole = LiveFilter::new(filter);
         let draft = whole.drafted().unwrap();
         assert!(draft != whole && draft == whole.drafted().unwrap());
@@ -88,7 +88,7 @@ fn the_four_costly_and_soft_filters_have_drafts_that_are_other_filters() {
 #[test]
 fn a_draft_is_near_the_whole_filter_on_a_picture_with_edges() {
     let (source, scene) = (shapes(), ball());
-    for filter in drafted() {
+    for filter in filters_with_drafts() {
         let [whole, draft] = both(&filter, &scene, &source);
         let (mean, most) = difference(&whole, &draft);
         // Thin lines across the way, at contours, are soft for as long as the draft is seen.
@@ -133,7 +133,7 @@ fn what_a_filter_leaves_sharp_is_sharp_in_its_draft() {
 #[test]
 fn drafts_of_parts_are_parts_of_the_draft() {
     let (source, scene) = (shapes(), ball());
-    for filter in drafted() {
+    for filter in filters_with_drafts() {
         let draft = LiveFilter::new(filter.clone()).drafted().unwrap();
         let of = |out| draft.apply(&FilterPlace::new(&scene, out, 1.0), &source);
         let whole = of(source.rect());
@@ -154,7 +154,7 @@ fn drafts_of_parts_are_parts_of_the_draft() {
 fn one_color_stays_one_color_in_drafts() {
     let color = [0.3, 0.15, 0.05, 0.6];
     let plain = FilterWindow::new(SIZE.rect(), vec![color; SIZE.area()]);
-    for filter in drafted() {
+    for filter in filters_with_drafts() {
         for scene in [Scene { size: SIZE, surface: None }, ball()] {
             let [_, draft] = both(&filter, &scene, &plain);
             let off = largest_difference(draft.pixels(), plain.pixels());
