@@ -49,7 +49,7 @@ impl Document {
         let wanted = selected.map_or(bounds, |selected| selected.covered_rect());
         let blocks = by.blocks(wanted, bounds);
         let of_block = |block: &Rect| {
-            let place = FilterPlace { scene: &scene, out: *block, brightest: 1.0 };
+            let place = FilterPlace::new(&scene, *block, 1.0);
             let filtered = by.apply(&place, &source);
             let tile = |at: TileAt| (at, filtered_tile(&pixels.tiles, &filtered, at, keeps_alpha));
             TileAt::covering(*block).map(tile).collect::<Vec<_>>()

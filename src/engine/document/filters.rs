@@ -100,7 +100,7 @@ impl PreparedDocument {
             tiles.insert(at, known);
         }
         let brightest = floats.map_or(1.0, FloatTiles::brightest);
-        let place = FilterPlace { scene: &stage.scene, out: block, brightest };
+        let place = FilterPlace::new(&stage.scene, block, brightest);
         let filtered = stage.filter.apply(&place, &ReadTiles { tiles, canvas });
         for at in TileAt::covering(block) {
             let (tile, inside) = (at.rect(), at.rect().intersect(block));

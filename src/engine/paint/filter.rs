@@ -14,9 +14,11 @@
 //! | `noise` | noise and grain |
 //! | `cells` | median, squares, edges, shift |
 //! | `halftone` | dots and lines of ink |
+//! | `draft` | filters at half the size, while the user drags |
 
 mod blur;
 mod cells;
+mod draft;
 mod flow;
 mod glow;
 mod halftone;
@@ -39,6 +41,7 @@ pub use sharpen::{HighPass, Sharpen, UnsharpMask};
 pub use surface::SurfaceBlur;
 pub use window::{FilterSource, FilterWindow};
 
+use self::draft::SoftKernel;
 use crate::math::Rect;
 use crate::paint::adjustment::ParameterVisitor;
 use crate::paint::adjustment::parameters::{Holder, LengthScaler, Parameters, parameter_kinds};
@@ -88,16 +91,33 @@ pub(super) trait FilterKernel: Send + Sync {
 
     /// The filtered pixels of a rectangle, row by row.
     fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]>;
+
+    /// What a draft of it needs, if it is costly and its picture is so soft that half the size will
+    /// do.
+    fn as_soft(&self) -> Option<&dyn SoftKernel> {
+        None
+    }
 }
 
 /// Which pixels are filtered.
+#[derive(Clone, Copy)]
 pub struct FilterPlace<'a> {
     /// What they lie on.
-    pub scene: &'a Scene,
+    scene: &'a Scene,
     /// Which they are.
-    pub out: Rect,
+    out: Rect,
     /// The straight encoded color above which light is clipped; 1 is white.
-    pub brightest: f32,
+    brightest: f32,
+    /// The side of a pixel, in pixels of the scene: more than one in drafts.
+    canvas_px: i32,
+}
+
+impl<'a> FilterPlace<'a> {
+    /// * `scene`: what the pixels of a rectangle lie on.
+    /// * `brightest`: the straight encoded color above which light is clipped; 1 is white.
+    pub fn new(scene: &'a Scene, out: Rect, brightest: f32) -> Self {
+        Self { scene, out, brightest, canvas_px: 1 }
+    }
 }
 
 impl FilterPlace<'_> {
@@ -113,18 +133,21 @@ impl FilterPlace<'_> {
 #[derive(Clone, Debug)]
 pub struct LiveFilter {
     params: Arc<PictureFilter>,
+    /// The same for a picture of half the size, if it is shown as a draft.
+    halved: Option<Arc<PictureFilter>>,
 }
 
 impl PartialEq for LiveFilter {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.params, &other.params) || self.params == other.params
+        self.is_draft() == other.is_draft()
+            && (Arc::ptr_eq(&self.params, &other.params) || self.params == other.params)
     }
 }
 
 impl LiveFilter {
     /// With the nearest numbers that a document may hold.
     pub fn new(filter: PictureFilter) -> Self {
-        Self { params: Arc::new(filter.clamp_to_ranges()) }
+        Self { params: Arc::new(filter.clamp_to_ranges()), halved: None }
     }
 
     /// What it was made of.
@@ -134,9 +157,33 @@ impl LiveFilter {
 
     /// With its lengths `factor` times as large.
     pub fn scaled(&self, factor: f32) -> Self {
+        let whole = Self { params: self.scale_params(factor), halved: None };
+        if self.is_draft() { whole.drafted().unwrap_or(whole) } else { whole }
+    }
+
+    /// The same for a moment while the user drags, cheaper and nearly alike; `None` if it is cheap
+    /// itself, or has to be whole.
+    pub fn drafted(&self) -> Option<Self> {
+        if self.is_draft() {
+            return None;
+        }
+        self.params.kernel().as_soft()?;
+        Some(Self { params: self.params.clone(), halved: Some(self.scale_params(0.5)) })
+    }
+
+    fn is_draft(&self) -> bool {
+        self.halved.is_some()
+    }
+
+    fn scale_params(&self, factor: f32) -> Arc<PictureFilter> {
         let mut params = PictureFilter::clone(&self.params);
         params.visit(&mut LengthScaler(factor));
-        Self { params: Arc::new(params) }
+        Arc::new(params)
+    }
+
+    /// What filters at half the size, if it is a draft.
+    fn halved_kernel(&self) -> Option<&dyn SoftKernel> {
+        self.halved.as_ref()?.kernel().as_soft()
     }
 
     /// The sides of the blocks in which a picture is filtered, px: whole tiles, and the larger the
@@ -166,7 +213,10 @@ impl LiveFilter {
 
     /// What it reads of a picture for one of its blocks.
     pub fn reads(&self, block: Rect, bounds: Rect) -> Vec<Rect> {
-        let reads = self.params.kernel().reads(block, bounds);
+        let reads = match self.halved_kernel() {
+            Some(halved) => draft::reads(halved, block, bounds),
+            None => self.params.kernel().reads(block, bounds),
+        };
         reads.into_iter().map(|read| read.intersect(bounds)).collect()
     }
 
@@ -177,7 +227,10 @@ impl LiveFilter {
 
     /// The filtered pixels of one of its blocks.
     pub fn apply(&self, place: &FilterPlace, source: &dyn FilterSource) -> FilterWindow {
-        let mut pixels = self.params.kernel().apply(place, source);
+        let mut pixels = match self.halved_kernel() {
+            Some(halved) => draft::apply(halved, place, source),
+            None => self.params.kernel().apply(place, source),
+        };
         limit(&mut pixels, place.brightest);
         FilterWindow::new(place.out, pixels)
     }

@@ -5,12 +5,14 @@
 //! apart as the first mean is long. The second one jumps: where the line through a pixel leads is
 //! found once, together with the first mean.
 
+use super::draft::{SoftKernel, detail_of_mean};
 use super::window::{FilterSource, FilterWindow};
 use super::{FilterKernel, FilterPlace};
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::adjustment::parameters::{
     NumberParameter, ParameterVisitor, Parameters, parameter_name,
 };
+use crate::raster::Plane;
 use crate::surface::{Curvature, Scene, Surface, links};
 
 /// Smeared along the lines in which the surface bends least, or across them.
@@ -58,7 +60,8 @@ impl FilterKernel for FlowBlur {
         let Some(surface) = place.scene.surface.as_deref().filter(|_| self.length > 1.0) else {
             return source.window(out).cropped(out);
         };
-        let curvature = surface.curvature(self.smooth);
+        // The surface has its own size, whatever that of the picture is.
+        let curvature = surface.curvature(self.smooth * place.canvas_px as f32);
         // Steps of a pixel in a jump, and jumps.
         let steps = self.length.sqrt().ceil().max(1.0);
         let jumps = (self.length / steps).ceil().max(1.0);
@@ -66,7 +69,8 @@ impl FilterKernel for FlowBlur {
         let reads = around.grown((0.5 * steps).ceil() as i32 + 2).intersect(source.bounds());
         let reads = reads.intersect(out.grown(self.reach(out, out).ceil() as i32));
         let window = source.window(reads.union(out));
-        let lines = FlowLines::of(surface, &curvature, self.across, window.rect());
+        let lines =
+            FlowLines::of(surface, &curvature, self.across, (window.rect(), place.canvas_px));
         let around = around.intersect(window.rect());
         let (mut means, mut ways) = (Vec::new(), Vec::new());
         // Jumps begin no farther out than this.
@@ -77,7 +81,51 @@ impl FilterKernel for FlowBlur {
         mean_of_jumps(&lines, (&first, &ways), out, jumps, &mut all);
         all
     }
+
+    fn as_soft(&self) -> Option<&dyn SoftKernel> {
+        Some(self)
+    }
 }
+
+impl SoftKernel for FlowBlur {
+    /// Where nothing is smeared, and at contours, which stay.
+    fn detail_left(&self, place: &FilterPlace, _: Rect) -> Vec<f32> {
+        let (out, side) = (place.out, place.canvas_px);
+        let Some(surface) = place.scene.surface.as_deref() else {
+            return vec![1.0; out.width() * out.height()];
+        };
+        let smeared = detail_of_mean(self.length * side as f32);
+        let mut all = Vec::with_capacity(out.width() * out.height());
+        for y in out.y0..out.y1 {
+            all.extend((out.x0..out.x1).map(|x| {
+                let square = Rect::new(x * side, y * side, (x + 1) * side, (y + 1) * side);
+                if is_one_piece(surface, square) { smeared } else { 1.0 }
+            }));
+        }
+        all
+    }
+}
+
+/// Whether the pixels of a square lie on a surface, which goes on to all sides of each within the
+/// canvas.
+fn is_one_piece(surface: &Surface, square: Rect) -> bool {
+    let (canvas, linked) = (surface.size().rect(), surface.links_plane());
+    let square = square.intersect(canvas);
+    let mut open = ALL;
+    for y in square.y0..square.y1 {
+        for x in square.x0..square.x1 {
+            open &= linked.at(x as usize, y as usize);
+        }
+    }
+    let beyond = |is_last: bool, link: u8| if is_last { link } else { 0 };
+    open |= beyond(square.x0 == canvas.x0, links::LEFT)
+        | beyond(square.x1 == canvas.x1, links::RIGHT)
+        | beyond(square.y0 == canvas.y0, links::UP)
+        | beyond(square.y1 == canvas.y1, links::DOWN);
+    open == ALL && surface.coverage_plane().at_clamped(square.x0, square.y0) > 0
+}
+
+const ALL: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
 
 /// A point on a line, counted from the corner of the lines' rectangle.
 #[derive(Clone, Copy)]
@@ -113,9 +161,16 @@ fn bit_toward(dx: i32, dy: i32) -> u16 {
 }
 
 impl FlowLines {
-    fn of(surface: &Surface, curvature: &Curvature, is_across: bool, rect: Rect) -> Self {
+    /// * `part`: a rectangle of the picture, and the side of its pixels in those of the surface.
+    fn of(
+        surface: &Surface,
+        curvature: &Curvature,
+        is_across: bool,
+        (rect, side): (Rect, i32),
+    ) -> Self {
         let (size, coverage) = (surface.size().rect(), surface.coverage_plane());
         let direction = |(x, y): (i32, i32)| {
+            let (x, y) = (x * side, y * side);
             if !size.contains(x, y) || coverage.at_clamped(x, y) == 0 {
                 return Vec2::ZERO;
             }
@@ -123,13 +178,18 @@ impl FlowLines {
             if is_across { bent } else { bent.perp() }
         };
         let places = || (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
+        let directions = places().map(direction).collect();
         let linked = surface.links_plane();
-        let open = |(x, y): (i32, i32)| open_bits(|x, y| linked.get(x, y).unwrap_or(0), rect, x, y);
-        Self {
-            rect,
-            directions: places().map(direction).collect(),
-            open: places().map(open).collect(),
-        }
+        let open = if side == 1 {
+            let link = |x, y| linked.get(x, y).unwrap_or(0);
+            places().map(|(x, y)| open_bits(link, rect, x, y)).collect()
+        } else {
+            let links: Vec<u8> = places().map(|at| links_over(linked, at, side)).collect();
+            let width = rect.width();
+            let link = |x, y| links[(y - rect.y0) as usize * width + (x - rect.x0) as usize];
+            places().map(|(x, y)| open_bits(link, rect, x, y)).collect()
+        };
+        Self { rect, directions, open }
     }
 
     #[inline(always)]
@@ -209,11 +269,26 @@ fn bending_direction([hxx, hxy, hyy]: [f32; 3]) -> Vec2 {
     if hxx + hyy >= 0.0 { vec2(cos, -sin) } else { vec2(sin, cos) }
 }
 
+/// Where a surface goes on from a pixel of a smaller picture to the next ones: over all pixels of its
+/// own between.
+#[inline(always)]
+fn links_over(linked: &Plane<u8>, (x, y): (i32, i32), side: i32) -> u8 {
+    let (x, y) = (x * side, y * side);
+    let link = |x: i32, y: i32| linked.get(x, y).unwrap_or(0);
+    let mut open = link(x, y);
+    for i in 1..side {
+        open &= link(x - i, y) & links::LEFT
+            | link(x + i, y) & links::RIGHT
+            | link(x, y - i) & links::UP
+            | link(x, y + i) & links::DOWN;
+    }
+    open
+}
+
 /// The neighbors of a pixel within a rectangle that its links lead to, by one way at least.
 fn open_bits(linked: impl Fn(i32, i32) -> u8, rect: Rect, x: i32, y: i32) -> u16 {
     const AROUND: [(i32, i32); 8] =
         [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)];
-    const ALL: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
     let across = |dx: i32| if dx < 0 { links::LEFT } else { links::RIGHT };
     let down = |dy: i32| if dy < 0 { links::UP } else { links::DOWN };
     let own = linked(x, y);

@@ -1,5 +1,7 @@
 //! What filters do to pixels, by values and by properties.
 
+mod drafts;
+
 use super::*;
 use crate::math::{Size, Vec2, hash, vec2};
 
@@ -22,8 +24,7 @@ fn picture() -> FilterWindow {
 
 fn apply(filter: &PictureFilter, source: &FilterWindow, out: Rect) -> FilterWindow {
     let scene = flat();
-    LiveFilter::new(filter.clone())
-        .apply(&FilterPlace { scene: &scene, out, brightest: 1.0 }, source)
+    LiveFilter::new(filter.clone()).apply(&FilterPlace::new(&scene, out, 1.0), source)
 }
 
 fn of(name: &str) -> PictureFilter {
@@ -101,11 +102,11 @@ fn what_is_read_is_what_is_said_to_be_read() {
         }
     }
     let scene = Scene { size: Size::new(400, 400), surface: None };
-    for filter in PictureFilter::all() {
-        let live = LiveFilter::new(filter);
+    let whole = || PictureFilter::all().into_iter().map(LiveFilter::new);
+    for live in whole().chain(whole().filter_map(|live| live.drafted())) {
         for out in live.blocks(bounds, bounds) {
             let said = Watched(live.reads(out, bounds));
-            live.apply(&FilterPlace { scene: &scene, out, brightest: 1.0 }, &said);
+            live.apply(&FilterPlace::new(&scene, out, 1.0), &said);
         }
     }
 }
@@ -256,7 +257,7 @@ fn stepped_scene() -> Scene {
 fn on(scene: &Scene, filter: PictureFilter, source: &FilterWindow) -> FilterWindow {
     let live = LiveFilter::new(filter);
     live.warm(scene);
-    live.apply(&FilterPlace { scene, out: RECT, brightest: 1.0 }, source)
+    live.apply(&FilterPlace::new(scene, RECT, 1.0), source)
 }
 
 /// Black on the left, white on the right.

@@ -29,6 +29,10 @@ impl LayerKind for LiveFilter {
         Content::Filter(LiveFilter::scaled(self, scale.length))
     }
 
+    fn draft(&self) -> Option<Content> {
+        Some(Content::Filter(self.drafted()?))
+    }
+
     fn is_tied_to_shape(&self) -> bool {
         false
     }
@@ -54,12 +58,16 @@ impl Adjustment for LiveFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Document, Group, Layer, LayerMask, MaskKind, diff, flatten};
-    use crate::math::Size;
+    use crate::document::{
+        Document, DocumentReducer, Group, Layer, LayerMask, MaskKind, PreparedDocument, diff,
+        flatten,
+    };
     use crate::math::srgb::Color;
+    use crate::math::{Size, Vec3, vec3};
     use crate::paint::PictureFilter;
     use crate::paint::filter::GaussianBlur;
     use crate::raster::{BlendMode, Plane, TileAt, TileGrid};
+    use crate::surface::{Maps, Surface};
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
@@ -178,7 +186,7 @@ mod tests {
                 assert!(reported.contains(&at) || a.is_same(b), "{at:?} at {radius}");
             }
             // Only those tiles again gives the very same picture.
-            let prepared = crate::document::PreparedDocument::new(&after, &Progress::default());
+            let prepared = PreparedDocument::new(&after, &Progress::default());
             let tiles: Vec<TileAt> = reported.into_iter().collect();
             let part = prepared.unwrap().flatten_tiles(&old, &tiles, &Progress::default()).unwrap();
             for at in TileAt::covering(size.rect()) {
@@ -191,9 +199,85 @@ mod tests {
     fn a_tile_alone_shows_what_it_shows_in_the_picture() {
         let document = of(vec![fill(0, 0, 0), half(), blur(8.0)]);
         let whole = flatten(&document, &Progress::default()).unwrap();
-        let prepared =
-            crate::document::PreparedDocument::new(&document, &Progress::default()).unwrap();
+        let prepared = PreparedDocument::new(&document, &Progress::default()).unwrap();
         let at = TileAt::of_pixel(300, 150);
         assert!(prepared.flatten_tile(at).unwrap().is_same(whole.tile(at).unwrap()));
+    }
+
+    /// White paint over the left half of a ball before a wall, on a canvas of odd sides, and a filter.
+    fn on_ball(filter: PictureFilter) -> Document {
+        let size = Size::new(601, 299);
+        let up = |x: usize, y: usize| {
+            let (dx, dy) = (x as f32 - 300.0, y as f32 - 150.0);
+            vec3(dx, -dy, (120.0f32 * 120.0 - dx * dx - dy * dy).max(0.0).sqrt())
+        };
+        let maps = Maps {
+            normals: Plane::from_fn(size, |x, y| if up(x, y).z > 0.0 { up(x, y) } else { Vec3::Z }),
+            depth: Plane::from_fn(size, |x, y| 0.9 - 0.5 * up(x, y).z / 120.0),
+            coverage: Plane::full(size, 255),
+        };
+        let layers = vec![fill(40, 90, 160), half(), Layer::new("filter", filter)];
+        let surface = Surface::new(maps).ok().map(Arc::new);
+        Document { size, surface, ..of(layers) }
+    }
+
+    fn bytes(document: &Document) -> Vec<u8> {
+        let tiles = flatten(document, &Progress::default()).unwrap();
+        tiles.to_straight_rgba(document.size.rect())
+    }
+
+    /// The mean difference, levels.
+    fn mean_difference(a: &[u8], b: &[u8]) -> f64 {
+        let sum: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
+        sum / a.len() as f64
+    }
+
+    #[test]
+    fn a_filter_is_a_draft_while_its_slider_is_dragged_and_whole_at_rest() {
+        for name in ["spin-blur", "zoom-blur", "lens-blur", "flow-blur"] {
+            let filter = PictureFilter::from_name(name).unwrap();
+            let document = on_ball(filter.clone());
+            let mut reduced = DocumentReducer::new(1.0);
+            reduced.keep(&document);
+            let rest = reduced.of(&document).unwrap();
+            assert!(Arc::ptr_eq(&rest.layers[2], &document.layers[2]), "{name} at rest");
+            let id = document.layers[2].id;
+            let set = |layer: &mut Layer| layer.content = Content::from(filter.clone());
+            let moved = document.with_layer(id, set).unwrap();
+            let draft = reduced.of(&moved).unwrap();
+            let all = TileAt::covering(document.size.rect()).count();
+            assert_eq!(diff(&moved, &draft).len(), all, "{name} on release");
+            assert!(diff(&draft, &reduced.of(&moved).unwrap()).is_empty());
+            let (seen, whole) = (bytes(&draft), bytes(&moved));
+            let apart = mean_difference(&seen, &whole);
+            assert!(seen != whole && apart < 2.0, "{name}: {apart} levels");
+            assert!(whole == bytes(&document), "{name} at rest");
+        }
+    }
+
+    #[test]
+    fn tiles_of_drafts_are_the_same_alone_and_in_the_picture() {
+        for name in ["spin-blur", "zoom-blur", "lens-blur", "flow-blur"] {
+            let document = on_ball(PictureFilter::from_name(name).unwrap());
+            let draft = DocumentReducer::new(1.0).of(&document).unwrap();
+            let whole = flatten(&draft, &Progress::default()).unwrap();
+            for at in TileAt::covering(document.size.rect()) {
+                let alone = PreparedDocument::new(&draft, &Progress::default()).unwrap();
+                let alone = alone.flatten_tile(at).unwrap();
+                assert!(alone.is_same(whole.tile(at).unwrap()), "{name}: {at:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_smaller_document_for_a_moment_shows_drafts_of_its_own_size() {
+        for name in ["spin-blur", "zoom-blur", "lens-blur", "flow-blur"] {
+            let document = on_ball(PictureFilter::from_name(name).unwrap());
+            let small = DocumentReducer::new(0.5).of(&document).unwrap();
+            let whole = document.scaled(0.5).unwrap();
+            assert!(small.layers[2].content.filter() != whole.layers[2].content.filter());
+            let apart = mean_difference(&bytes(&small), &bytes(&whole));
+            assert!(apart < 2.0, "{name}: {apart} levels");
+        }
     }
 }

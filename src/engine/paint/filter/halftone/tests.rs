@@ -11,7 +11,7 @@ const RECT: Rect = Rect::new(0, 0, 128, 128);
 fn print(halftone: Halftone, color: [f32; 4]) -> Vec<[f32; 4]> {
     let scene = Scene { size: Size::new(128, 128), surface: None };
     let source = FilterWindow::new(RECT, vec![color; RECT.width() * RECT.height()]);
-    halftone.apply(&FilterPlace { scene: &scene, out: RECT, brightest: 1.0 }, &source)
+    halftone.apply(&FilterPlace::new(&scene, RECT, 1.0), &source)
 }
 
 fn mean(pixels: &[[f32; 4]], channel: usize) -> f32 {
@@ -195,7 +195,7 @@ fn rows_print_what_each_pixel_prints() {
                 paper: Color::rgb(250, 240, 200),
                 ..plain
             };
-            let place = FilterPlace { scene: &scene, out: RECT, brightest: 1.0 };
+            let place = FilterPlace::new(&scene, RECT, 1.0);
             for (i, (found, own)) in halftone.apply(&place, &source).iter().zip(&pixels).enumerate()
             {
                 let at = vec2((i % 128) as f32 + 0.5, (i / 128) as f32 + 0.5);
