@@ -70,9 +70,12 @@ impl Panic {
         let Self { what, calls } = self;
         let threads = std::thread::available_parallelism().map_or(0, usize::from);
         let actions = last_actions().join("\n  ");
+        // Without symbols the calls are addresses only, and the address of a known function tells
+        // where the program was loaded (dist/linux/calls).
+        let here = remember as *const () as usize;
         format!(
             "Rilievo {}\n{} {}, {threads} threads\n\ninternal error: {what}\n\n\
-             the last actions:\n  {actions}\n\nthe calls:\n{calls}",
+             the last actions:\n  {actions}\n\nremember is at {here:#x}\n\nthe calls:\n{calls:#}",
             crate::io::version(),
             std::env::consts::OS,
             std::env::consts::ARCH,
