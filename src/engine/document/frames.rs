@@ -37,7 +37,7 @@ impl Document {
     }
 
     /// With what a frame clips in a group of its own, whose mask is the inside of the frame: the same
-    /// picture, whatever becomes of the frame. `None` for a layer that is no frame of a group.
+    /// picture once the frame clips no more. `None` for a layer that is no frame of a group.
     pub fn with_frame_as_mask(&self, id: LayerId) -> Option<Document> {
         let place = self.place_of(id)?;
         place.group?;
@@ -224,8 +224,15 @@ mod tests {
             let group = document.layers[1].content.group().unwrap();
             let frames: Vec<LayerId> = group.frames().map(|place| group.layers[place].id).collect();
             let before = flatten(&document, &Progress::default()).unwrap();
+            let stop_clipping = |layer: &mut Layer| {
+                let Content::Image(live) = &layer.content else { panic!("a frame") };
+                let path = live.params().source.path().unwrap();
+                let path = LivePath { frames: false, ..LivePath::clone(path) };
+                layer.content = Content::Image(Live::new(PlacedImage::of_path(SIZE, path)));
+            };
             for id in frames {
                 let masked = document.with_frame_as_mask(id).unwrap();
+                let masked = masked.with_layer(id, stop_clipping).unwrap();
                 let seen = flatten(&masked, &Progress::default()).unwrap();
                 for (x, y) in (0..100).flat_map(|x| (0..80).map(move |y| (x, y))) {
                     let both = [before.pixel(x, y), seen.pixel(x, y)];

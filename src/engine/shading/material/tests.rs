@@ -312,8 +312,8 @@ fn scaling_brightens_ridges_and_darkens_valleys_in_the_light() {
 
 #[test]
 fn the_body_of_solid_glass_counts_as_what_it_keeps() {
-    let solid = Shading::new(Model::Refraction);
-    let mut open = solid.clone();
-    open.solid.on = false;
+    let open = Shading::new(Model::Refraction);
+    let mut solid = open.clone();
+    solid.solid.on = true;
     assert_eq!(solid.kept_bytes() - open.kept_bytes(), Surface::BODY_BYTES as u64);
 }
