@@ -24,7 +24,7 @@ pub const EXCEPT_TEXTS: &[(&str, &str, &str)] = &[
     (
         "src/program/cli/crash.rs",
         "Rilievo {}\n{} {}, {threads} threads\n\ninternal error: {what}\n\n\
-         the last actions:\n  {actions}\n\nthe calls:\n{calls}",
+         the last actions:\n  {actions}\n\nremember is at {here:#x}\n\nthe calls:\n{calls:#}",
         "a report for programmers",
     ),
     ("src/program/cli/messages.rs", "rilievo: {sentence}", "the program's name"),

@@ -333,7 +333,7 @@ impl<'a> RecordReader<'a> {
         let used_px = self.used_px + pictures.max().unwrap_or(0).saturating_sub(own);
         // To be compared, they are drawn at their own size.
         let held = self.held_bytes().saturating_add(4 * drawn);
-        let has_room = self.budget.room(self.file, "drawing its shapes", held).is_ok();
+        let has_room = self.budget.room(self.file, "what its layers hold", held).is_ok();
         if !has_room || used_px > self.budget.document_px || self.drawn_px + drawn > DRAWN_PX {
             return false;
         }

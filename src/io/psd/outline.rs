@@ -156,7 +156,7 @@ impl VectorPaths {
 
     /// Whether it begins with all of the canvas: what is taken away from nothing, or meets nothing,
     /// would be nothing; what is added first would add nothing to all.
-    pub(super) fn starts_full(&self) -> bool {
+    pub(super) fn is_full_at_first(&self) -> bool {
         match self.shapes.first().map(|shape| shape.way) {
             Some(PathOperation::Add) => false,
             Some(PathOperation::Subtract | PathOperation::Intersect) => true,
@@ -166,7 +166,7 @@ impl VectorPaths {
 
     /// Coverage of every pixel of the canvas, row by row.
     pub fn coverage(&self, size: Size) -> Vec<u8> {
-        let mut coverage = vec![if self.starts_full() { 255 } else { 0 }; size.area()];
+        let mut coverage = vec![if self.is_full_at_first() { 255 } else { 0 }; size.area()];
         for shape in &self.shapes {
             let drawn = shape.coverage(size);
             for (c, own) in coverage.iter_mut().zip(drawn) {

@@ -94,7 +94,7 @@ pub fn parse_as<'a>(
     reader.keeps_inks = keeps_values && matches!(header.mode, Mode::Cmyk | Mode::Lab | Mode::Gray);
     let info = layer_info(section, header.large);
     let records = info.map_or_else(|| Ok(Vec::new()), |info| reader.records(info))?;
-    let patterns = pattern::read(global_blocks(section, header.large), &mut reader)?;
+    let patterns = pattern::read(global_blocks(section, header.large), |px| reader.spend(px))?;
     let held_bytes = reader.held_bytes();
     let mut damage = reader.damage;
     let is_there = rest.take(length).is_some();

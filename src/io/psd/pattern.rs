@@ -6,7 +6,6 @@ use super::colors::{Colors, Mode};
 use super::cursor::ByteCursor;
 use super::fill::PatternFill;
 use super::header::PsdHeader;
-use super::layers::RecordReader;
 use crate::Result;
 use crate::math::Size;
 
@@ -24,15 +23,15 @@ pub struct PatternResource {
 const MOST_CHANNELS: u32 = 32;
 
 /// The patterns of a file's blocks; those that cannot be read are left out, and what they fill is
-/// reported.
+/// reported. `spend`: as of [`of_block`].
 pub fn read<'a>(
     blocks: impl Iterator<Item = ([u8; 4], ByteCursor<'a>)>,
-    layers: &mut RecordReader,
+    mut spend: impl FnMut(u64) -> Result<()>,
 ) -> Result<Vec<PatternResource>> {
     let mut patterns = Vec::new();
     for (key, data) in blocks {
         if matches!(&key, b"Patt" | b"Pat2" | b"Pat3") {
-            patterns.extend(of_block(data, |px| layers.spend(px))?);
+            patterns.extend(of_block(data, &mut spend)?);
         }
     }
     Ok(patterns)

@@ -129,7 +129,7 @@ fn line_sets(outline: &VectorPaths, size: Size) -> Result<LineSets, &'static str
     let begins = match first.way {
         // All meets what comes first.
         Way::Add | Way::Intersect => true,
-        Way::Exclude => !outline.starts_full(),
+        Way::Exclude => !outline.is_full_at_first(),
         Way::Subtract => false,
     };
     if !begins || others.iter().any(|shape| shape.way == Way::Intersect) {

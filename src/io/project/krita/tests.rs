@@ -105,7 +105,8 @@ fn an_image_in_display_p3_keeps_its_numbers_and_converts_layers_of_other_profile
     use crate::math::ColorProfile;
     let node = |name: &str, profile: &str| {
         format!(
-            r#"<layer name="{name}" nodetype="paintlayer" filename="{name}" colorspacename="RGBA" profile="{profile}"/>"#
+            r#"<layer name="{name}" nodetype="paintlayer" filename="{name}" colorspacename="RGBA"
+                profile="{profile}"/>"#
         )
     };
     let main = format!(

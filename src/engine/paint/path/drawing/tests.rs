@@ -98,7 +98,7 @@ fn a_path_beyond_the_limits_is_refused_before_it_is_drawn() {
 }
 
 /// The share of a pixel that a test of points finds inside, over 32 × 32 points.
-fn sampled(x: i32, y: i32, is_inside: impl Fn(Vec2) -> bool) -> f32 {
+fn share_by_points(x: i32, y: i32, is_inside: impl Fn(Vec2) -> bool) -> f32 {
     let at = |i: i32| vec2((i % 32) as f32 + 0.5, (i / 32) as f32 + 0.5) / 32.0;
     let points = (0..1024).map(|i| vec2(x as f32, y as f32) + at(i));
     points.filter(|p| is_inside(*p)).count() as f32 / 1024.0
@@ -114,7 +114,7 @@ fn edges_cover_the_exact_share_of_their_pixels() {
     let (mut most, mut of_ring) = (0.0f32, 0.0f32);
     for (x, y) in (0..60).flat_map(|y| (0..60).map(move |x| (x, y))) {
         let apart = |path: &LivePath, is_inside: &dyn Fn(f32) -> bool| {
-            let share = sampled(x, y, |p| is_inside(p.distance(middle)));
+            let share = share_by_points(x, y, |p| is_inside(p.distance(middle)));
             (f32::from(alpha_at(path, x, y)) - 255.0 * share).abs()
         };
         most = most.max(apart(&filled, &|d| d < radius));
