@@ -117,8 +117,9 @@ mod tests {
                 ..LivePath::new(figure).with_fill(Color::rgb(200, 30, 20))
             };
             let (most, mean) = differences(&path);
-            // The other library samples an edge 16 times, and divides arcs and dashes otherwise.
-            assert!(most <= 40 && mean < 1.0, "{label}: {most}, {mean}");
+            // The other library samples a pixel at four heights, so that each of two edges through it
+            // may be an eighth off, and divides arcs and dashes otherwise.
+            assert!(most <= 80 && mean < 1.0, "{label}: {most}, {mean}");
         }
     }
 }
