@@ -1,7 +1,7 @@
 //! From the event to the pixel, in the real window on a display of its own: an anchor of a photo on
 //! a map of 3840 × 2160 dragged; a brush and a pan on it and on a project of ten layers of 4096 ×
-//! 4096; a gloss brush on ten layers of 2048 × 2048 over a dome. Milliseconds from the pointer's motion until the screen changes there, or for the brush
-//! until it is dark beneath the pen.
+//! 4096; a gloss brush on ten layers of 2048 × 2048 over a dome. Milliseconds from the pointer's
+//! motion until the screen changes there, or for the brush until it is dark beneath the pen.
 //!
 //! `cargo bench --bench window`. Needs Xvfb and xdotool, and says so if they are missing. A program
 //! that draws with a graphics card is quicker: Xvfb draws with the processor and shares it with the
