@@ -424,7 +424,8 @@ fn set(
     let next = match to {
         Property::Drawn { path } => path::replace_paths(open.document(), &ids, path)?,
         Property::Worded { text } => {
-            texts::replace_texts(open.document(), &ids, text).map_err(|why| why.to_string())?
+            texts::replace_texts(open.document(), open.shown_document(), &ids, text)
+                .map_err(|why| why.to_string())?
         }
         _ => open.document().with_layers(&ids, |layer| to.apply(layer)),
     };

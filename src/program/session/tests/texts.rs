@@ -4,7 +4,7 @@ use super::*;
 use crate::document::Document;
 use crate::math::Size;
 use crate::paint::PlacedImage;
-use crate::raster::{Outside, TileGrid};
+use crate::raster::{Outside, TileAt, TileGrid};
 
 fn write(lines: &[&str]) -> Session {
     let mut session = Session::default();
@@ -196,4 +196,41 @@ fn what_is_typed_is_shown_as_if_it_were_painted_at_once() {
         shown = next;
     }
     assert!(kept >= 3, "{kept} keys left tiles as they were");
+}
+
+/// The keys of a hand that types on: none of them is a step yet, and a line is added on the way.
+#[test]
+fn a_key_in_a_long_text_changes_the_tiles_of_its_lines_alone() {
+    use crate::document::diff;
+    let size = Size::new(600, 800);
+    let mut session = Session::default();
+    session.add_document(OpenDocument::new("page", Document::empty(size), None));
+    let text = |typed: &str| {
+        let words = ["shade follows the form of a turning surface"; 4].join(" ");
+        let string = format!("{words}\\n{words} {typed} {words}\\n{words}\\n{words}\\n{words}");
+        format!(r#"{{"string":"{string}","font":"Hack","size":16,"width":500}}"#)
+    };
+    let write = format!(r#"{{"in":"layer","do":"write","at":[40,40],"text":{}}}"#, text(""));
+    session.replay(Path::new("story"), &write).unwrap();
+    let drawn = |session: &Session| session.active().unwrap().drawn_document();
+    let mut shown = drawn(&session);
+    render(&shown);
+    let all = TileAt::covering(size.rect()).count();
+    let mut changed: Vec<usize> = Vec::new();
+    for keys in 1..=60 {
+        let typed: String = (0..keys).map(|i| if i % 6 == 5 { ' ' } else { 'n' }).collect();
+        let set = format!(
+            r#"{{"in":"layer","do":"set","layer":"0","done":false,"to":{{"do":"text","text":{}}}}}"#,
+            text(&typed)
+        );
+        session.replay(Path::new("story"), &set).unwrap();
+        let next = drawn(&session);
+        changed.push(diff(&shown, &next).len());
+        render(&next);
+        shown = next;
+    }
+    let whole = changed.iter().filter(|tiles| 2 * **tiles > all).count();
+    assert!(whole <= 2, "{whole} of 60 keys changed most of {all} tiles: {changed:?}");
+    changed.sort_unstable();
+    assert!(4 * changed[30] < all, "the middle key changed {} of {all} tiles", changed[30]);
 }

@@ -143,7 +143,7 @@ pub(in crate::session::actions) fn put_on_path(
     let line = longest.filter(|line| length(line) > 0.0);
     let line = line.ok_or("That layer is no path that a text could run along.")?;
     let next = Text { path: Some(TextPath { line, shift: 0.0 }), ..Text::clone(words) };
-    replace_texts(document, &[text], &next).map_err(|why| why.to_string())
+    replace_texts(document, document, &[text], &next).map_err(|why| why.to_string())
 }
 
 fn text_of(layer: &Arc<Layer>) -> Option<Arc<Text>> {
@@ -181,8 +181,12 @@ pub(super) fn write(open: &mut OpenDocument, text: &Text, at: Vec2) -> Result<()
 
 /// The document with another text in the layers that are texts; `None` where none is. Each keeps
 /// its size and the place where its first baseline begins, and its name if that is not its text.
+///
+/// * `shown`: the document as it is shown, with the keys that are no step yet: a text is painted
+///   over what is seen of it, and lies where that of the last step would.
 pub(super) fn replace_texts(
     document: &Document,
+    shown: &Document,
     ids: &[LayerId],
     text: &Text,
 ) -> Result<Option<Document>> {
@@ -193,19 +197,22 @@ pub(super) fn replace_texts(
     }
     let (file, canvas) = (free_file(document, "text.svg"), document.size);
     let budget = Budget::of_this_machine();
-    let mut laid: Vec<TextPicture> = Vec::new();
+    let mut laid: Vec<(&Live<PlacedImage>, TextPicture)> = Vec::new();
     for id in &ids {
-        let Some(Content::Image(live)) = document.layer(*id).map(|layer| &layer.content) else {
+        let layer = shown.layer(*id).filter(|layer| text_of(layer).is_some());
+        let Some(Content::Image(seen)) =
+            layer.or_else(|| document.layer(*id)).map(|layer| &layer.content)
+        else {
             continue;
         };
-        laid.push(text::lay_out_again(text, &live.params().source.picture, &budget)?);
+        laid.push((seen, text::lay_out_again(text, &seen.params().source.picture, &budget)?));
     }
     let mut laid = laid.into_iter();
     Ok(document.with_layers(&ids, |layer| {
         let Content::Image(live) = &layer.content else { return };
-        let Some(laid) = laid.next() else { return };
+        let Some((seen, laid)) = laid.next() else { return };
         let old = live.params().source.text().cloned();
-        let next = with_text(live, canvas, file.clone(), laid);
+        let next = with_text(live.params(), seen, canvas, file.clone(), laid);
         layer.content = Content::Image(next);
         if old.is_some_and(|old| layer.name == name(&old)) && layer.name != name(text) {
             layer.name = document.free_layer_name(&name(text));
@@ -214,13 +221,36 @@ pub(super) fn replace_texts(
 }
 
 /// An image that shows another text at the same size, its first baseline where it was.
+///
+/// * `seen`: the layer that the text was laid out in the place of.
 fn with_text(
-    live: &Live<PlacedImage>,
+    image: &PlacedImage,
+    seen: &Live<PlacedImage>,
     canvas: Size,
     file: String,
     laid: TextPicture,
 ) -> Live<PlacedImage> {
-    let image = live.params();
+    let placement = placement_of(image, canvas, &laid);
+    let was = seen.params();
+    let unchanged = PlacedImage { source: was.source.clone(), placement, ..image.clone() };
+    let Some(changed) = laid.changed.filter(|_| unchanged == *was) else {
+        let source = source(file, laid, image.source.adjust);
+        return Live::new(PlacedImage { source, ..unchanged });
+    };
+    // What a key did not change stays as it is drawn.
+    let rows = changed.y0.max(0) as u32..changed.y1.max(0) as u32;
+    let mut source = was.source.repainted(file, laid.picture, rows);
+    source.origin = PictureOrigin::Text(Arc::new(laid.text));
+    let next = PlacedImage { source, ..unchanged };
+    match next.seen_rect(canvas, changed) {
+        Some(changed) => seen.with(next, |at| changed.intersect(at.rect()).is_empty()),
+        None => Live::new(next),
+    }
+}
+
+/// Where another text lies in the place of that of an image: at the same size, its first baseline
+/// where it was.
+fn placement_of(image: &PlacedImage, canvas: Size, laid: &TextPicture) -> Placement {
     let (old, new) = (&image.source.picture, &laid.picture);
     let own = Placement::at_own_size(canvas, old, Vec2::ZERO).scale;
     let enlarged = image.placement.scale / own;
@@ -234,19 +264,7 @@ fn with_text(
     let moved = begin(was, old.own_size()) - begin(laid.text.origin, laid.size);
     let center = image.placement.center + moved;
     let placement = Placement { center, scale, rotation: image.placement.rotation };
-    let Some(changed) = laid.changed.filter(|_| is_near(&placement, &image.placement)) else {
-        let source = source(file, laid, image.source.adjust);
-        return Live::new(PlacedImage { source, placement, ..image.clone() });
-    };
-    // What a key did not change stays as it is drawn.
-    let rows = changed.y0.max(0) as u32..changed.y1.max(0) as u32;
-    let mut source = image.source.repainted(file, laid.picture, rows);
-    source.origin = PictureOrigin::Text(Arc::new(laid.text));
-    let next = PlacedImage { source, ..image.clone() };
-    match next.seen_rect(canvas, changed) {
-        Some(seen) => live.with(next, |at| seen.intersect(at.rect()).is_empty()),
-        None => Live::new(next),
-    }
+    if is_near(&placement, &image.placement) { image.placement } else { placement }
 }
 
 /// Whether they are the same but for rounding.
