@@ -15,6 +15,11 @@ pub(in crate::paint) trait SoftKernel: FilterKernel {
     /// How much of the finest detail it leaves at each pixel of a place, row by row: from 0 for none,
     /// to 1 where it changes nothing.
     fn detail_left(&self, place: &FilterPlace, bounds: Rect) -> Vec<f32>;
+
+    /// The filter at half the size, as quickly as a draft may be.
+    fn apply_as_draft(&self, place: &FilterPlace, source: &dyn FilterSource) -> Vec<[f32; 4]> {
+        self.apply(place, source)
+    }
 }
 
 /// How much of its own detail is left in a pixel by the mean of so many, in `[0, 1]`: of the mean of
@@ -43,7 +48,7 @@ pub(super) fn apply(
     let (out, part) = (place.out, small_part(place.out, source.bounds()));
     let small = HalvedSource { bounds: half(source.bounds()), source };
     let small_place = FilterPlace { out: part, canvas_px: 2 * place.canvas_px, ..*place };
-    let mut pixels = halved.apply(&small_place, &small);
+    let mut pixels = halved.apply_as_draft(&small_place, &small);
     let left = halved.detail_left(&small_place, small.bounds);
     let mut all = vec![[0.0; 4]; out.width() * out.height()];
     // Rows of the small part that have detail.
