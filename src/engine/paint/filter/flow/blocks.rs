@@ -1,5 +1,5 @@
-//! The blur along the lines as a draft: the four pixels of a block follow one line side by side, so
-//! that lines are found for a quarter of the pixels. Floor 3.
+//! The blur along the lines as a draft: the four pixels of a block read along one line side by side,
+//! so that lines are followed for a quarter of the pixels. Floor 3.
 
 use super::lines::{FlowJump, FlowLines, FlowPoint};
 use super::{FilterPlace, FilterSource, FilterWindow, FlowBlur};
@@ -19,13 +19,15 @@ pub fn apply(blur: &FlowBlur, place: &FilterPlace, source: &dyn FilterSource) ->
     let around = passes.around.intersect(window.rect());
     let part = (blocks_of(window.rect()), SIDE * place.canvas_px);
     let lines = FlowLines::of(surface, &curvature, blur.across, part);
-    let mut ways = BlockWays::new(blocks_of(around), passes.steps);
-    ways.follow(&lines);
-    let mut means = Vec::with_capacity(around.width() * around.height());
-    mean_along(&window, &ways, around, &mut means);
-    let first = FilterWindow::new(around, means);
+    let (mut steps, mut jumps) = (BlockReads::new(around, passes.steps), Vec::new());
+    follow_steps(&lines, passes.steps as usize, &mut steps, &mut jumps);
+    let mut first = Vec::with_capacity(around.width() * around.height());
+    take_means(&window, &steps, around, &mut first);
+    let first = FilterWindow::new(around, first);
+    let mut hops = BlockReads::new(out, passes.jumps);
+    follow_jumps(&lines, (&jumps, steps.rect), &mut hops);
     let mut all = Vec::with_capacity(out.width() * out.height());
-    mean_of_jumps(&lines, (&first, &ways), out, passes.jumps, &mut all);
+    take_means(&first, &hops, out, &mut all);
     all
 }
 
@@ -35,143 +37,129 @@ fn blocks_of(rect: Rect) -> Rect {
     Rect::new(low(rect.x0), low(rect.y0), high(rect.x1), high(rect.y1))
 }
 
-/// Where the lines through the middles of blocks lead.
-struct BlockWays {
+/// What is read along the lines through the middles of blocks, each way.
+struct BlockReads {
     /// Of blocks.
     rect: Rect,
-    /// Steps of a pixel in a jump.
-    steps: f32,
-    /// How many of them are read, each way.
-    readings: usize,
-    /// Of each block and each of both ways, from its middle to what is read, px; and how many there
-    /// are before the line ends.
-    reads: Vec<Vec2>,
-    counts: Vec<[u32; 2]>,
-    /// Jumps, in blocks.
-    jumps: Vec<[FlowJump; 2]>,
+    /// Of the readings each way, of which the outermost counts in part.
+    half: f32,
+    /// The same in whole ones.
+    count: usize,
+    /// From the middle of each block to what is read, px: along its line, then against it.
+    offsets: Vec<Vec2>,
+    /// How many there are each way before the line ends.
+    found: Vec<[u32; 2]>,
 }
 
-impl BlockWays {
-    fn new(rect: Rect, steps: f32) -> Self {
-        let (count, readings) =
-            (rect.width() * rect.height(), (0.5 * (steps - 1.0)).ceil().max(0.0) as usize);
-        Self {
-            rect,
-            steps,
-            readings,
-            reads: Vec::with_capacity(2 * readings * count),
-            counts: Vec::with_capacity(count),
-            jumps: Vec::with_capacity(count),
-        }
+impl BlockReads {
+    /// * `count`: the readings both ways, and the middle.
+    fn new(pixels: Rect, count: f32) -> Self {
+        let (rect, half) = (blocks_of(pixels), 0.5 * (count - 1.0).max(0.0));
+        let (blocks, count) = (rect.width() * rect.height(), half.ceil() as usize);
+        let offsets = Vec::with_capacity(2 * count * blocks);
+        Self { rect, half, count, offsets, found: Vec::with_capacity(blocks) }
     }
 
-    /// What is read from a block each way.
+    /// What a pixel's block reads.
     #[inline(always)]
-    fn reads_from(&self, x: i32, y: i32) -> [&[Vec2]; 2] {
-        let block = y.div_euclid(SIDE) - self.rect.y0;
-        let block =
-            block as usize * self.rect.width() + (x.div_euclid(SIDE) - self.rect.x0) as usize;
-        let first = 2 * self.readings * block;
-        let (along, against) = self.reads[first..first + 2 * self.readings].split_at(self.readings);
-        let [n, m] = self.counts[block];
+    fn of(&self, x: i32, y: i32) -> [&[Vec2]; 2] {
+        let (x, y) = (x.div_euclid(SIDE) - self.rect.x0, y.div_euclid(SIDE) - self.rect.y0);
+        let block = y as usize * self.rect.width() + x as usize;
+        let first = 2 * self.count * block;
+        let (along, against) = self.offsets[first..first + 2 * self.count].split_at(self.count);
+        let [n, m] = self.found[block];
         [&along[..n as usize], &against[..m as usize]]
-    }
-
-    fn follow(&mut self, lines: &FlowLines) {
-        follow(self, lines);
     }
 }
 
 crate::widest! {
-    fn follow(ways: &mut BlockWays, lines: &FlowLines) {
+    /// Readings a pixel apart, and where lines lead in so many steps, in blocks.
+    fn follow_steps(
+        lines: &FlowLines,
+        steps: usize,
+        reads: &mut BlockReads,
+        jumps: &mut Vec<[FlowJump; 2]>
+    ) {
         const STEP: f32 = 1.0 / SIDE as f32;
-        for y in ways.rect.y0..ways.rect.y1 {
-            for x in ways.rect.x0..ways.rect.x1 {
+        for y in reads.rect.y0..reads.rect.y1 {
+            for x in reads.rect.x0..reads.rect.x1 {
                 let start = lines.start(x, y);
-                let (mut jumps, mut counts) = ([FlowJump::default(); 2], [0; 2]);
+                let (mut ways, mut found) = ([FlowJump::default(); 2], [0; 2]);
                 for (i, heading) in [start.heading, -start.heading].into_iter().enumerate() {
                     let mut here = FlowPoint { heading, ..start };
-                    let (first, mut is_whole) = (ways.reads.len(), heading != Vec2::ZERO);
-                    for step in 0..ways.steps as usize {
+                    let (first, mut is_whole) = (reads.offsets.len(), heading != Vec2::ZERO);
+                    for step in 0..steps {
                         let next = lines.reach(here, here.at + STEP * here.heading, here.heading);
                         let Some(next) = next.filter(|_| is_whole) else {
                             is_whole = false;
                             break;
                         };
                         here = next;
-                        if step < ways.readings {
-                            ways.reads.push(SIDE as f32 * (here.at - start.at));
-                            counts[i] += 1;
+                        if step < reads.count {
+                            reads.offsets.push(SIDE as f32 * (here.at - start.at));
+                            found[i] += 1;
                         }
                     }
-                    ways.reads.resize(first + ways.readings, Vec2::ZERO);
+                    reads.offsets.resize(first + reads.count, Vec2::ZERO);
                     if is_whole {
-                        jumps[i] = FlowJump { by: here.at - start.at, heading: here.heading };
+                        ways[i] = FlowJump { by: here.at - start.at, heading: here.heading };
                     }
                 }
-                ways.counts.push(counts);
-                ways.jumps.push(jumps);
+                reads.found.push(found);
+                jumps.push(ways);
             }
         }
     }
 
-    /// Means of readings a pixel apart; the outermost count in part.
-    fn mean_along(window: &FilterWindow, ways: &BlockWays, out: Rect, means: &mut Vec<[f32; 4]>) {
-        let half = 0.5 * (ways.steps - 1.0);
+    /// Readings a jump apart.
+    ///
+    /// * `jumps`: from each block of a rectangle.
+    fn follow_jumps(lines: &FlowLines, jumps: (&[[FlowJump; 2]], Rect), reads: &mut BlockReads) {
+        for y in reads.rect.y0..reads.rect.y1 {
+            for x in reads.rect.x0..reads.rect.x1 {
+                let start = lines.start(x, y);
+                let mut found = [0; 2];
+                for (i, heading) in [start.heading, -start.heading].into_iter().enumerate() {
+                    let mut here = FlowPoint { heading, ..start };
+                    let first = reads.offsets.len();
+                    for _ in 0..if heading == Vec2::ZERO { 0 } else { reads.count } {
+                        let Some(next) = lines.jump(here, jumps.0, jumps.1) else { break };
+                        here = next;
+                        reads.offsets.push(SIDE as f32 * (here.at - start.at));
+                        found[i] += 1;
+                    }
+                    reads.offsets.resize(first + reads.count, Vec2::ZERO);
+                }
+                reads.found.push(found);
+            }
+        }
+    }
+
+    /// Means of what blocks read.
+    fn take_means(
+        window: &FilterWindow,
+        reads: &BlockReads,
+        out: Rect,
+        means: &mut Vec<[f32; 4]>
+    ) {
         for y in out.y0..out.y1 {
             for x in out.x0..out.x1 {
                 let center = vec2(x as f32 + 0.5, y as f32 + 0.5);
-                let (mut sum, mut weight) = (window.at(x, y), 1.0);
-                for reads in ways.reads_from(x, y) {
-                    let mut left = half;
-                    for by in reads {
+                let (mut mean, mut weight) = (window.at(x, y), 1.0);
+                for offsets in reads.of(x, y) {
+                    let mut left = reads.half;
+                    for by in offsets {
                         let share = left.min(1.0);
-                        let at = center + *by;
-                        let reading = window.sample(at.x, at.y);
+                        let reading = window.sample(center.x + by.x, center.y + by.y);
                         for k in 0..4 {
-                            sum[k] += share * reading[k];
+                            mean[k] += share * reading[k];
                         }
                         (left, weight) = (left - 1.0, weight + share);
                     }
                 }
-                means.push(sum.map(|v| v / weight));
-            }
-        }
-    }
-
-    /// Means of readings a jump apart; the outermost count in part.
-    fn mean_of_jumps(
-        lines: &FlowLines,
-        first: (&FilterWindow, &BlockWays),
-        out: Rect,
-        count: f32,
-        means: &mut Vec<[f32; 4]>
-    ) {
-        let (window, ways) = first;
-        let corner = vec2(lines.rect.x0 as f32, lines.rect.y0 as f32);
-        for y in out.y0..out.y1 {
-            for x in out.x0..out.x1 {
-                let block = lines.start(x.div_euclid(SIDE), y.div_euclid(SIDE));
-                let at = vec2(x as f32 + 0.5, y as f32 + 0.5) / SIDE as f32 - corner;
-                let (mut sum, mut weight) = (window.at(x, y), 1.0);
-                if block.heading != Vec2::ZERO {
-                    for heading in [block.heading, -block.heading] {
-                        let mut here = FlowPoint { at, heading, ..block };
-                        let mut left = 0.5 * (count - 1.0);
-                        while left > 0.0 {
-                            let Some(next) = lines.jump(here, &ways.jumps, ways.rect) else { break };
-                            here = next;
-                            let share = left.min(1.0);
-                            let read = SIDE as f32 * (corner + here.at);
-                            let reading = window.sample(read.x, read.y);
-                            for k in 0..4 {
-                                sum[k] += share * reading[k];
-                            }
-                            (left, weight) = (left - 1.0, weight + share);
-                        }
-                    }
-                }
-                means.push(sum.map(|v| v / weight));
+                let by = 1.0 / weight;
+                mean.iter_mut().for_each(|value| *value *= by);
+                means.push(mean);
             }
         }
     }
