@@ -41,6 +41,8 @@ pub struct RecordReader<'a> {
     drawn_px: u64,
     /// Records keep the values of their colors.
     pub keeps_inks: bool,
+    /// Shapes stay pixels.
+    pub keeps_pixels: bool,
     /// What could not be read.
     pub damage: Vec<String>,
 }
@@ -61,6 +63,7 @@ impl<'a> RecordReader<'a> {
             bytes16: 0,
             drawn_px: 0,
             keeps_inks: false,
+            keeps_pixels: false,
             damage: Vec::new(),
         }
     }
@@ -279,7 +282,8 @@ impl<'a> RecordReader<'a> {
         // What lies between a shape and its line makes them two layers.
         let is_parted = record.stroked && record.line_is_over;
         let is_cut = filled::has_cut_effects(record, size);
-        if self.keeps_inks || is_parted || is_cut || of_outline != Softness::HARD {
+        let keeps_pixels = self.keeps_inks || self.keeps_pixels;
+        if keeps_pixels || is_parted || is_cut || of_outline != Softness::HARD {
             return;
         }
         let found = match record.outline.as_ref() {
@@ -307,7 +311,7 @@ impl<'a> RecordReader<'a> {
         filled: &[u8],
     ) -> bool {
         let size = self.header.size;
-        if !record.rgba.is_empty() || self.keeps_inks {
+        if !record.rgba.is_empty() || self.keeps_inks || self.keeps_pixels {
             return false;
         }
         match ShapePaths::of(record, outline, size) {

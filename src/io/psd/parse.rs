@@ -54,16 +54,26 @@ pub struct ParsedPsd<'a> {
 
 /// Reads a file. Damaged layers are reported and left out; fails only if nothing can be recovered.
 pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<ParsedPsd<'a>> {
-    parse_as(file, bytes, budget, false)
+    parse_as(file, bytes, budget, RecordView::Live)
 }
 
-/// As [`parse`]. `keeps_values`: the records keep the values of a file of inks, Lab or gray, and those
-/// of RGB with a profile.
+/// What is read of records.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum RecordView {
+    /// What is shown in sRGB; shapes as live paths.
+    Live,
+    /// The same, and the pixels of shapes.
+    Pixels,
+    /// The values of a file of inks, Lab or gray, and those of RGB with a profile.
+    Values,
+}
+
+/// As [`parse`].
 pub fn parse_as<'a>(
     file: &Path,
     bytes: &'a [u8],
     budget: &Budget,
-    keeps_values: bool,
+    view: RecordView,
 ) -> Result<ParsedPsd<'a>> {
     let cut = || Error::decode(file, "the file is cut short");
     let mut rest = ByteCursor::new(bytes);
@@ -86,12 +96,14 @@ pub fn parse_as<'a>(
     };
     let length = rest.length(header.large).ok_or_else(cut)?;
     let section = ByteCursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
+    let keeps_values = view == RecordView::Values;
     let own = match keeps_values && header.mode == Mode::Rgb {
         true => Colors { icc: None, ..colors },
         false => colors,
     };
     let mut reader = RecordReader::new(file, budget, &header, &own);
     reader.keeps_inks = keeps_values && matches!(header.mode, Mode::Cmyk | Mode::Lab | Mode::Gray);
+    reader.keeps_pixels = view == RecordView::Pixels;
     let info = layer_info(section, header.large);
     let records = info.map_or_else(|| Ok(Vec::new()), |info| reader.records(info))?;
     let patterns = pattern::read(global_blocks(section, header.large), |px| reader.spend(px))?;

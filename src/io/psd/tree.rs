@@ -11,7 +11,7 @@ use super::inks::InkTones;
 use super::layer_base::{CLIPPED_TO_PASSING, CLIPPED_TOGETHER, IGNORES_ALPHA, LayerBase, is_empty};
 use super::merged::Merged;
 use super::nesting::{with_effects_of_shape, with_effects_within, with_line_over};
-use super::parse::{ParsedPsd, parse, parse_as};
+use super::parse::{ParsedPsd, RecordView, parse, parse_as};
 use super::pattern::PatternResource;
 use super::profiled::{self, show_in_srgb};
 use super::restore::restore;
@@ -54,6 +54,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     }
     notes.extend(color_notes(&parsed));
     let mut own_notes = notes.clone();
+    let has_shapes = parsed.records.iter().any(|record| record.path.is_some());
     let (mut document, mut is_less) = build_document(&mut parsed, budget, &mut own_notes);
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
@@ -62,11 +63,12 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     let has_own_values =
         matches!(parsed.header.mode, Mode::Cmyk | Mode::Lab) || parsed.gray.is_some();
     let has_profile = parsed.header.mode == Mode::Rgb && parsed.has_profile;
-    let merged = parsed.merged.as_ref().filter(|_| has_own_values || has_profile);
+    let merged = parsed.merged.as_ref().filter(|_| has_own_values || has_profile || has_shapes);
     let unlike = merged.filter(|merged| is_shown_otherwise(&document, merged, is_less, &own_notes));
-    let fitted = unlike.and_then(|merged| match has_profile {
-        true => keep_values(file, bytes, budget, merged, &mut notes),
-        false => fit_inks(file, bytes, budget, &mut notes),
+    let fitted = unlike.and_then(|merged| match () {
+        () if has_profile => keep_values(file, bytes, budget, merged, &mut notes),
+        () if has_own_values => fit_inks(file, bytes, budget, &mut notes),
+        () => keep_pixels(file, bytes, budget, merged, &mut notes),
     });
     if let Some(fitted) = fitted {
         (document, is_less) = fitted;
@@ -90,7 +92,7 @@ fn fit_inks(
     budget: &Budget,
     notes: &mut Vec<String>,
 ) -> Option<(Document, bool)> {
-    let mut parsed = parse_as(file, bytes, budget, true).ok()?;
+    let mut parsed = parse_as(file, bytes, budget, RecordView::Values).ok()?;
     let (size, is_deep) = (parsed.header.size, parsed.header.bits > 8);
     let held = parsed.held_bytes.saturating_add(fitting_bytes(&parsed.records, size));
     budget.room(file, "blending its inks", held).ok()?;
@@ -109,7 +111,7 @@ fn keep_values(
     merged: &Merged,
     notes: &mut Vec<String>,
 ) -> Option<(Document, bool)> {
-    let mut parsed = parse_as(file, bytes, budget, true).ok()?;
+    let mut parsed = parse_as(file, bytes, budget, RecordView::Values).ok()?;
     let held = parsed.held_bytes.saturating_mul(2).saturating_add(profiled::TABLE_BYTES);
     budget.room(file, "blending the values of its profile", held).ok()?;
     let icc = parsed.icc?;
@@ -117,6 +119,28 @@ fn keep_values(
     found.push(profiled::NOTE.into());
     let (document, is_less) = build_document(&mut parsed, budget, &mut found);
     let document = show_in_srgb(document, icc)?;
+    if is_shown_otherwise(&document, merged, is_less, &found) {
+        return None;
+    }
+    *notes = found;
+    Some((document, is_less))
+}
+
+/// The document of a file whose shapes are pixels, and whether something was left out; `None` unless
+/// it looks like the file's own picture.
+fn keep_pixels(
+    file: &Path,
+    bytes: &[u8],
+    budget: &Budget,
+    merged: &Merged,
+    notes: &mut Vec<String>,
+) -> Option<(Document, bool)> {
+    const NOTE: &str = "its shapes became pixels: the edges of live ones look otherwise together";
+    let mut parsed = parse_as(file, bytes, budget, RecordView::Pixels).ok()?;
+    budget.room(file, "the pixels of its shapes", parsed.held_bytes.saturating_mul(2)).ok()?;
+    let mut found = notes.clone();
+    found.push(NOTE.into());
+    let (document, is_less) = build_document(&mut parsed, budget, &mut found);
     if is_shown_otherwise(&document, merged, is_less, &found) {
         return None;
     }

@@ -242,6 +242,27 @@ fn a_shape_whose_pixels_are_others_keeps_them() {
 }
 
 #[test]
+fn pixels_of_shapes_are_kept_where_live_ones_look_otherwise() {
+    let fill = descriptor(&[("Clr ", rgb([200, 10, 20]))]);
+    // The edge lies in the middle of the third column, and the file covers more of it.
+    let mut layer = colored_layer("shape", 4, 4, [200, 10, 20]);
+    layer.channels.push((-1, [0, 255, 148, 0].repeat(4)));
+    layer.blocks = vec![(b"SoCo", fill), (b"vmsk", rectangle([0.25, 0.0, 0.625, 1.0]))];
+    let mut made = plain(4, 4, [100; 3]);
+    made.layers.as_mut().unwrap().push(layer);
+    let row = |color: u8, edge: u8| [100, color, edge, 100].repeat(4);
+    for (edge, is_live) in [([158, 48, 54], false), ([150, 55, 60], true)] {
+        made.merged = vec![row(200, edge[0]), row(10, edge[1]), row(20, edge[2])];
+        let opened = open(&made);
+        let layer = &opened.document.layers[1];
+        assert_eq!(path_of(layer).is_some(), is_live, "{:?}", opened.notes);
+        let became = opened.notes.iter().any(|note| note.contains("its shapes became pixels"));
+        assert_eq!((became, opened.document.layers.len()), (!is_live, 2), "{:?}", opened.notes);
+        assert_eq!(pixel(&opened.document, 2, 1)[..3], edge);
+    }
+}
+
+#[test]
 fn a_painted_mask_stays_a_mask_beside_the_path() {
     let fill = descriptor(&[("Clr ", rgb([200, 10, 20]))]);
     let mut layer =
