@@ -10,6 +10,7 @@ pub mod crop;
 mod follow;
 mod frame_input;
 mod gizmo;
+mod ground;
 mod guides;
 mod loupe;
 mod marks;
@@ -45,10 +46,8 @@ use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{ShownColors, ShownLook, corners, on_screen, quad};
-use eframe::egui::{
-    self, Color32, ColorImage, Painter, Sense, Stroke, TextureHandle, TextureOptions,
-    TextureWrapMode, Ui, pos2,
-};
+use eframe::egui::{self, Color32, Painter, Sense, Stroke, TextureHandle, Ui, pos2};
+use ground::{Checker, surround_shape};
 use overlay::{Insets, Overlay};
 use parts::PartMarks;
 use pointer::PointerState;
@@ -75,7 +74,7 @@ pub struct Canvas {
     key: Option<usize>,
     wanted: Option<(Document, bool)>,
     hand: PointerState,
-    checker: Option<TextureHandle>,
+    checker: Checker,
     overlay: Overlay,
     insets: Insets,
     ants: Ants,
@@ -134,7 +133,7 @@ impl Canvas {
             key: None,
             wanted: None,
             hand: PointerState::default(),
-            checker: None,
+            checker: Checker::default(),
             overlay: Overlay::default(),
             insets: Insets::default(),
             ants: Ants::default(),
@@ -198,7 +197,7 @@ impl Canvas {
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, tr("Canvas")));
         self.area_pt = vec2(rect.width(), rect.height());
-        ui.painter().rect_filled(rect, 0.0, theme::surround(ui.visuals()));
+        let ground = ui.painter().rect_filled(rect, 0.0, theme::surround(ui.visuals()));
         let Some(open) = session.active() else { return self.hand.overhear(ui) };
         let area_before_pt = self.areas_pt.insert(open.key, self.area_pt).unwrap_or(self.area_pt);
         let Some(view) = open.view else {
@@ -228,8 +227,10 @@ impl Canvas {
         let painter = ui.painter_at(rect);
         let canvas = size.rect();
         let outline = corners(canvas).map(|(x, y)| on_screen(screen_from_canvas, x, y));
-        self.draw_checker(ui, &painter, outline);
-        self.texture_in_front(layout.is_some()).draw(&painter, screen_from_canvas, size);
+        painter.set(ground, surround_shape(rect, outline, ui.visuals()));
+        let checker = self.checker.texture(ui.ctx());
+        let picture = self.texture_in_front(layout.is_some());
+        picture.draw(&painter, checker, screen_from_canvas, size);
         if layout.is_none() {
             if self.is_wobbling(ui, open.shown_document(), &painter, screen_from_canvas) {
                 return;
@@ -412,28 +413,14 @@ impl Canvas {
         screen_from_canvas: Affine2,
     ) {
         let Some(size) = session.shown_document().map(|document| document.size) else { return };
-        let at = corners(size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
-        if let Some(checker) = &self.checker {
-            painter.add(checker_shape(checker.id(), at));
-        }
-        self.texture_in_front(false).draw(painter, screen_from_canvas, size);
+        let checker = self.checker.texture(ctx);
+        self.texture_in_front(false).draw(painter, checker, screen_from_canvas, size);
         self.draw_overlay(ctx, session, painter, screen_from_canvas);
     }
 
     /// The window has read the pen's events of a frame, in all its views.
     pub fn end_frame(&mut self) {
         self.hand.end_frame();
-    }
-
-    fn draw_checker(&mut self, ui: &Ui, painter: &egui::Painter, canvas: [egui::Pos2; 4]) {
-        let [light, dark] = theme::CHECKER;
-        let texture = self.checker.get_or_insert_with(|| {
-            let image = ColorImage::new([2, 2], vec![light, dark, dark, light]);
-            let options =
-                TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
-            ui.ctx().load_texture("checker", image, options)
-        });
-        painter.add(checker_shape(texture.id(), canvas));
     }
 
     fn draw_overlay(
@@ -459,13 +446,6 @@ impl Canvas {
             Color32::from_white_alpha((session.overlay_opacity * 255.0) as u8),
         ));
     }
-}
-
-/// The squares behind what is transparent, of the same size at any zoom.
-fn checker_shape(texture: egui::TextureId, canvas: [egui::Pos2; 4]) -> egui::Shape {
-    const SQUARES_PT: f32 = 16.0;
-    let uv = canvas.map(|p| (p, pos2(p.x / SQUARES_PT, p.y / SQUARES_PT)));
-    quad(texture, uv, Color32::WHITE)
 }
 
 /// The visible canvas pixels.

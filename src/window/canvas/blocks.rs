@@ -5,7 +5,7 @@ use crate::io::proof::ProofTable;
 use crate::math::{Affine2, ColorProfile, Rect, Size, srgb, vec2};
 use crate::raster::{TILE, TileAt, TileGrid};
 use eframe::egui::{
-    self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle,
+    self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle, TextureId,
     TextureOptions, TextureWrapMode, pos2,
 };
 use std::collections::BTreeMap;
@@ -42,9 +42,15 @@ impl Magnification {
 #[derive(Default)]
 pub struct TextureBlocks {
     size: Option<Size>,
-    textures: BTreeMap<(i32, i32), TextureHandle>,
+    textures: BTreeMap<(i32, i32), TextureBlock>,
     magnification: Magnification,
     colors: ShownColors,
+}
+
+struct TextureBlock {
+    texture: TextureHandle,
+    /// Whether nothing is seen through it.
+    is_opaque: bool,
 }
 
 /// In which colors a picture is seen.
@@ -150,19 +156,20 @@ impl TextureBlocks {
         for (block, area) in changed {
             let options = self.options();
             let whole = block_rect(block);
+            let shown = whole.intersect(size.rect());
             match self.textures.get_mut(&block) {
-                Some(texture) => {
+                Some(TextureBlock { texture, is_opaque }) => {
                     let at = [(area.x0 - whole.x0) as usize, (area.y0 - whole.y0) as usize];
                     let image = image(grid, area, size, &self.colors);
+                    let is_whole = area.intersect(shown) == shown;
+                    *is_opaque = (*is_opaque || is_whole) && is_covered(&image, area, shown);
                     texture.set_partial(at, image, options);
                 }
-                None if !whole.intersect(size.rect()).is_empty() => {
-                    let texture = ctx.load_texture(
-                        format!("canvas {block:?}"),
-                        image(grid, whole, size, &self.colors),
-                        options,
-                    );
-                    self.textures.insert(block, texture);
+                None if !shown.is_empty() => {
+                    let image = image(grid, whole, size, &self.colors);
+                    let is_opaque = is_covered(&image, whole, shown);
+                    let texture = ctx.load_texture(format!("canvas {block:?}"), image, options);
+                    self.textures.insert(block, TextureBlock { texture, is_opaque });
                 }
                 None => {}
             }
@@ -174,7 +181,7 @@ impl TextureBlocks {
         let Some(size) = self.size.filter(|_| self.magnification != magnification) else { return };
         self.magnification = magnification;
         let options = self.options();
-        for (&block, texture) in &mut self.textures {
+        for (&block, TextureBlock { texture, .. }) in &mut self.textures {
             let whole = block_rect(block);
             let tile = Rect::new(whole.x0, whole.y0, whole.x0 + 1, whole.y0 + 1);
             texture.set_partial([0, 0], image(grid, tile, size, &self.colors), options);
@@ -188,7 +195,7 @@ impl TextureBlocks {
         }
         self.colors = colors.clone();
         let (Some(size), options) = (self.size, self.options()) else { return };
-        for (&block, texture) in &mut self.textures {
+        for (&block, TextureBlock { texture, .. }) in &mut self.textures {
             texture.set(image(grid, block_rect(block), size, colors), options);
         }
     }
@@ -208,20 +215,37 @@ impl TextureBlocks {
         }
     }
 
-    /// Draws the blocks; `screen_from_canvas` in the window's points.
-    pub fn draw(&self, painter: &Painter, screen_from_canvas: Affine2) {
+    /// Draws the blocks, and behind those that are not opaque squares; `screen_from_canvas` in the
+    /// window's points.
+    pub fn draw(&self, painter: &Painter, checker: TextureId, screen_from_canvas: Affine2) {
         let Some(size) = self.size else { return };
-        for (&block, texture) in &self.textures {
+        let end = |px: u32| (px as i32 + BLOCK - 1).div_euclid(BLOCK);
+        let all = (0..end(size.height)).flat_map(|y| (0..end(size.width)).map(move |x| (x, y)));
+        for block in all {
             let whole = block_rect(block);
             let shown = whole.intersect(size.rect());
             let uv = |x: i32, y: i32| {
                 pos2((x - whole.x0) as f32 / BLOCK as f32, (y - whole.y0) as f32 / BLOCK as f32)
             };
-            let corners =
-                corners(shown).map(|(x, y)| (on_screen(screen_from_canvas, x, y), uv(x, y)));
-            painter.add(quad(texture.id(), corners, Color32::WHITE));
+            let at = corners(shown).map(|(x, y)| on_screen(screen_from_canvas, x, y));
+            let known = self.textures.get(&block);
+            if known.is_none_or(|known| !known.is_opaque) {
+                painter.add(checker_shape(checker, at));
+            }
+            if let Some(TextureBlock { texture, .. }) = known {
+                let uv = corners(shown).map(|(x, y)| uv(x, y));
+                let corners = [0, 1, 2, 3].map(|i| (at[i], uv[i]));
+                painter.add(quad(texture.id(), corners, Color32::WHITE));
+            }
         }
     }
+}
+
+/// Squares of the same size at any zoom, in a quadrilateral; two that are side by side fit.
+fn checker_shape(texture: TextureId, corners: [Pos2; 4]) -> Shape {
+    const SQUARES_PT: f32 = 16.0;
+    let uv = corners.map(|p| (p, pos2(p.x / SQUARES_PT, p.y / SQUARES_PT)));
+    quad(texture, uv, Color32::WHITE)
 }
 
 /// A textured quadrilateral, its corners in order around it.
@@ -275,6 +299,18 @@ fn image(grid: &TileGrid, rect: Rect, canvas: Size, colors: &ShownColors) -> Col
     ColorImage::new([width, height], pixels)
 }
 
+/// Whether the pixels of a part are all opaque.
+///
+/// * `part`: what the image shows of the canvas, of which only a rectangle is seen.
+fn is_covered(image: &ColorImage, part: Rect, seen: Rect) -> bool {
+    let seen = seen.intersect(part);
+    let (left, width) = ((seen.x0 - part.x0) as usize, seen.width());
+    (seen.y0..seen.y1).all(|y| {
+        let row = (y - part.y0) as usize * image.size[0] + left;
+        image.pixels[row..row + width].iter().all(|pixel| pixel.a() == 255)
+    })
+}
+
 /// The gray of the same luminance and opacity; both premultiplied.
 fn value_of([r, g, b, a]: [u8; 4]) -> [u8; 4] {
     if a == 0 {
@@ -293,6 +329,34 @@ fn value_of([r, g, b, a]: [u8; 4]) -> [u8; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn squares_are_drawn_behind_blocks_that_something_is_seen_through() {
+        let ctx = egui::Context::default();
+        let (width, height) = (600, 40);
+        let paint = |alpha: [u8; 2]| {
+            let texel = |i: usize| [9, 90, 200, alpha[usize::from(i % width >= 520)]];
+            let bytes: Vec<u8> = (0..width * height).flat_map(texel).collect();
+            TileGrid::from_straight_rgba(&bytes, width, height, 0, 0)
+        };
+        let mut blocks = TextureBlocks::default();
+        let size = Size::new(width as u32, height as u32);
+        blocks.begin(size);
+        let all = || TileAt::covering(size.rect());
+        let opaque = |blocks: &TextureBlocks| {
+            blocks.textures.values().map(|block| block.is_opaque).collect::<Vec<_>>()
+        };
+        blocks.update(&ctx, &paint([255, 255]), all());
+        assert_eq!(opaque(&blocks), [true, true]);
+        // One tile of the second block is seen through; opaque again, the rest is not known.
+        let last = TileAt::of_pixel(599, 0);
+        blocks.update(&ctx, &paint([255, 254]), [last].into_iter());
+        assert_eq!(opaque(&blocks), [true, false]);
+        blocks.update(&ctx, &paint([255, 255]), [last].into_iter());
+        assert_eq!(opaque(&blocks), [true, false]);
+        blocks.update(&ctx, &paint([255, 255]), all());
+        assert_eq!(opaque(&blocks), [true, true]);
+    }
 
     #[test]
     fn grays_stay_and_colors_become_the_gray_of_their_luminance() {

@@ -2,6 +2,8 @@
 //! or a detail on another screen. Both are painted in; each has its own zoom. Floor 7.
 
 use super::ants::Ants;
+use super::blocks::{corners, on_screen};
+use super::ground::surround_shape;
 use super::parts::PartMarks;
 use super::pointer::PointerState;
 use super::{Canvas, guides, marks, to_screen, tool_keys, visible_rect, words};
@@ -97,12 +99,15 @@ impl SecondView {
         let response = ui.interact(rect, Id::unique("second view"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr("Second view")));
         let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 0.0, theme::surround(ui.visuals()));
+        let ground = painter.rect_filled(rect, 0.0, theme::surround(ui.visuals()));
         let Some(open) = session.active() else { return self.hand.overhear(ui) };
         let view = self.view_of(open, vec2(rect.width(), rect.height()));
         let middle = rect.center();
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();
+        let outline = corners(open.shown_document().size.rect());
+        let outline = outline.map(|(x, y)| on_screen(screen_from_canvas, x, y));
+        painter.set(ground, surround_shape(rect, outline, ui.visuals()));
         canvas.draw_elsewhere(ui.ctx(), session, &painter, screen_from_canvas);
         if session.shows_saved {
             words::show_badge(ui, rect, words::AS_SAVED);

@@ -94,14 +94,21 @@ impl TileSheet {
         self.blocks.show_in(colors, &self.grid);
     }
 
-    /// Draws it where the canvas lies, as large as the canvas.
-    pub fn draw(&self, painter: &egui::Painter, screen_from_canvas: Affine2, canvas: Size) {
+    /// Draws it where the canvas lies, as large as the canvas, and behind it squares where it may be
+    /// transparent.
+    pub fn draw(
+        &self,
+        painter: &egui::Painter,
+        checker: egui::TextureId,
+        screen_from_canvas: Affine2,
+        canvas: Size,
+    ) {
         let Some(size) = self.size else { return };
         let scale = vec2(
             canvas.width as f32 / size.width as f32,
             canvas.height as f32 / size.height as f32,
         );
-        self.blocks.draw(painter, screen_from_canvas * Affine2::from_scale(scale));
+        self.blocks.draw(painter, checker, screen_from_canvas * Affine2::from_scale(scale));
     }
 }
 
