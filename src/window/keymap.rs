@@ -180,12 +180,24 @@ pub fn key_text(ctx: &Context, keys: KeyboardShortcut) -> String {
     let symbol = key.symbol_or_name();
     let shown = if symbol.is_ascii() { symbol } else { key.name() };
     // Letters and digits are the same in all languages.
-    let shown = if shown.len() > 1 { tr(shown) } else { shown };
+    let shown = if shown.len() > 1 { tr_key(shown) } else { shown };
     let held = held.split_inclusive('+').map(|word| match word.strip_suffix('+') {
-        Some(word) => format!("{}+", tr(word)),
-        None => tr(word).to_owned(),
+        Some(word) => format!("{}+", tr_key(word)),
+        None => tr_key(word).to_owned(),
     });
     held.chain([shown.to_owned()]).collect()
+}
+
+/// What is written on a key, in the current language.
+fn tr_key(name: &str) -> &str {
+    match name {
+        "Shift" => tr("Shift"),
+        "Insert" => tr("Insert"),
+        "PageUp" => tr("PageUp"),
+        "PageDown" => tr("PageDown"),
+        "Minus" => "-",
+        other => tr(other),
+    }
 }
 
 /// “Ctrl+Shift+Z”, the same on every system.

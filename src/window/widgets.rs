@@ -6,7 +6,7 @@ mod value_bar;
 
 use super::icons::Icon;
 use super::theme::{self, color32, outline};
-use crate::language::{tr, tr_number};
+use crate::language::{find_translation, tr, tr_number};
 use crate::math::srgb::Color;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
@@ -179,10 +179,10 @@ pub fn choice<T: Copy + PartialEq>(
 ) -> Option<T> {
     let shown = choices.iter().find(|(choice, _)| *choice == current).map_or("", |(_, word)| word);
     let mut to = current;
-    let combo = egui::ComboBox::from_id_salt(label).selected_text(tr(&sentence(shown)));
+    let combo = egui::ComboBox::from_id_salt(label).selected_text(tr_sentence(shown));
     let combo = combo.show_ui(ui, |ui| {
         for (choice, word) in choices {
-            ui.selectable_value(&mut to, *choice, tr(&sentence(word)));
+            ui.selectable_value(&mut to, *choice, tr_sentence(word));
         }
     });
     set_accessible_name(&combo.response, tr(label));
@@ -206,8 +206,20 @@ pub fn choice_row<T: Copy + PartialEq>(
 
 /// A name such as “color-dodge” for display.
 pub fn sentence(word: &str) -> String {
-    let spaced = word.replace('-', " ");
-    let mut letters = spaced.chars();
+    capitalize(&word.replace('-', " "))
+}
+
+/// The same in the current language, by the row of what is displayed or of the name.
+pub fn tr_sentence(word: &str) -> String {
+    let english = sentence(word);
+    match find_translation(&english) {
+        Some(row) => row.to_owned(),
+        None => find_translation(word).map_or(english, capitalize),
+    }
+}
+
+fn capitalize(text: &str) -> String {
+    let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 

@@ -18,7 +18,7 @@ use crate::language::{tr, tr_message};
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedFile};
 use crate::tr;
-use crate::widgets::{check_box, choice_row, sentence, set_accessible_name};
+use crate::widgets::{check_box, choice_row, set_accessible_name, tr_sentence};
 use eframe::egui::{
     self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2,
 };
@@ -369,7 +369,7 @@ impl ImportDialog {
                             StrokeKind::Inside,
                         );
                     }
-                    let text = RichText::new(tr(&sentence(name)));
+                    let text = RichText::new(tr_sentence(name));
                     ui.label(if is_chosen { text.strong() } else { text });
                     if response.clicked() {
                         chosen = Some(i);

@@ -19,13 +19,6 @@ impl PaintChange {
     }
 
     /// What the button says that does it.
-    fn verb(&self) -> &'static str {
-        match self {
-            Self::Adjust(_) => "Adjust",
-            Self::Filter(_) => "Filter",
-        }
-    }
-
     /// Shows what it is set by; with what it became.
     fn show(&self, ui: &mut Ui, requests: &mut UiRequests) -> Option<Self> {
         match self {
@@ -63,7 +56,7 @@ impl PaintChangeDialog {
             self.change = changed.unwrap_or_else(|| self.change.clone());
             self.act(requests, false);
         }
-        match buttons(ui, self.change.verb(), true) {
+        match buttons(ui, "Apply", true) {
             Some(true) => {
                 self.is_done = true;
                 self.act(requests, true);

@@ -55,7 +55,7 @@ impl PanelsDialog {
 
     pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         set_width(ui, 380.0);
-        ui.heading(tr("Panels"));
+        ui.heading(tr("Comic panels"));
         ui.label(tr(match (&self.layer, self.within) {
             (Some(_), _) => "The shape of the selected path becomes panels.",
             (None, Some(_)) => "The box around the selection becomes panels.",

@@ -17,7 +17,7 @@ use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::tr;
-use crate::widgets::{NumberField, check, choice_row, sentence, set_accessible_name};
+use crate::widgets::{NumberField, check, choice_row, sentence, set_accessible_name, tr_sentence};
 use eframe::egui::{self, Ui};
 
 /// The sections of the brush editor that can be unfolded.
@@ -293,10 +293,10 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     }
     let menu = ui.menu_button(tr("+ Let something follow…"), |ui| {
         for (property, name) in Property::ALL {
-            ui.menu_button(tr(&sentence(name)), |ui| {
+            ui.menu_button(tr_sentence(name), |ui| {
                 for (input, name) in Input::ALL {
                     let is_new = brush.dynamics.curve(property, input).is_none();
-                    if ui.add_enabled(is_new, egui::Button::new(tr(&sentence(name)))).clicked() {
+                    if ui.add_enabled(is_new, egui::Button::new(tr_sentence(name))).clicked() {
                         to = Some(brush.dynamics.with(property, input, Curve::Share(1.0)));
                         ui.close();
                     }

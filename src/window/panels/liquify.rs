@@ -7,13 +7,13 @@ use crate::paint::{LiquifySettings, LiquifyTool};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::widgets::{NumberField, check_box, sentence};
+use crate::widgets::{NumberField, check_box, tr_sentence};
 use eframe::egui::{Button, Ui};
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (now, mut to) = (session.tools.liquify, None);
     for (tool, label) in LiquifyTool::LABELS {
-        let button = Button::selectable(now.tool == tool, tr(&sentence(label)));
+        let button = Button::selectable(now.tool == tool, tr_sentence(label));
         if ui.add(button).on_hover_text(tr(tool.hint())).clicked() {
             to = Some(LiquifySettings { tool, ..now });
         }

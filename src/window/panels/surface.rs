@@ -6,7 +6,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session};
 use crate::tr;
-use crate::widgets::{NumberField, sentence, title};
+use crate::widgets::{NumberField, title, tr_sentence};
 use eframe::egui::{Button, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         for &view in &views {
             let is_on = session.overlay.as_deref() == Some(view.name());
             if ui
-                .add(Button::selectable(is_on, tr(&sentence(view.name()))))
+                .add(Button::selectable(is_on, tr_sentence(view.name())))
                 .on_hover_text(tr(describe(view)))
                 .clicked()
             {

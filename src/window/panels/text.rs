@@ -114,7 +114,7 @@ fn lines(ui: &mut Ui, words: &Text, setter: &mut LayerSetter) {
 /// Where on its path a text is.
 fn along_path(ui: &mut Ui, path: &TextPath, words: &Text, setter: &mut LayerSetter) {
     let worded = |path: Option<TextPath>| Property::Worded { text: Text { path, ..words.clone() } };
-    let shift = NumberField::new("Shift", -2000.0..=2000.0, "Moves the text along its path");
+    let shift = NumberField::new("Offset", -2000.0..=2000.0, "Moves the text along its path");
     let shift = shift.px().decimals(0).row(ui, path.shift);
     setter.take(shift.map(|c| c.map(|shift| worded(Some(TextPath { shift, ..path.clone() })))));
     ui.horizontal(|ui| {

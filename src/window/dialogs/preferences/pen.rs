@@ -102,7 +102,7 @@ impl PenPage {
         if self.drawn.is_empty() {
             let font = eframe::egui::TextStyle::Body.resolve(ui.style());
             let middle = eframe::egui::Align2::CENTER_CENTER;
-            painter.text(rect.center(), middle, "Draw here", font, visuals.weak_text_color());
+            painter.text(rect.center(), middle, tr("Draw here"), font, visuals.weak_text_color());
         }
     }
 
