@@ -40,6 +40,8 @@ mod x11 {
     const SCREEN: (i32, i32) = (1920, 1080);
     /// An event with no visible answer within this time counts as lost.
     const LOST: Duration = Duration::from_secs(3);
+    /// Lines that are painted.
+    const LINES: i32 = 4;
     /// Side of the squares that are watched.
     const SIDE: i32 = 48;
 
@@ -329,6 +331,7 @@ mod x11 {
             self.xdotool(&["key", "b"])?;
             self.wait_until_still()?;
             self.paint(&format!("a brush, the whole of {of}"), 12)?;
+            self.undo_lines()?;
             self.xdotool(&["key", "1"])?;
             self.wait_until_still()?;
             self.paint(&format!("a brush, a part of {of}"), 50)?;
@@ -340,15 +343,21 @@ mod x11 {
             self.xdotool(&["key", "b", "F3", "bracketright", "bracketright", "bracketright"])?;
             self.wait_until_still()?;
             self.paint(&format!("a gloss brush, all of {of}"), 40)?;
+            self.undo_lines()?;
             self.xdotool(&["key", "1"])?;
             self.wait_until_still()?;
             self.paint(&format!("a gloss brush, a part of {of}"), 80)
         }
 
-        /// Four lines; `step` px between two motions, more than a radius.
+        /// Where lines were painted, no dab is seen.
+        fn undo_lines(&self) -> Result<()> {
+            self.xdotool(&[&["key"][..], &["ctrl+z"; LINES as usize]].concat())
+        }
+
+        /// Lines; `step` px between two motions, more than a radius.
         fn paint(&self, what: &str, step: i32) -> Result<()> {
             let mut took = Vec::new();
-            for line in 0..4 {
+            for line in 0..LINES {
                 let (left, y) = (self.middle.0 - 300, self.middle.1 - 150 + 90 * line);
                 self.move_to(left, y)?;
                 sleep(Duration::from_millis(200));
@@ -389,9 +398,13 @@ mod x11 {
         let mut ms: Vec<f32> = took.iter().flatten().copied().collect();
         ms.sort_by(f32::total_cmp);
         let Some(&slowest) = ms.last() else { return println!("{what:<44} nothing was seen") };
-        let (middle, most, lost) = (ms[ms.len() / 2], ms[ms.len() * 9 / 10], took.len() - ms.len());
-        let note =
-            if lost > 0 { format!("   {lost} of {} not seen", took.len()) } else { String::new() };
+        let (middle, most) = (ms[ms.len() / 2], ms[ms.len() * 9 / 10]);
+        let lost: Vec<String> =
+            (0..took.len()).filter(|i| took[*i].is_none()).map(|i| i.to_string()).collect();
+        let note = match lost.len() {
+            0 => String::new(),
+            count => format!("   {count} of {} not seen: {}", took.len(), lost.join(" ")),
+        };
         println!("{what:<44} {middle:>8.1} {most:>8.1} {slowest:>8.1}{note}");
     }
 }
