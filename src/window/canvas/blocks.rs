@@ -242,7 +242,7 @@ impl TextureBlocks {
 }
 
 /// Squares of the same size at any zoom, in a quadrilateral; two that are side by side fit.
-fn checker_shape(texture: TextureId, corners: [Pos2; 4]) -> Shape {
+pub fn checker_shape(texture: TextureId, corners: [Pos2; 4]) -> Shape {
     const SQUARES_PT: f32 = 16.0;
     let uv = corners.map(|p| (p, pos2(p.x / SQUARES_PT, p.y / SQUARES_PT)));
     quad(texture, uv, Color32::WHITE)

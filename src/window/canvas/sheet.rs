@@ -1,7 +1,7 @@
 //! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the
 //! full one, and a smaller one during drags. Floor 7.
 
-use super::blocks::{Magnification, ShownColors, TextureBlocks};
+use super::blocks::{Magnification, ShownColors, TextureBlocks, checker_shape, corners, on_screen};
 use crate::io::platform::Instant;
 use crate::math::{Affine2, Size, vec2};
 use crate::raster::{Tile, TileAt, TileGrid};
@@ -103,7 +103,12 @@ impl TileSheet {
         screen_from_canvas: Affine2,
         canvas: Size,
     ) {
-        let Some(size) = self.size else { return };
+        let Some(size) = self.size else {
+            // Nothing is painted yet.
+            let at = corners(canvas.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
+            painter.add(checker_shape(checker, at));
+            return;
+        };
         let scale = vec2(
             canvas.width as f32 / size.width as f32,
             canvas.height as f32 / size.height as f32,
