@@ -351,17 +351,26 @@ fn painted(scene: &Scene, angle: f32) -> Document {
 }
 
 /// The painter's light on 1080p with balls, two threads: the whole picture from nothing, with a lamp
-/// that moved, and the same while it is dragged.
-#[divan::bench(args = ["from nothing", "another lamp", "dragged"], sample_count = 20, sample_size = 1)]
+/// that moved, and the same while it is dragged: with all pixels, and at half the size, as the window
+/// shows it where all pixels take longer than a frame.
+#[divan::bench(
+    args = ["from nothing", "another lamp", "dragged", "dragged at half the size"],
+    sample_count = 20,
+    sample_size = 1
+)]
 fn painters_light(bencher: Bencher, what: &str) {
     let (pool, mut step) = (pool(2), 0u32);
     let kept = balls(HD);
-    let draw = |scene: &Scene, angle: f32| {
-        let document = painted(scene, angle);
-        let document = match what {
-            "dragged" => DocumentReducer::new(1.0).of(&document).expect("of its own size"),
-            _ => document,
-        };
+    let mut reducer = match what {
+        "dragged" => Some(DocumentReducer::new(1.0)),
+        "dragged at half the size" => Some(DocumentReducer::new(0.5)),
+        _ => None,
+    };
+    let mut draw = |scene: &Scene, angle: f32| {
+        let mut document = painted(scene, angle);
+        if let Some(reducer) = &mut reducer {
+            document = reducer.of(&document).expect("a small document");
+        }
         pool.install(|| rilievo::flatten(&document, &Progress::default())).expect("not canceled")
     };
     draw(&kept, 0.1);

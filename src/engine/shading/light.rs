@@ -117,6 +117,11 @@ impl RowLight {
         }
     }
 
+    /// Whether ℓ is the same at every pixel.
+    pub fn is_afar(&self) -> bool {
+        matches!(self.stands, RowLightPosition::Afar(_))
+    }
+
     /// The direction for κ(ℓ).
     pub fn direction(&self) -> LightDirection<'_> {
         match self.stands {

@@ -31,7 +31,8 @@ impl Shading {
         let features = self.features.on(surface);
         let (x0, width) = (inside.x0 as usize, inside.width());
         let mut surface_row = SurfaceRow::new(surface, &features, x0, inside.y0 as usize, width);
-        let (mut lights, mut terms) = (self.row_lights(surface), PainterTerms::new(self, surface));
+        let mut lights = self.row_lights(surface);
+        let mut terms = PainterTerms::new(self, surface, &lights);
         let (ground, mut tones) = (self.ground_maps(surface), KnownTones::default());
         for (row, y) in pixels.rows_mut().iter_mut().zip(inside.y0..inside.y1) {
             surface_row.move_to(y as usize);
@@ -69,7 +70,9 @@ impl Shading {
     ) {
         let ground = front.map_or(Vec::new(), |front| self.ground_maps(front));
         let mut lit = sheet.map(|sheet| {
-            (sheet, self.features.on(sheet), self.row_lights(sheet), PainterTerms::new(self, sheet))
+            let lights = self.row_lights(sheet);
+            let terms = PainterTerms::new(self, sheet, &lights);
+            (sheet, self.features.on(sheet), lights, terms)
         });
         let mut tones = KnownTones::default();
         let rows = places.chunks_exact(TILE).zip(canvas.chunks_exact(TILE));

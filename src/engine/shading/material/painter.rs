@@ -12,6 +12,7 @@ use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, LightDirection, RowValues, SurfaceRow};
 use crate::surface::Surface;
 use crate::surface::shadow::ContactShade;
+use crate::surface::view::Eye;
 use std::sync::Arc;
 
 /// The powers of a color's channels where the light turns: light that bounced in the body is
@@ -48,8 +49,8 @@ pub struct PainterTerms {
     fixed: FixedTerms,
     is_scaled: bool,
     normal: [RowValues; 3],
-    /// n in each pixel's own frame.
-    normal_seen: [RowValues; 3],
+    /// n in each pixel's own frame, if the surface is seen from nearby.
+    normal_seen: Option<Box<[RowValues; 3]>>,
     higher: RowValues,
     lower: RowValues,
     kappa: RowValues,
@@ -59,10 +60,11 @@ pub struct PainterTerms {
 const LEVEL_ROW: [RowValues; 3] = [[0.0; TILE], [0.0; TILE], [1.0; TILE]];
 
 impl PainterTerms {
-    pub fn new(shading: &Shading, surface: &Surface) -> Self {
-        let lamp = || LampRow {
-            toward: LEVEL_ROW,
-            toward_seen: LEVEL_ROW,
+    /// `lights`: those of the shading, along any row.
+    pub fn new(shading: &Shading, surface: &Surface, lights: &[RowLight]) -> Self {
+        let lamp = |light: &RowLight| LampRow {
+            toward: light.direction,
+            toward_seen: light.direction,
             seen: [1.0; TILE],
             kappa: [0.0; TILE],
         };
@@ -72,11 +74,11 @@ impl PainterTerms {
             fixed: FixedTerms::of(shading),
             is_scaled: terms.iter().any(|term| term.is_scaled()),
             normal: LEVEL_ROW,
-            normal_seen: LEVEL_ROW,
+            normal_seen: (surface.eye() != Eye::Afar).then(|| Box::new(LEVEL_ROW)),
             higher: [0.0; TILE],
             lower: [0.0; TILE],
             kappa: [0.0; TILE],
-            lamps: shading.lights.iter().map(|_| lamp()).collect(),
+            lamps: lights.iter().map(lamp).collect(),
         }
     }
 
@@ -90,7 +92,9 @@ impl PainterTerms {
             }
         };
         put(&mut self.normal, &row.normal);
-        put(&mut self.normal_seen, row.seen_normal());
+        if let Some(seen) = &mut self.normal_seen {
+            put(seen, row.seen_normal());
+        }
         self.contact.higher.read(row.x0, row.y, &mut self.higher[to..to + width]);
         self.contact.lower.read(row.x0, row.y, &mut self.lower[to..to + width]);
         if self.is_scaled {
@@ -98,8 +102,13 @@ impl PainterTerms {
             self.kappa[to..to + width].copy_from_slice(&kappa[..width]);
         }
         for (lamp, light) in self.lamps.iter_mut().zip(lights) {
-            put(&mut lamp.toward, &light.direction);
-            put(&mut lamp.toward_seen, &row.in_pixel_frames(&light.direction));
+            // Afar, ℓ is the same everywhere.
+            if !light.is_afar() {
+                put(&mut lamp.toward, &light.direction);
+            }
+            if !light.is_afar() || self.normal_seen.is_some() {
+                put(&mut lamp.toward_seen, &row.in_pixel_frames(&light.direction));
+            }
             if let Some(shadow) = &light.shadow {
                 lamp.seen[to..to + width].copy_from_slice(&shadow.seen[..width]);
             }
@@ -123,12 +132,16 @@ impl PainterTerms {
             fixed: self.fixed,
             is_scaled: self.is_scaled,
             normal: LEVEL_ROW,
-            normal_seen: LEVEL_ROW,
+            normal_seen: None,
             higher: [0.0; TILE],
             lower: [0.0; TILE],
             kappa: [0.0; TILE],
             lamps: self.lamps.iter().map(lamp).collect(),
         }
+    }
+
+    fn seen_normal(&self) -> &[RowValues; 3] {
+        self.normal_seen.as_deref().unwrap_or(&self.normal)
     }
 
     /// The luminance of the light of the row on white, linear, without rim.
@@ -153,7 +166,7 @@ impl PainterTerms {
         let mut rim = [0.0; TILE];
         if painter.rim > 0.0 {
             let toward = self.lamps.first().map_or(&LEVEL_ROW, |lamp| &lamp.toward);
-            rim_row([&self.normal, &self.normal_seen, toward], &self.lower, &open, &mut rim);
+            rim_row([&self.normal, self.seen_normal(), toward], &self.lower, &open, &mut rim);
         }
         finish_row(albedo, &even, [&edge, &rim], &shine, &self.fixed.finish, light);
     }
@@ -178,7 +191,7 @@ impl PainterTerms {
             add_key_row(&key, &lamp.seen, tint, left, &mut even);
             if shading.specular.weight > 0.0 {
                 let mut gloss = [0.0; TILE];
-                shine_row(&self.normal_seen, &lamp.toward_seen, shading.shininess, &mut gloss);
+                shine_row(self.seen_normal(), &lamp.toward_seen, shading.shininess, &mut gloss);
                 self.scale(shading.specular.scaling, &lamp.kappa, &mut gloss);
                 let tint = lobes::tint(self.fixed.specular, lit.radiance);
                 gloss.iter_mut().zip(&lamp.seen).for_each(|(gloss, seen)| *gloss *= seen);

@@ -182,7 +182,7 @@ impl<'a> RowShader<'a> {
         let lights = shading.row_lights(surface);
         let terms = PhongTerms::new(shading, &lights);
         let painter =
-            (shading.model == Model::Painter).then(|| PainterTerms::new(shading, surface));
+            (shading.model == Model::Painter).then(|| PainterTerms::new(shading, surface, &lights));
         Self {
             shading,
             painter,

@@ -144,14 +144,24 @@ impl FarSide {
         })
     }
 
-    /// A map over the far side, from each contour pixel's number and the members of its other
-    /// side.
+    /// A map over the far side: a value for each contour pixel, which all that it takes there hold.
     pub fn map<T: Copy + Send + Sync + Default>(
         &self,
         size: Size,
         value: impl Fn(&ContourPixel) -> T + Sync,
     ) -> Plane<T> {
-        Plane::from_fn(size, |x, y| self.contour_pixel(x, y).map_or(T::default(), &value))
+        let mut map = Plane::full(size, T::default());
+        let width = map.width().max(1);
+        map.values_mut().par_chunks_mut(2 * width).enumerate().for_each(|(i, rows)| {
+            let (upper, lower) = rows.split_at_mut(width);
+            for (j, pair) in upper.chunks_mut(2).enumerate() {
+                if let Some(pixel) = self.contour_pixel(2 * j, 2 * i) {
+                    pair.fill(value(pixel));
+                }
+            }
+            lower.copy_from_slice(upper);
+        });
+        map
     }
 }
 

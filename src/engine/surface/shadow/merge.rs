@@ -167,10 +167,12 @@ impl Merge<'_> {
     ) -> [[f32; HALF]; 2] {
         let x0 = self.chunk * CHUNK;
         if !self.far.is_half {
-            return split_by_parity(counts.row(self.y), x0, width).map(|half| half.map(f32::from));
+            let [even, odd] = split_by_parity(counts.row(self.y), x0, width);
+            return [to_floats(&even), to_floats(&odd)];
         }
         let (above, below, _) = rows_around(self.y, counts.height());
-        let rows = [above, below].map(|y| window_of_row(counts.row(y), x0 / 2));
+        let of = |y: usize| window_of_row(counts.row(y), x0 / 2);
+        let rows = [of(above), of(below)];
         let mut far = [[0.0; HALF]; 2];
         for (odd, far) in far.iter_mut().enumerate() {
             for (c, (is_below, is_right)) in SIDES.into_iter().enumerate() {
@@ -192,13 +194,27 @@ fn split_by_parity<T: Copy + Default>(row: &[T], x0: usize, width: usize) -> [[T
         Some(whole) => chunk = *whole,
         None => chunk.iter_mut().zip(&row[x0..x0 + width]).for_each(|(to, from)| *to = *from),
     }
-    [0, 1].map(|odd| std::array::from_fn(|i| chunk[2 * i + odd]))
+    let (mut even, mut odd) = ([T::default(); HALF], [T::default(); HALF]);
+    for i in 0..HALF {
+        (even[i], odd[i]) = (chunk[2 * i], chunk[2 * i + 1]);
+    }
+    [even, odd]
+}
+
+#[inline(always)]
+fn to_floats(counts: &[u16; HALF]) -> [f32; HALF] {
+    let mut floats = [0.0; HALF];
+    for i in 0..HALF {
+        floats[i] = f32::from(counts[i]);
+    }
+    floats
 }
 
 #[inline(always)]
 fn weigh(heights: &HeightMap, (x0, y): (usize, usize), width: usize, weights: &mut NeighborShares) {
     let (above, below, down) = rows_around(y, heights.half.height());
-    let rows = [above, below].map(|y| window_of_row(heights.half.row(y), x0 / 2));
+    let of = |y: usize| window_of_row(heights.half.row(y), x0 / 2);
+    let rows = [of(above), of(below)];
     let own = split_by_parity(heights.whole.row(y), x0, width);
     for (odd, weights) in weights.iter_mut().enumerate() {
         let mut all = [0.0; HALF];

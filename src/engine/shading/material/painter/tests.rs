@@ -75,7 +75,7 @@ fn rows_are_lit_as_the_table_says() {
     shading.painter.rim = 2.0;
     let features = shading.features.on(surface);
     let lights = &mut shading.row_lights(surface);
-    let (mut terms, mut out) = (PainterTerms::new(&shading, surface), [[0.0; TILE]; 3]);
+    let (mut terms, mut out) = (PainterTerms::new(&shading, surface, lights), [[0.0; TILE]; 3]);
     let (contact, own) = (surface.contact(shading.painter.contact_size), [0.7, 0.3, 0.1]);
     let l = vec3(-0.52, 0.62, 0.59).normalize();
     for y in (0..150).step_by(7) {
