@@ -127,6 +127,19 @@ impl FilterWindow {
         value
     }
 
+    /// Three by three of its pixels from one on, row by row; `None` where they are not all in it.
+    #[inline(always)]
+    pub fn three_rows(&self, (x, y): (i32, i32)) -> Option<[&[[f32; 4]; 3]; 3]> {
+        let inside = Rect { x1: self.rect.x1 - 2, y1: self.rect.y1 - 2, ..self.rect };
+        if !inside.contains(x, y) {
+            return None;
+        }
+        let width = self.rect.width();
+        let first = (y - self.rect.y0) as usize * width + (x - self.rect.x0) as usize;
+        let row = |i: usize| self.pixels.get(first + i * width..)?.first_chunk();
+        Some([row(0)?, row(1)?, row(2)?])
+    }
+
     /// The pixels of a rectangle within it.
     pub fn cropped(&self, to: Rect) -> Vec<[f32; 4]> {
         if to == self.rect {

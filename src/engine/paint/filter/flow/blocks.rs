@@ -3,7 +3,7 @@
 
 use super::lines::{FlowJump, FlowLines, FlowPoint};
 use super::{FilterPlace, FilterSource, FilterWindow, FlowBlur};
-use crate::math::{Rect, Vec2, vec2};
+use crate::math::{Rect, Vec2};
 
 /// The side of a block, px of the picture.
 const SIDE: i32 = 2;
@@ -60,10 +60,10 @@ impl BlockReads {
         Self { rect, half, count, offsets, found: Vec::with_capacity(blocks) }
     }
 
-    /// What a pixel's block reads.
+    /// What a block reads.
     #[inline(always)]
     fn of(&self, x: i32, y: i32) -> [&[Vec2]; 2] {
-        let (x, y) = (x.div_euclid(SIDE) - self.rect.x0, y.div_euclid(SIDE) - self.rect.y0);
+        let (x, y) = (x - self.rect.x0, y - self.rect.y0);
         let block = y as usize * self.rect.width() + x as usize;
         let first = 2 * self.count * block;
         let (along, against) = self.offsets[first..first + 2 * self.count].split_at(self.count);
@@ -142,24 +142,71 @@ crate::widest! {
         out: Rect,
         means: &mut Vec<[f32; 4]>
     ) {
-        for y in out.y0..out.y1 {
-            for x in out.x0..out.x1 {
-                let center = vec2(x as f32 + 0.5, y as f32 + 0.5);
-                let (mut mean, mut weight) = (window.at(x, y), 1.0);
+        means.resize(out.width() * out.height(), [0.0; 4]);
+        let blocks = blocks_of(out);
+        for y in blocks.y0..blocks.y1 {
+            for x in blocks.x0..blocks.x1 {
+                let corner = (SIDE * x, SIDE * y);
+                let mut sums = pixels_of(corner).map(|(x, y)| window.at(x, y));
+                let mut weight = 1.0;
                 for offsets in reads.of(x, y) {
                     let mut left = reads.half;
                     for by in offsets {
                         let share = left.min(1.0);
-                        let reading = window.sample(center.x + by.x, center.y + by.y);
-                        for k in 0..4 {
-                            mean[k] += share * reading[k];
-                        }
+                        add_readings(window, corner, *by, share, &mut sums);
                         (left, weight) = (left - 1.0, weight + share);
                     }
                 }
-                let by = 1.0 / weight;
-                mean.iter_mut().for_each(|value| *value *= by);
-                means.push(mean);
+                let per_weight = 1.0 / weight;
+                for ((x, y), sum) in pixels_of(corner).into_iter().zip(&sums) {
+                    if out.contains(x, y) {
+                        let place = (y - out.y0) as usize * out.width() + (x - out.x0) as usize;
+                        for k in 0..4 {
+                            means[place][k] = per_weight * sum[k];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The pixels of the block with this corner.
+#[inline(always)]
+fn pixels_of((x, y): (i32, i32)) -> [(i32, i32); 4] {
+    [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)]
+}
+
+/// Adds a share of what each pixel of a block reads at an offset, bilinear: all of them lie alike
+/// between those that they read.
+#[inline(always)]
+fn add_readings(
+    window: &FilterWindow,
+    corner: (i32, i32),
+    by: Vec2,
+    share: f32,
+    sums: &mut [[f32; 4]; 4],
+) {
+    let (left, top) = (by.x.floor(), by.y.floor());
+    let (fx, fy) = (by.x - left, by.y - top);
+    let first = (corner.0 + left as i32, corner.1 + top as i32);
+    let Some([upper, middle, lower]) = window.three_rows(first) else {
+        for ((x, y), sum) in pixels_of(corner).into_iter().zip(sums) {
+            let reading = window.sample(x as f32 + 0.5 + by.x, y as f32 + 0.5 + by.y);
+            for k in 0..4 {
+                sum[k] += share * reading[k];
+            }
+        }
+        return;
+    };
+    let (above, below) = (share * (1.0 - fy), share * fy);
+    let weights = [above * (1.0 - fx), above * fx, below * (1.0 - fx), below * fx];
+    for (pair, rows) in sums.chunks_exact_mut(2).zip([[upper, middle], [middle, lower]]) {
+        for (i, sum) in pair.iter_mut().enumerate() {
+            let [a, b, c, d] = [rows[0][i], rows[0][i + 1], rows[1][i], rows[1][i + 1]];
+            for k in 0..4 {
+                sum[k] += (weights[0] * a[k] + weights[1] * b[k])
+                    + (weights[2] * c[k] + weights[3] * d[k]);
             }
         }
     }
