@@ -43,6 +43,15 @@ impl Language {
         }
     }
 
+    /// What stands between a place and what is said of it.
+    fn colon(self) -> &'static str {
+        match self {
+            Self::English | Self::German | Self::Spanish => ": ",
+            Self::French => "\u{a0}: ",
+            Self::Japanese | Self::Chinese => "：",
+        }
+    }
+
     /// Whether its letters are not among those of the window's own font.
     pub fn is_written_in_han(self) -> bool {
         matches!(self, Self::Japanese | Self::Chinese)

@@ -6,7 +6,7 @@ mod presets;
 pub use presets::KeyPreset;
 
 use super::commands::{self, MenuCommand};
-use crate::language::tr;
+use crate::language::{find_translation, tr};
 use crate::tools::ToolKind;
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde_json::{Map, Value};
@@ -193,6 +193,8 @@ fn tr_key(name: &str) -> &str {
     match name {
         "Shift" => tr("Shift"),
         "Insert" => tr("Insert"),
+        // The key, not what it does.
+        "Delete" => find_translation("Delete key").unwrap_or("Delete"),
         "PageUp" => tr("PageUp"),
         "PageDown" => tr("PageDown"),
         "Minus" => "-",

@@ -46,6 +46,7 @@ mod settings;
 mod swatches;
 mod theme;
 mod thumbnails;
+mod titles;
 mod tour;
 mod typed_range;
 mod usage;

@@ -2,7 +2,10 @@
 //! distinguishes dragging from its end. They take their names and hints in English and show them in
 //! the language of the window. `value_bar` draws numbers. Floor 7.
 
+mod number;
 mod value_bar;
+
+pub use number::number;
 
 use super::icons::Icon;
 use super::theme::{self, color32, outline};
@@ -10,7 +13,7 @@ use crate::language::{find_translation, tr, tr_number};
 use crate::math::srgb::Color;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
-    self, DragValue, ProgressBar, Response, RichText, ScrollArea, TextEdit, Ui,
+    self, ProgressBar, Response, RichText, ScrollArea, TextEdit, Ui,
     text::{CCursor, CCursorRange},
     vec2,
 };
@@ -138,13 +141,11 @@ impl<'a> NumberField<'a> {
     pub fn field(self, ui: &mut Ui, value: f32) -> Option<ValueChange<f32>> {
         let mut to = value;
         let speed = (self.range.end() - self.range.start()) / 300.0;
-        let drag = DragValue::new(&mut to)
+        let drag = number(&mut to)
             .range(self.range.clone())
             .speed(speed.min(1.0))
             .suffix(self.suffix)
-            .fixed_decimals(self.decimals)
-            .custom_formatter(|value, _| tr_number(&format!("{value:.*}", self.decimals)).into())
-            .custom_parser(|text| text.trim().replace(',', ".").parse().ok());
+            .fixed_decimals(self.decimals);
         let response = ui.add(drag);
         response.widget_info(|| egui::WidgetInfo::drag_value(true, f64::from(value)));
         set_accessible_name(&response, self.label);

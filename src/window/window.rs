@@ -44,6 +44,7 @@ use crate::session::{Action, Session, storage};
 use crate::surface::Surface;
 use crate::surface::operator::UnwrapSettings;
 use crate::tools::snap::ViewAids;
+use crate::titles::title_of;
 use crate::tr;
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
@@ -466,7 +467,7 @@ impl MainWindow {
     fn set_title(&mut self, ctx: &egui::Context) {
         let title = self.session.active().map_or_else(
             || "Rilievo".to_owned(),
-            |open| format!("{}{} – Rilievo", if open.is_dirty() { "• " } else { "" }, open.title()),
+            |open| format!("{}{} – Rilievo", if open.is_dirty() { "• " } else { "" }, title_of(open)),
         );
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));

@@ -21,7 +21,8 @@ const FILES: [(Language, &str); 5] = [
 pub fn find_catalog(language: Language) -> Option<&'static Catalog> {
     static READ: [OnceLock<Catalog>; FILES.len()] = [const { OnceLock::new() }; FILES.len()];
     let index = FILES.iter().position(|(of, _)| *of == language)?;
-    Some(READ[index].get_or_init(|| Catalog::read(FILES[index].1)))
+    let read = || Catalog { colon: language.colon(), ..Catalog::read(FILES[index].1) };
+    Some(READ[index].get_or_init(read))
 }
 
 /// The translations of one language.
@@ -34,6 +35,8 @@ pub struct Catalog {
     by_word: HashMap<String, Vec<usize>>,
     /// The templates without a whole word.
     wordless: Vec<usize>,
+    /// As [`Language::colon`].
+    colon: &'static str,
     /// Messages that were translated before: what is shown is asked for again in every frame.
     seen: Mutex<HashMap<String, Option<String>>>,
 }
@@ -63,7 +66,8 @@ impl Catalog {
                 None => wordless.push(i),
             }
         }
-        Self { texts, templates, by_word, wordless, seen: Mutex::default() }
+        let (colon, seen) = (Language::English.colon(), Mutex::default());
+        Self { texts, templates, by_word, wordless, colon, seen }
     }
 
     pub fn rows(&self) -> impl Iterator<Item = (&str, &str)> {
@@ -162,7 +166,7 @@ impl Catalog {
             let (head, tail) = (&message[..at], &message[at + colon.len()..]);
             let tail = self.translate(tail, depth + 1)?;
             let head = self.find_text(head).unwrap_or(head);
-            Some(format!("{head}: {tail}"))
+            Some(format!("{head}{}{tail}", self.colon))
         })
     }
 

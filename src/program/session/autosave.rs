@@ -258,7 +258,7 @@ impl LostSessions {
 /// The name of what was recovered, and of what is recovered of that again.
 fn recovered_name(name: &str) -> String {
     const SUFFIX: &str = " (recovered)";
-    format!("{}{SUFFIX}", name.strip_suffix(SUFFIX).unwrap_or(name))
+    format!("{} (recovered)", name.strip_suffix(SUFFIX).unwrap_or(name))
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::theme;
+use crate::titles::title_of;
 use crate::tr;
 use eframe::egui::{
     CentralPanel, Context, Id, Painter, Response, Role, Sense, Ui, ViewportBuilder, ViewportId,
@@ -68,7 +69,7 @@ impl SecondView {
         if !self.is_open {
             return;
         }
-        let title = session.active().map_or_else(String::new, |open| open.title());
+        let title = session.active().map_or_else(String::new, title_of);
         let builder = ViewportBuilder::default()
             .with_title(tr!("{title} – second view", title))
             .with_inner_size(SIZE_PT);

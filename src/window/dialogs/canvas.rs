@@ -10,8 +10,8 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::CanvasAction;
 use crate::tr;
-use crate::widgets::{begin_with, check_box, choice};
-use eframe::egui::{Button, DragValue, Grid, Ui};
+use crate::widgets::{begin_with, check_box, choice, number};
+use eframe::egui::{Button, Grid, Ui};
 
 /// A side in the dialogs, px: as for new documents.
 const SIDE: std::ops::RangeInclusive<u32> = 1..=16_384;
@@ -54,14 +54,13 @@ impl CanvasSides {
                 let name = tr(name);
                 let label = ui.label(name);
                 let side = if i == 0 { &mut self.width } else { &mut self.height };
-                let px = DragValue::new(side).range(SIDE).suffix(" px");
+                let px = number(side).range(SIDE).suffix(" px");
                 let px = ui.add(px).labelled_by(label.id);
                 if i == 0 {
                     begin_with(&px);
                 }
                 let mut is_other = px.changed();
-                let share =
-                    DragValue::new(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
+                let share = number(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
                 let share = ui
                     .add(share)
                     .on_hover_text(tr!("{side}, relative to the present size", side = name));
@@ -206,8 +205,7 @@ impl TurnDialog {
         ));
         ui.horizontal(|ui| {
             let label = ui.label(tr("Angle"));
-            let angle =
-                DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
+            let angle = number(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
             begin_with(&ui.add(angle).labelled_by(label.id));
         });
         ui.weak(describe(self.size, CanvasChange::turn(self.size, f64::from(self.degrees)).size()));

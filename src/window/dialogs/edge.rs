@@ -6,8 +6,8 @@ use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::{EdgeChange, SelectionAction};
 use crate::tr;
-use crate::widgets::begin_with;
-use eframe::egui::{DragValue, Ui};
+use crate::widgets::{begin_with, number};
+use eframe::egui::Ui;
 
 pub struct EdgeDialog {
     change: EdgeChange,
@@ -26,7 +26,7 @@ impl EdgeDialog {
         ui.horizontal(|ui| {
             let label = ui.label(tr("Pixels"));
             let range = self.change.range();
-            let px = DragValue::new(&mut self.px).range(range).speed(0.1).suffix(" px");
+            let px = number(&mut self.px).range(range).speed(0.1).suffix(" px");
             begin_with(&ui.add(px).labelled_by(label.id));
         });
         match buttons(ui, "Change", true) {

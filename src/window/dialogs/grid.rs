@@ -6,8 +6,8 @@ use crate::requests::UiRequests;
 use crate::session::actions::GuideAction;
 use crate::session::{Action, Session};
 use crate::tools::snap::{CanvasGrid, ViewAids};
-use crate::widgets::{begin_with, check};
-use eframe::egui::{DragValue, Key, Ui};
+use crate::widgets::{begin_with, check, number};
+use eframe::egui::{Key, Ui};
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
     set_width(ui, 320.0);
@@ -43,20 +43,19 @@ const CHOICES: [(&str, &str, Choice); 6] = [
 ];
 
 fn grid(ui: &mut Ui, grid: &mut CanvasGrid) {
-    let mut number = |label: &str, value: &mut f32, range: std::ops::RangeInclusive<f32>| {
+    let mut edit = |label: &str, value: &mut f32, range: std::ops::RangeInclusive<f32>| {
         let row = ui.horizontal(|ui| {
             let label = ui.label(tr(label));
-            ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px"))
-                .labelled_by(label.id)
+            ui.add(number(value).range(range).speed(0.5).suffix(" px")).labelled_by(label.id)
         });
         row.inner
     };
-    begin_with(&number("Spacing", &mut grid.spacing, CanvasGrid::SPACING));
-    number("Offset x", &mut grid.offset.x, crate::math::COORDINATE);
-    number("Offset y", &mut grid.offset.y, crate::math::COORDINATE);
+    begin_with(&edit("Spacing", &mut grid.spacing, CanvasGrid::SPACING));
+    edit("Offset x", &mut grid.offset.x, crate::math::COORDINATE);
+    edit("Offset y", &mut grid.offset.y, crate::math::COORDINATE);
     ui.horizontal(|ui| {
         let label = ui.label(tr("Subdivisions"));
-        ui.add(DragValue::new(&mut grid.subdivisions).range(CanvasGrid::SUBDIVISIONS).speed(0.05))
+        ui.add(number(&mut grid.subdivisions).range(CanvasGrid::SUBDIVISIONS).speed(0.05))
             .labelled_by(label.id);
     });
 }

@@ -9,8 +9,8 @@ use crate::math::srgb::Color;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::FileAction;
-use crate::widgets::{begin_with, radio};
-use eframe::egui::{DragValue, Ui};
+use crate::widgets::{begin_with, number, radio};
+use eframe::egui::Ui;
 
 pub struct NewDialog {
     width: u32,
@@ -62,11 +62,10 @@ impl NewDialog {
         ui.label(tr("An empty canvas"));
         ui.horizontal(|ui| {
             let label = ui.label(tr("Width"));
-            let width = DragValue::new(&mut self.width).range(1..=16384).suffix(" px");
+            let width = number(&mut self.width).range(1..=16384).suffix(" px");
             begin_with(&ui.add(width).labelled_by(label.id));
             let label = ui.label(tr("Height"));
-            ui.add(DragValue::new(&mut self.height).range(1..=16384).suffix(" px"))
-                .labelled_by(label.id);
+            ui.add(number(&mut self.height).range(1..=16384).suffix(" px")).labelled_by(label.id);
         });
         ui.horizontal(|ui| {
             for (width, height) in [(1024, 1024), (1920, 1080), (2048, 2048), (4096, 4096)] {

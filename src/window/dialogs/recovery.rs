@@ -4,7 +4,7 @@
 use super::{DialogAnswer, set_width};
 use crate::io::platform::SystemTime;
 use crate::io::recovery::LostSession;
-use crate::language::tr;
+use crate::language::{tr, tr_message};
 use crate::tr;
 use crate::widgets::list;
 use eframe::egui::{RichText, Ui};
@@ -33,8 +33,11 @@ impl RecoveryDialog {
         list(ui, 320.0).show(ui, |ui| {
             for (i, (lost, is_asked)) in self.lost.iter_mut().enumerate() {
                 ui.separator();
-                let title = if lost.title.is_empty() { tr("Unnamed") } else { &lost.title };
-                ui.label(RichText::new(title).strong());
+                let title = match &*lost.title {
+                    "" => tr("Unnamed").into(),
+                    title => tr_message(title),
+                };
+                ui.label(RichText::new(&*title).strong());
                 ui.label(describe(lost));
                 ui.horizontal(|ui| {
                     if ui.button(tr!("Recover {title}", title)).clicked() {

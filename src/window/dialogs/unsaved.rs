@@ -5,6 +5,7 @@ use super::{DialogAnswer, buttons, set_width};
 use crate::language::tr;
 use crate::pending::AfterUnsaved;
 use crate::session::Session;
+use crate::titles::title_of;
 use crate::tr;
 use eframe::egui::Ui;
 
@@ -17,8 +18,7 @@ pub struct UnsavedDialog {
 impl UnsavedDialog {
     pub fn show(&self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         set_width(ui, 360.0);
-        let title =
-            session.open_documents.get(self.index).map_or_else(String::new, |open| open.title());
+        let title = session.open_documents.get(self.index).map_or_else(String::new, title_of);
         ui.heading(tr!("Save the changes to “{title}”?", title));
         ui.label(tr("Unsaved changes are lost when the document is closed."));
         ui.add_space(4.0);

@@ -188,11 +188,20 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     let mut name = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     ui.add_space(4.0);
     ui.horizontal(|ui| {
+        let word = egui::WidgetText::from(tr("Keep brush"));
+        let word_pt = word.clone().into_galley(
+            ui,
+            Some(egui::TextWrapMode::Extend),
+            f32::INFINITY,
+            egui::TextStyle::Button,
+        );
+        let padding_pt = 2.0 * ui.spacing().button_padding.x + 2.0 * ui.spacing().item_spacing.x;
+        let button_pt = (word_pt.size().x + padding_pt).max(96.0);
         let field = TextEdit::singleline(&mut name)
             .hint_text(tr("Name"))
-            .desired_width(ui.available_width() - 96.0);
+            .desired_width((ui.available_width() - button_pt).max(24.0));
         set_accessible_name(&ui.add(field), tr("Name of the brush to keep"));
-        let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new(tr("Keep brush")));
+        let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new(word));
         if button.on_hover_text(tr("Adds the current brush to the list")).clicked() {
             requests.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
         }

@@ -8,8 +8,8 @@ use crate::requests::UiRequests;
 use crate::session::actions::CanvasAction;
 use crate::session::{Action, Session};
 use crate::tools::crop::CropAspect;
-use crate::widgets::choice;
-use eframe::egui::{Button, DragValue, Ui};
+use crate::widgets::{choice, number};
+use eframe::egui::{Button, Ui};
 
 /// Places and sides that can be typed, px.
 const PLACE: std::ops::RangeInclusive<i32> = -65_536..=65_536;
@@ -20,16 +20,14 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let area = session.tools.crop.area.unwrap_or(canvas.rect());
     let (mut x, mut y) = (area.x0, area.y0);
     let (mut width, mut height) = (area.width() as i32, area.height() as i32);
-    let number = |ui: &mut Ui, label: &str, value: &mut i32, range| {
+    let edit = |ui: &mut Ui, label: &str, value: &mut i32, range| {
         let label = ui.label(tr(label));
-        ui.add(DragValue::new(value).range(range).speed(1.0).suffix(" px"))
-            .labelled_by(label.id)
-            .changed()
+        ui.add(number(value).range(range).speed(1.0).suffix(" px")).labelled_by(label.id).changed()
     };
-    let mut is_other = number(ui, "X", &mut x, PLACE);
-    is_other |= number(ui, "Y", &mut y, PLACE);
-    let wider = number(ui, "Width", &mut width, SIDE);
-    let taller = number(ui, "Height", &mut height, SIDE);
+    let mut is_other = edit(ui, "X", &mut x, PLACE);
+    is_other |= edit(ui, "Y", &mut y, PLACE);
+    let wider = edit(ui, "Width", &mut width, SIDE);
+    let taller = edit(ui, "Height", &mut height, SIDE);
     if let Some(ratio) = session.tools.crop.aspect.ratio(canvas) {
         let round = |v: f32| (v.round() as i32).clamp(*SIDE.start(), *SIDE.end());
         match (wider, taller) {

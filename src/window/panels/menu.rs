@@ -14,6 +14,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, SelectionAction};
 use crate::session::{Action, Session};
 use crate::settings::Settings;
+use crate::titles::title_of;
 use crate::tr;
 use crate::widgets::{set_accessible_name, tab};
 use eframe::egui::load::SizedTexture;
@@ -144,7 +145,7 @@ pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (index, open) in session.open_documents.iter().enumerate() {
             let is_front = index == session.current;
-            let title = format!("{}{}", if open.is_dirty() { "• " } else { "" }, open.title());
+            let title = format!("{}{}", if open.is_dirty() { "• " } else { "" }, title_of(open));
             let path = open
                 .file
                 .as_ref()
@@ -153,7 +154,7 @@ pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             if response.clicked() {
                 requests.act(Action::File(FileAction::Show { index }));
             }
-            let name = tr!("Close {title}", title = open.title());
+            let name = tr!("Close {title}", title = title_of(open));
             let close = add_sized_button(ui, Icon::Close, &name, false, 18.0);
             if close.clicked() || response.middle_clicked() {
                 requests.request(WindowRequest::Close(index));

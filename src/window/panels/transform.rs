@@ -3,7 +3,7 @@
 
 use crate::commands::TRANSFORMS;
 use crate::document::LayerLock;
-use crate::language::{tr, tr_number};
+use crate::language::tr;
 use crate::math::Vec2;
 use crate::raster::Resampling;
 use crate::requests::UiRequests;
@@ -12,8 +12,8 @@ use crate::session::{Action, Property, Session};
 use crate::tools::gizmo::TransformTarget;
 use crate::tools::transform::{GizmoNumbers, PIVOTS};
 use crate::tr;
-use crate::widgets::{choice, choice_row, more, set_accessible_name};
-use eframe::egui::{Button, DragValue, Ui, emath};
+use crate::widgets::{choice, choice_row, more, number, set_accessible_name};
+use eframe::egui::{Button, Ui};
 use std::ops::RangeInclusive;
 
 /// What is transformed, the gizmo in numbers, and a mesh; the rest is behind *More*.
@@ -161,73 +161,36 @@ struct EditedNumbers {
     done: bool,
 }
 
-/// A number as the language of the window writes it.
-fn format_number(value: f64, decimals: RangeInclusive<usize>) -> String {
-    tr_number(&emath::format_with_decimals_in_range(value, decimals)).into_owned()
-}
-
-/// A typed number, with a point or a comma.
-fn parse_number(text: &str) -> Option<f64> {
-    let letters = text.chars().filter(|letter| !letter.is_whitespace());
-    let plain = letters.map(|letter| match letter {
-        '−' => '-',
-        ',' => '.',
-        other => other,
-    });
-    plain.collect::<String>().parse().ok()
-}
-
 fn numbers(ui: &mut Ui, was: GizmoNumbers) -> Option<EditedNumbers> {
     let mut to = was;
     let (mut moved, mut changed, mut done) = (false, false, false);
-    let mut number =
+    let mut edit =
         |ui: &mut Ui, name: &str, value: &mut f64, range: RangeInclusive<f64>, suffix: &str| {
             // The share of a side follows it, without a name of its own for screen readers.
             let is_share = suffix == " %";
             if !is_share {
                 ui.label(tr(name));
             }
-            let field =
-                DragValue::new(value).range(range).max_decimals(2).speed(0.5).suffix(suffix);
-            let field = field.custom_formatter(format_number).custom_parser(parse_number);
+            let field = number(value).range(range).max_decimals(2).speed(0.5).suffix(suffix);
             let response = ui.add(field);
             set_accessible_name(&response, tr(name));
             done |= response.changed() && !response.dragged() || response.drag_stopped();
             response.changed() || response.drag_stopped()
         };
-    moved |= number(ui, "X", &mut to.at.x, GizmoNumbers::SIDE, " px");
-    moved |= number(ui, "Y", &mut to.at.y, GizmoNumbers::SIDE, " px");
+    moved |= edit(ui, "X", &mut to.at.x, GizmoNumbers::SIDE, " px");
+    moved |= edit(ui, "Y", &mut to.at.y, GizmoNumbers::SIDE, " px");
     ui.add_space(4.0);
     let mut percent = [100.0 * to.width / to.own.x, 100.0 * to.height / to.own.y];
-    changed |= number(ui, "Width", &mut to.width, GizmoNumbers::SIDE, " px");
-    if number(ui, "Width in %", &mut percent[0], -10_000.0..=10_000.0, " %") {
+    changed |= edit(ui, "Width", &mut to.width, GizmoNumbers::SIDE, " px");
+    if edit(ui, "Width in %", &mut percent[0], -10_000.0..=10_000.0, " %") {
         (to.width, changed) = (percent[0] * to.own.x / 100.0, true);
     }
-    changed |= number(ui, "Height", &mut to.height, GizmoNumbers::SIDE, " px");
-    if number(ui, "Height in %", &mut percent[1], -10_000.0..=10_000.0, " %") {
+    changed |= edit(ui, "Height", &mut to.height, GizmoNumbers::SIDE, " px");
+    if edit(ui, "Height in %", &mut percent[1], -10_000.0..=10_000.0, " %") {
         (to.height, changed) = (percent[1] * to.own.y / 100.0, true);
     }
     ui.add_space(4.0);
-    changed |= number(ui, "Angle", &mut to.angle, -360.0..=360.0, "°");
-    changed |= number(ui, "Skew", &mut to.skew, GizmoNumbers::SKEW, "°");
+    changed |= edit(ui, "Angle", &mut to.angle, -360.0..=360.0, "°");
+    changed |= edit(ui, "Skew", &mut to.skew, GizmoNumbers::SKEW, "°");
     (moved || changed).then_some(EditedNumbers { to, keeps_pivot: changed, done })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::language::{Language, set_language};
-
-    #[test]
-    fn a_number_is_read_back_as_each_language_writes_it() {
-        for (language, written) in [(Language::English, "-12.5"), (Language::German, "-12,5")] {
-            set_language(language);
-            assert_eq!(format_number(-12.5, 0..=2), written);
-            assert_eq!(parse_number(written), Some(-12.5));
-        }
-        set_language(Language::English);
-        assert_eq!(parse_number(" 1 000.25 "), Some(1000.25));
-        assert_eq!(parse_number("−3"), Some(-3.0));
-        assert_eq!(parse_number("wide"), None);
-    }
 }

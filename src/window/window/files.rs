@@ -25,6 +25,7 @@ use crate::session::actions::{palettes, pictures};
 use crate::session::script::{self, PlayedScript};
 use crate::session::storage::{self, FileUse, OpenedFile, SortedFiles};
 use crate::session::{Action, PaletteShelf, PicturePart, Property, Session, brushes};
+use crate::titles::title_of;
 use crate::tr;
 use eframe::egui;
 use std::path::{Path, PathBuf};
@@ -356,7 +357,7 @@ impl MainWindow {
 
     /// The proposed name of a file.
     pub(super) fn propose_name(&self, purpose: FilePurpose) -> String {
-        let title = self.session.active().map_or_else(String::new, |open| open.title());
+        let title = self.session.active().map_or_else(String::new, title_of);
         let stem = storage::without_ending(&title);
         if purpose == FilePurpose::ExportUnwrapped {
             return format!("{stem}-unwrapped.png");

@@ -15,8 +15,8 @@ use crate::thumbnails::Thumbnails;
 use crate::tools::ModifierKeys;
 use crate::tr;
 use eframe::egui::{
-    self, Align2, Color32, Id, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextEdit,
-    TextStyle, Ui, pos2, vec2,
+    self, Color32, Id, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, TextStyle,
+    Ui, pos2, vec2,
 };
 use std::sync::Arc;
 
@@ -329,12 +329,15 @@ fn name(
         String::new()
     };
     let about = format!("{}{mode}{opacity}", tr(layer.content.label()));
-    let font = TextStyle::Small.resolve(ui.style());
     let weak = ui.visuals().weak_text_color();
     let line = at.bottom() - 13.0;
     let mark = Rect::from_center_size(pos2(at.left() + 9.5, line), vec2(11.0, 11.0));
     kind_icon(&layer.content).draw(ui.painter(), mark, weak);
-    ui.painter().text(pos2(mark.right() + 4.0, line), Align2::LEFT_CENTER, about, font, weak);
+    let left = mark.right() + 4.0;
+    let room = (at.right() - 17.0 * badges.len() as f32 - left).max(10.0);
+    let about = egui::WidgetText::from(egui::RichText::new(about).color(weak));
+    let about = about.into_galley(ui, Some(egui::TextWrapMode::Truncate), room, TextStyle::Small);
+    ui.painter().galley(pos2(left, line - 0.5 * about.size().y), about, weak);
     for (i, icon) in badges.iter().enumerate() {
         let center = pos2(at.right() - 10.0 - 17.0 * i as f32, at.center().y);
         icon.draw(
