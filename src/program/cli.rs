@@ -33,9 +33,10 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
-/// Opens the window on some files and returns when it is closed. It is passed in because the window
-/// is on the same floor.
-pub type OpenWindow = fn(Vec<PathBuf>) -> Result<()>;
+/// Opens the window on some files and returns when it is closed, or once a running one has taken the
+/// files; true: opens a new one even if one is running. It is passed in because the window is on the
+/// same floor.
+pub type OpenWindow = fn(Vec<PathBuf>, bool) -> Result<()>;
 
 /// Paint over normal and depth maps: brushes, gradients and photos that bend over the shape they
 /// are put on.

@@ -1,17 +1,23 @@
 //! The window on a desktop. Floor 7. Its event loop is `event_loop`.
 
 use crate::pen::SharedTablet;
+use crate::running::{self, RunningWindow};
 use crate::{Error, MainWindow, Result, event_loop, program_icon};
 use eframe::egui;
 use std::cell::Cell;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// Opens the window with these files, or with the sample if there are none; returns when it is
-/// closed.
+/// Opens the window with these files, or with the start screen if there are none, and returns when it
+/// is closed. A running window takes the files instead, unless a new one is wanted.
 ///
 /// Fails with a sentence if there is no display.
-pub fn run(files: Vec<PathBuf>) -> Result<()> {
+pub fn run(files: Vec<PathBuf>, is_new: bool) -> Result<()> {
+    let place = running::place();
+    let is_taken = |place: &PathBuf| running::try_hand_over(place, &files);
+    if !is_new && place.as_ref().is_some_and(is_taken) {
+        return Ok(());
+    }
     let viewport = egui::ViewportBuilder::default()
         .with_title("Rilievo")
         .with_app_id("rilievo")
@@ -32,10 +38,22 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
     };
     let (tablet, is_open) = (SharedTablet::default(), Rc::new(Cell::new(false)));
     let (pen, opened) = (tablet.clone(), is_open.clone());
+    // It lives as long as the window.
+    let running = Rc::new(Cell::new(None));
+    let listener = running.clone();
     let start =
         move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {
             opened.set(true);
-            Ok(Box::new(MainWindow::of_user(&cc.egui_ctx, pen, files)))
+            let mut window = MainWindow::of_user(&cc.egui_ctx, pen, files);
+            // Without it every start opens a window of its own.
+            let ctx = cc.egui_ctx.clone();
+            let listening = place
+                .and_then(|place| RunningWindow::listen(place, move || ctx.request_repaint()).ok());
+            if let Some((running, received)) = listening {
+                window.open_what_comes(received);
+                listener.set(Some(running));
+            }
+            Ok(Box::new(window))
         };
     let wrong = match event_loop::run(options, tablet, Box::new(start)) {
         Ok(()) if is_open.get() => return Ok(()),

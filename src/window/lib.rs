@@ -39,6 +39,8 @@ mod recovery;
 mod references;
 mod render_thread;
 mod requests;
+#[cfg(not(target_family = "wasm"))]
+mod running;
 mod sample;
 mod sample_pictures;
 mod saving;

@@ -43,13 +43,14 @@ use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
 use crate::surface::Surface;
 use crate::surface::operator::UnwrapSettings;
-use crate::tools::snap::ViewAids;
 use crate::titles::title_of;
+use crate::tools::snap::ViewAids;
 use crate::tr;
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::Receiver;
 
 /// The program's one window.
 pub struct MainWindow {
@@ -101,6 +102,8 @@ pub struct MainWindow {
     clipboard: Option<Clipboard>,
     /// What this window last put there.
     handed_out: Option<Arc<Vec<u8>>>,
+    /// The files that other starts of the program name.
+    other_starts: Option<Receiver<Vec<PathBuf>>>,
     /// What waits until it is no longer busy.
     busy: typing::BusyInput,
     /// The recorded actions, if they are recorded.
@@ -163,6 +166,7 @@ impl MainWindow {
             clipboard_source: clipboard::read_clipboard,
             clipboard: None,
             handed_out: None,
+            other_starts: None,
             busy: typing::BusyInput::default(),
             recorded: None,
         };
@@ -284,6 +288,7 @@ impl MainWindow {
         self.do_held(&mut requests);
         self.hear_keys(ui.ctx(), &mut requests);
         self.take_dropped(ui.ctx());
+        self.take_other_starts(ui.ctx());
         self.lay_out(ui, &mut requests);
         let keymap = self.is_free_for_keys().then_some(&self.settings.keymap);
         let (canvas, session) = (&mut self.canvas, &self.session);
@@ -467,7 +472,9 @@ impl MainWindow {
     fn set_title(&mut self, ctx: &egui::Context) {
         let title = self.session.active().map_or_else(
             || "Rilievo".to_owned(),
-            |open| format!("{}{} – Rilievo", if open.is_dirty() { "• " } else { "" }, title_of(open)),
+            |open| {
+                format!("{}{} – Rilievo", if open.is_dirty() { "• " } else { "" }, title_of(open))
+            },
         );
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));

@@ -32,6 +32,18 @@ fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
 }
 
 #[test]
+fn files_that_another_start_names_open_in_this_window() {
+    let (other_start, files) = std::sync::mpsc::channel();
+    let mut harness = window();
+    harness.state_mut().as_mut().unwrap().open_what_comes(files);
+    let open = session(&harness).open_documents.len();
+    other_start.send(vec![PathBuf::from("sample_normals/axolotl.json")]).unwrap();
+    other_start.send(Vec::new()).unwrap();
+    until(&mut harness, |harness| session(harness).open_documents.len() > open);
+    assert!(session(&harness).active().unwrap().title().contains("axolotl"));
+}
+
+#[test]
 fn a_script_is_played_beside_what_is_open_and_its_documents_have_their_history() {
     let folder = tempfile::tempdir().unwrap();
     let script = folder.path().join("story.jsonl");

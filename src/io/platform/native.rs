@@ -2,7 +2,7 @@
 
 use etcetera::BaseStrategy;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
@@ -73,6 +73,19 @@ pub fn data_folder() -> Option<PathBuf> {
 pub fn state_folder() -> Option<PathBuf> {
     let base = etcetera::choose_base_strategy().ok()?;
     Some(base.state_dir().unwrap_or_else(|| base.data_dir()))
+}
+
+/// Writes a file that nobody but this user may read, where the system makes a difference: on Windows
+/// the user's folders are closed to others.
+pub fn write_private(file: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut options = std::fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    match std::fs::remove_file(file) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => io::Write::write_all(&mut options.open(file)?, bytes),
+    }
 }
 
 /// The folder that relative paths begin in.

@@ -9,6 +9,7 @@ use crate::session::Action;
 use crate::session::actions::FileAction;
 use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
+use std::sync::mpsc::Receiver;
 
 impl MainWindow {
     pub(super) fn close(&mut self, ctx: &egui::Context, index: usize) {
@@ -60,6 +61,20 @@ impl MainWindow {
             .input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
         if !dropped.is_empty() {
             self.take_files(dropped, PictureUse::Placed(PinPosition::Pointer));
+        }
+    }
+
+    /// From now on opens files that come from elsewhere, and comes in front each time.
+    pub fn open_what_comes(&mut self, files: Receiver<Vec<PathBuf>>) {
+        self.other_starts = Some(files);
+    }
+
+    /// Opens the files that other starts of the program named.
+    pub(super) fn take_other_starts(&mut self, ctx: &egui::Context) {
+        while let Some(Ok(files)) = self.other_starts.as_ref().map(Receiver::try_recv) {
+            ctx.send_viewport_cmd(ViewportCommand::Minimized(false));
+            ctx.send_viewport_cmd(ViewportCommand::Focus);
+            self.begin(files);
         }
     }
 

@@ -31,10 +31,12 @@ const BRUSH: [(&str, &str); 8] = [
 ];
 
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 83] = [
+const SYNONYMS: [(&str, &[&str]); 85] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
+    ("view", &["turn left", "turn right", "upright", "zoom in", "zoom out", "fit canvas"]),
+    ("canvas", &["turn left", "turn right", "upright"]),
     ("resize", &["image size", "canvas size", "transform"]),
     ("resolution", &["image size"]),
     ("scale", &["image size", "transform", "larger interface"]),
@@ -219,6 +221,7 @@ mod tests {
     fn words_of_other_programs_find_what_is_called_otherwise_here() {
         assert!(names("flip").contains(&"Mirror canvas left and right"));
         assert!(names("rotate canvas").contains(&"Turn canvas…"), "{:?}", names("rotate canvas"));
+        assert_eq!(names("turn view"), ["Turn right", "Turn left"]);
         assert_eq!(names("stabiliser"), ["Stabilizer"]);
         assert_eq!(names("magic wand"), ["Wand", "Surface wand"]);
         assert!(names("hue").contains(&"Color"));
