@@ -44,15 +44,16 @@ impl Continued {
     }
 }
 
-/// Any map of the canvas, continued likewise, at a distance from the middle of what a contour
-/// pixel's other side sees, px.
-pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_center: Vec2) -> f32 {
+/// Any map of the canvas, continued likewise to a contour pixel's other side.
+pub fn plane_of(
+    pixel: &ContourPixel,
+    map: impl Fn(usize, usize) -> f32,
+) -> Option<LeastSquaresPlane> {
     let ridge = if pixel.others.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
-    let fitted = LeastSquaresPlane::fit_weighted(bits(pixel.others), ridge, |i| {
+    LeastSquaresPlane::fit_weighted(bits(pixel.others), ridge, |i| {
         let (dx, dy) = steps_of(i);
         (CONTINUED_WEIGHTS.at(i), map((pixel.x + dx) as usize, (pixel.y + dy) as usize))
-    });
-    fitted.map_or(0.0, |fit| fit.here + fit.slope.dot(pixel.other_at + from_center))
+    })
 }
 
 /// n̄ shortened to the disc where it leaves it.

@@ -137,10 +137,12 @@ impl FarSide {
 
     /// A map of the canvas continued over the far side: as n̄ is.
     pub fn continue_map(&self, size: Size, map: impl Fn(usize, usize) -> f32 + Sync) -> Plane<f32> {
-        Plane::from_fn(size, |x, y| {
-            let step = vec2((x & 1) as f32, (y & 1) as f32);
-            self.contour_pixel(x, y)
-                .map_or(0.0, |pixel| super::continued::plane_of(pixel, &map, step))
+        self.map_each(size, |pixel| {
+            let plane = super::continued::plane_of(pixel, &map);
+            [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
+                let at = pixel.other_at + vec2(dx as f32, dy as f32);
+                plane.map_or(0.0, |plane| plane.here + plane.slope.dot(at))
+            })
         })
     }
 
@@ -150,16 +152,26 @@ impl FarSide {
         size: Size,
         value: impl Fn(&ContourPixel) -> T + Sync,
     ) -> Plane<T> {
+        self.map_each(size, |pixel| [value(pixel); 4])
+    }
+
+    /// A map over the far side, from the four values of each contour pixel, row by row.
+    fn map_each<T: Copy + Send + Sync + Default>(
+        &self,
+        size: Size,
+        values: impl Fn(&ContourPixel) -> [T; 4] + Sync,
+    ) -> Plane<T> {
         let mut map = Plane::full(size, T::default());
         let width = map.width().max(1);
         map.values_mut().par_chunks_mut(2 * width).enumerate().for_each(|(i, rows)| {
             let (upper, lower) = rows.split_at_mut(width);
-            for (j, pair) in upper.chunks_mut(2).enumerate() {
+            let pairs = upper.as_chunks_mut::<2>().0.iter_mut().zip(lower.as_chunks_mut::<2>().0);
+            for (j, (upper, lower)) in pairs.enumerate() {
                 if let Some(pixel) = self.contour_pixel(2 * j, 2 * i) {
-                    pair.fill(value(pixel));
+                    let [a, b, c, d] = values(pixel);
+                    (*upper, *lower) = ([a, b], [c, d]);
                 }
             }
-            lower.copy_from_slice(upper);
         });
         map
     }

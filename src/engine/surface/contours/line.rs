@@ -61,6 +61,7 @@ impl ContourLine {
     }
 
     /// From the line to a point, px; positive on the nearer side. `from_center`: px.
+    #[inline(always)]
     pub fn height(self, from_center: Vec2) -> f32 {
         self.distance_px + self.toward_near.dot(from_center)
     }
@@ -201,6 +202,7 @@ impl ContourLine {
     }
 
     /// The component along the line.
+    #[inline(always)]
     pub fn component_along(self, v: Vec2) -> f32 {
         v.dot(self.toward_near.perp())
     }
@@ -210,6 +212,7 @@ impl ContourLine {
     ///
     /// * `place`: from the pixel's center, px.
     /// * `bend`: the circle's curvature, per px; positive where the nearer side is inside.
+    #[inline(always)]
     pub fn distance_to(self, place: Vec2, bend: f32) -> f32 {
         let (across, along) = (self.height(place), self.component_along(place));
         let from_middle = vec2(1.0 - bend * across, bend * along).length();
@@ -217,6 +220,7 @@ impl ContourLine {
     }
 
     /// The place with that distance from the line itself: moved across it.
+    #[inline(always)]
     pub fn straightened(self, place: Vec2, bend: f32) -> Vec2 {
         place + (self.distance_to(place, bend) - self.height(place)) * self.toward_near
     }

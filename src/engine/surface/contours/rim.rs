@@ -138,14 +138,29 @@ impl PieceNormals {
     fn rim(&self, near_it: ContourLine) -> Option<FittedRim> {
         let RimShape { tilt, bend } = self.shape(near_it);
         let mut turns = TurnSums::default();
-        for pixel in self.pixels() {
+        add_turns(self.pixels(), near_it, (tilt, bend), &mut turns);
+        let (line, explained) = turns.rim(self.count >= LEAST_PIXELS_FOR_CHANGE)?;
+        (line.distance_px.abs() < OUT_OF_REACH_PX).then_some(FittedRim { line, bend, explained })
+    }
+}
+
+crate::widest! {
+    /// Adds the turns of pixels, from a line near their rim.
+    ///
+    /// * `shape`: tilt and bend of the rim.
+    fn add_turns(
+        pixels: &[PiecePixel],
+        near_it: ContourLine,
+        shape: (f32, f32),
+        turns: &mut TurnSums
+    ) {
+        let (tilt, bend) = shape;
+        for pixel in pixels {
             // What n_z² is wrong by is divided by the cosine in f.
             let cosine_squared = (1.0 - (1.0 + tilt * tilt) * pixel.nz_squared).max(0.0);
             let place = near_it.straightened(pixel.place, bend);
             turns.add(pixel.weight * cosine_squared, place, 1.0 - cosine_squared.sqrt());
         }
-        let (line, explained) = turns.rim(self.count >= LEAST_PIXELS_FOR_CHANGE)?;
-        (line.distance_px.abs() < OUT_OF_REACH_PX).then_some(FittedRim { line, bend, explained })
     }
 }
 
@@ -156,6 +171,7 @@ impl PieceNormals {
 struct TurnSums([f64; 15]);
 
 impl TurnSums {
+    #[inline(always)]
     fn add(&mut self, weight: f32, place: Vec2, f: f32) {
         let (w, x, y, f) =
             (f64::from(weight), f64::from(place.x), f64::from(place.y), f64::from(f));
