@@ -49,7 +49,7 @@ impl MenuCommand {
 
     /// Why it cannot be done now, in the language of the window; its hint says what it would do.
     pub fn refusal(&self, session: &Session) -> String {
-        let command = tr(self.name);
+        let command = tr(self.name).trim_end_matches('…');
         match (session.active(), session.layer()) {
             (None, _) => tr!("{command}: there is no document.", command),
             (_, None) => tr!("{command}: no layer is selected.", command),

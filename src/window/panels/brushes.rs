@@ -30,7 +30,8 @@ pub fn show(
 ) {
     let id = edits_id();
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
-    let sought = ui.horizontal(|ui| {
+    let mut sought = None;
+    ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         segments(ui, |ui| {
             for (which, label, hint) in [
@@ -43,9 +44,15 @@ pub fn show(
             }
         });
         ui.add_space(3.0);
-        if edits { String::new() } else { search(ui, requests) }
+        if !edits && ui.available_width() >= SEARCH_PT {
+            sought = Some(search(ui, requests));
+        }
     });
-    let sought = sought.inner;
+    // The words of some languages leave no room beside them.
+    if !edits && sought.is_none() {
+        ui.horizontal(|ui| sought = Some(search(ui, requests)));
+    }
+    let sought = sought.unwrap_or_default();
     ui.data_mut(|data| data.insert_temp(id, edits));
     if edits {
         numbers(ui, session, requests);
@@ -208,6 +215,9 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     });
     ui.data_mut(|data| data.insert_temp(id, name));
 }
+
+/// The least room of the field that finds brushes, with its button.
+const SEARCH_PT: f32 = BUTTON_PT + 74.0;
 
 /// The field that finds brushes, and the button that imports some; returns the text.
 fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
