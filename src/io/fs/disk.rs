@@ -70,8 +70,20 @@ impl Fs for Disk {
         if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
     }
 
+    #[cfg(not(windows))]
     fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
         std::fs::canonicalize(path)
+    }
+
+    /// Some drives, such as those in memory, cannot say where a path leads; without a link at its end
+    /// it is taken as it is.
+    #[cfg(windows)]
+    fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
+        std::fs::canonicalize(path).or_else(|refused| match refused.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied => Err(refused),
+            _ if std::fs::symlink_metadata(path)?.is_symlink() => Err(refused),
+            _ => std::path::absolute(path),
+        })
     }
 
     fn find(&self, path: &Path) -> io::Result<Option<EntryKind>> {
