@@ -32,6 +32,32 @@ fn menus_open_by_f10_and_arrows_go_through_them() {
 }
 
 #[test]
+fn keys_within_one_frame_are_all_heard_in_their_order() {
+    let mut harness = window();
+    let before = layers(&harness);
+    for _ in 0..3 {
+        command(&mut harness, "New paint layer");
+    }
+    assert_eq!(layers(&harness).len(), before.len() + 3);
+    let key = |key, modifiers, pressed| Event::Key {
+        key,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers,
+    };
+    let tap = |k, modifiers| [key(k, modifiers, true), key(k, modifiers, false)];
+    let undo = || tap(Key::Z, Modifiers::COMMAND);
+    let redo = tap(Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
+    let keys = [undo(), undo(), undo(), redo, undo(), tap(Key::E, Modifiers::NONE)];
+    harness.input_mut().events.extend(keys.into_iter().flatten());
+    steps(&mut harness);
+    until(&mut harness, |harness| session(harness).tool == ToolKind::Eraser);
+    assert_eq!(layers(&harness), before);
+    assert_eq!(session(&harness).tool, ToolKind::Eraser);
+}
+
+#[test]
 fn an_entry_is_chosen_by_enter() {
     let mut harness = window();
     key(&mut harness, Modifiers::ALT, Key::L);

@@ -3,6 +3,7 @@
 //!
 //! | pressed | goes |
 //! |---|---|
+//! | with others within a frame, over the canvas | one in each of the next frames, in their order |
 //! | over the canvas, during an edit that blocks others | to the same document, once the edit is over |
 //! | into a text field, during such an edit | into the field; what it sets is done once the edit is over |
 //! | after a command that opens a dialog, before the dialog is there | into the dialog |
@@ -48,6 +49,8 @@ pub(super) struct BusyInput {
 enum TypedFor {
     /// The document in front, by its key.
     Canvas(Option<usize>),
+    /// Whatever is in front.
+    Window,
     #[default]
     Dialog,
 }
@@ -87,11 +90,21 @@ impl BusyInput {
             return;
         }
         self.hold(ctx);
-        let is_pressed = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
         let next =
-            self.typed.iter().skip(1).position(is_pressed).map_or(self.typed.len(), |at| at + 1);
+            self.typed.iter().skip(1).position(is_press).map_or(self.typed.len(), |at| at + 1);
         ctx.input_mut(|input| input.events.extend(self.typed.drain(..next)));
         ctx.request_repaint();
+    }
+
+    /// Keeps several keys that were pressed within one frame, as a slow one has them: they are given
+    /// one by one.
+    fn hold_several(&mut self, ctx: &Context) {
+        let presses =
+            ctx.input(|input| input.events.iter().filter(|event| is_press(event)).count());
+        if presses > 1 && !ctx.egui_wants_keyboard_input() {
+            self.meant = TypedFor::Window;
+            self.hold(ctx);
+        }
     }
 
     /// Drops what is typed on after a field is gone, such as that of a layer that an edit merged
@@ -134,6 +147,11 @@ impl BusyInput {
     }
 }
 
+/// A key was pressed, and not held until it repeated.
+fn is_press(event: &Event) -> bool {
+    matches!(event, Event::Key { pressed: true, repeat: false, .. })
+}
+
 impl MainWindow {
     /// Hears the keys of a frame, before anything is laid out.
     pub(super) fn hear_keys(&mut self, ctx: &Context, requests: &mut UiRequests) {
@@ -166,9 +184,10 @@ impl MainWindow {
             return;
         }
         // The dialog did not come, or another document did.
-        if self.busy.meant != TypedFor::Canvas(front) {
+        if ![TypedFor::Canvas(front), TypedFor::Window].contains(&self.busy.meant) {
             self.busy.typed.clear();
         }
+        self.busy.hold_several(ctx);
         self.busy.give_next(ctx);
         if self.settings.preferences.alt_opens_menus {
             self.menu.keys.hear_letter(ctx, &self.settings.keymap);
