@@ -51,7 +51,15 @@ impl Fs for Disk {
         std::fs::rename(from, to)
     }
 
+    #[cfg(not(windows))]
     fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
+        std::fs::hard_link(from, to)
+    }
+
+    /// A second name of a file that another program keeps from being removed would stay.
+    #[cfg(windows)]
+    fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
+        windows::check_removable(from)?;
         std::fs::hard_link(from, to)
     }
 

@@ -266,9 +266,10 @@ fn a_tip_within_the_preset_comes_before_others_and_names_stay_within_the_folders
     }
     let damaged = with_tip("gbr", b"nothing".to_vec(), "");
     assert!(matches!(damaged.brush.tip, Tip::Round));
-    let said =
-        "its tip “tip.gbr” cannot be used (b.kpp/tip.gbr: cannot be read: the brush is cut short)";
-    assert_eq!(damaged.notes, [format!("{said}; it is round here")]);
+    let place = Path::new("b.kpp").join("tip.gbr");
+    let said = format!("{}: cannot be read: the brush is cut short", place.display());
+    let said = format!("its tip “tip.gbr” cannot be used ({said}); it is round here");
+    assert_eq!(damaged.notes, [said]);
 }
 
 #[test]

@@ -53,6 +53,13 @@ unsafe extern "system" {
     fn GetFileInformationByHandle(file: *mut c_void, facts: *mut FileFacts) -> i32;
 }
 
+/// Fails if another program has opened a file so that it cannot be removed or renamed.
+pub fn check_removable(path: &Path) -> io::Result<()> {
+    // `DELETE`.
+    const REMOVING: u32 = 0x0001_0000;
+    OpenOptions::new().access_mode(REMOVING).open(path).map(drop)
+}
+
 /// The volume and the file's number on it.
 pub fn identity(path: &Path) -> io::Result<Identity> {
     // No access is asked for, so that neither rights nor other programs stand in the way.
