@@ -16,7 +16,7 @@ fn format_number(value: f64, decimals: RangeInclusive<usize>) -> String {
 }
 
 /// A typed number, with a point or a comma.
-pub fn parse_number(text: &str) -> Option<f64> {
+pub(super) fn parse_number(text: &str) -> Option<f64> {
     let letters = text.chars().filter(|letter| !letter.is_whitespace());
     let plain = letters.map(|letter| match letter {
         '−' => '-',

@@ -3,6 +3,7 @@
 //! focus, types it.
 //! Floor 7.
 
+use super::number::parse_number;
 use super::{NumberField, ValueChange, begin_with, set_accessible_name};
 use crate::theme;
 use eframe::egui::accesskit::{Action, ActionData};
@@ -277,8 +278,8 @@ fn edit_as_text(
         .update_while_editing(false)
         .custom_formatter(|value, _| field.format(value as f32))
         .custom_parser(move |text| {
-            let digits = text.trim().trim_end_matches(suffix.trim()).trim().replace(',', ".");
-            digits.parse::<f64>().ok().map(|value| value / factor)
+            let digits = text.trim().trim_end_matches(suffix.trim());
+            parse_number(digits).map(|value| value / factor)
         });
     let response = ui.put(rect, number);
     set_accessible_name(&response, field.label);
