@@ -211,26 +211,8 @@ impl ReplaceJob<'_> {
 
     /// Puts the new file in the old one's place.
     fn rename(&self, part: &PartFile, target: &Path) -> Result<()> {
-        let mut pause = FIRST_PAUSE;
-        for last in (0..RENAME_TRIES).rev() {
-            match self.fs.rename(&part.path, target) {
-                Ok(()) => return Ok(()),
-                Err(e)
-                    if last > 0
-                        && matches!(
-                            e.kind(),
-                            ErrorKind::PermissionDenied | ErrorKind::ResourceBusy
-                        ) =>
-                {
-                    self.fs.pause(pause);
-                    pause *= 2;
-                }
-                Err(e) => {
-                    return Err(self.describe_failure("the old file could not be replaced", e));
-                }
-            }
-        }
-        Ok(())
+        rename_patiently(self.fs, &part.path, target)
+            .map_err(|e| self.describe_failure("the old file could not be replaced", e))
     }
 
     /// Gives the new file its name if no file has it: of two programs that do so at once, one
@@ -265,6 +247,22 @@ impl ReplaceJob<'_> {
         }
         Error::io(self.named, io::Error::new(error.kind(), format!("{what} ({error})")))
     }
+}
+
+/// Renames a file, and tries again for a third of a second where another program holds one of the
+/// two.
+fn rename_patiently(fs: &dyn Fs, from: &Path, to: &Path) -> io::Result<()> {
+    let mut pause = FIRST_PAUSE;
+    for _ in 1..RENAME_TRIES {
+        match fs.rename(from, to) {
+            Err(e) if matches!(e.kind(), ErrorKind::PermissionDenied | ErrorKind::ResourceBusy) => {
+                fs.pause(pause);
+                pause *= 2;
+            }
+            done => return done,
+        }
+    }
+    fs.rename(from, to)
 }
 
 /// Reads until the buffer is full or the file ends.

@@ -1,9 +1,13 @@
 //! The previous version of a file, kept next to it as `name~`. Floor 5.
 
 use super::part::{OLDER, PartFile, SPARE};
+use super::rename_patiently;
 use crate::fs::{EntryKind, Fs};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+
+/// What disks take, bytes or more.
+const LONGEST_NAME: usize = 255;
 
 /// The previous version next to the file, and the version before that, until the new file is in
 /// place.
@@ -19,8 +23,11 @@ impl Previous {
     pub fn keep(fs: &dyn Fs, part: &PartFile, target: &Path) -> io::Result<Self> {
         let mut name = target.as_os_str().to_owned();
         name.push("~");
-        match Self::keep_as(fs, part, target, name.into()) {
-            Err(e) if e.kind() == ErrorKind::InvalidFilename => {
+        let name = PathBuf::from(name);
+        // Not every disk gives the reason.
+        let is_long = name.file_name().is_some_and(|name| name.len() > LONGEST_NAME);
+        match Self::keep_as(fs, part, target, name) {
+            Err(e) if is_long || e.kind() == ErrorKind::InvalidFilename => {
                 Self::keep_as(fs, part, target, shorten(target))
             }
             kept => kept,
@@ -30,7 +37,8 @@ impl Previous {
     fn keep_as(fs: &dyn Fs, part: &PartFile, target: &Path, name: PathBuf) -> io::Result<Self> {
         let spare = part.path.with_extension(SPARE);
         let previous = Self { older: set_aside(fs, part, &name)?, name };
-        let kept = take(fs, part, target, &spare).and_then(|()| fs.rename(&spare, &previous.name));
+        let kept = take(fs, part, target, &spare)
+            .and_then(|()| rename_patiently(fs, &spare, &previous.name));
         // The spare name is still there after a failure, and if both names belonged to one file:
         // then nothing is renamed.
         let _ = fs.remove(&spare);
