@@ -17,6 +17,7 @@ mod object;
 mod open;
 mod painted;
 mod progress;
+mod refusals;
 mod render;
 mod replay;
 mod shape;
@@ -77,7 +78,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
         Ok(parsed) => parsed,
         Err(refusal) => {
             // A closed pipe while printing help is no failure.
-            let _ = refusal.print();
+            let _ = refusals::print(&refusal);
             return ExitCode::from(u8::try_from(refusal.exit_code()).unwrap_or(2));
         }
     };

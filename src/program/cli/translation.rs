@@ -2,7 +2,8 @@
 //! options and values, which scripts use, and man pages (`manual`), which stay English.
 
 use crate::language::{Language, find_translation, language, tr};
-use clap::builder::StyledStr;
+use crate::tr;
+use clap::builder::{PossibleValue, StyledStr};
 use clap::{Arg, Command};
 
 /// The same command with its help in the current language.
@@ -29,6 +30,7 @@ fn translate_command(mut command: Command) -> Command {
         command = command.after_long_help(text);
     }
     let usage = tr("Usage:");
+    command = say_usage(command);
     command
         .help_template(format!(
             "{{about-with-newline}}\n{usage} {{usage}}\n\n{{all-args}}{{after-help}}"
@@ -38,6 +40,15 @@ fn translate_command(mut command: Command) -> Command {
         .mut_subcommands(translate_command)
 }
 
+/// What stands for all options and commands in the line of a command's usage.
+fn say_usage(mut command: Command) -> Command {
+    let usage = command.render_usage().to_string();
+    let usage = usage.trim_start_matches("Usage:").trim();
+    let translated =
+        usage.replace("[OPTIONS]", tr("[OPTIONS]")).replace("[COMMAND]", tr("[COMMAND]"));
+    if translated == usage { command } else { command.override_usage(translated) }
+}
+
 fn translate_option(mut option: Arg) -> Arg {
     if let Some(text) = option.get_help().and_then(translate_text) {
         option = option.help(text);
@@ -45,6 +56,7 @@ fn translate_option(mut option: Arg) -> Arg {
     if let Some(text) = option.get_long_help().and_then(translate_text) {
         option = option.long_help(text);
     }
+    let option = say_values(option);
     let heading = match option.get_help_heading() {
         Some(heading) => find_translation(heading),
         None if option.is_positional() => Some(tr("Arguments")),
@@ -52,6 +64,39 @@ fn translate_option(mut option: Arg) -> Arg {
     };
     match heading {
         Some(heading) => option.help_heading(heading),
+        None => option,
+    }
+}
+
+/// The value that an option has without being given, and those that it can have, as `clap` says them.
+fn say_values(option: Arg) -> Arg {
+    let join = |values: Vec<&str>| values.join(", ");
+    let default: Vec<&str> = match option.is_hide_default_value_set() {
+        true => Vec::new(),
+        false => option.get_default_values().iter().filter_map(|value| value.to_str()).collect(),
+    };
+    let choices = option.get_possible_values();
+    let choices: Vec<&str> = match option.is_hide_possible_values_set() {
+        true => Vec::new(),
+        false => choices.iter().filter(|v| !v.is_hide_set()).map(PossibleValue::get_name).collect(),
+    };
+    let takes_value = option.get_action().takes_values();
+    let mut said: Vec<String> = Vec::new();
+    if takes_value && !default.is_empty() {
+        said.push(tr!("[default: {value}]", value = join(default)));
+    }
+    if takes_value && !choices.is_empty() {
+        said.push(tr!("[possible values: {values}]", values = join(choices)));
+    }
+    if said.is_empty() {
+        return option;
+    }
+    let with = |help: &StyledStr| format!("{help} {}", said.join(" "));
+    let (short, long) = (option.get_help().map(with), option.get_long_help().map(with));
+    let option =
+        option.hide_default_value(true).hide_possible_values(true).help(short.unwrap_or_default());
+    match long {
+        Some(long) => option.long_help(long),
         None => option,
     }
 }
