@@ -30,8 +30,23 @@ const BRUSH: [(&str, &str); 8] = [
     ("Stabilizer", "How smooth the line becomes while you draw"),
 ];
 
+/// The layers that light the surface, and the bending that looks lit.
+const LIT_LAYERS: &[&str] = &[
+    "painter's light",
+    "soft plastic",
+    "toon layer",
+    "velvet",
+    "brushed metal",
+    "painted ball",
+    "mirror layer",
+    "glass layer",
+    "lit by an environment",
+    "ambient occlusion",
+    "bend: gloss",
+];
+
 /// Words of other programs and of everyday speech, and the words here that they mean.
-const SYNONYMS: [(&str, &[&str]); 85] = [
+const SYNONYMS: [(&str, &[&str]); 86] = [
     ("flip", &["mirror"]),
     ("reflect", &["mirror"]),
     ("rotate", &["turn", "upright"]),
@@ -87,7 +102,8 @@ const SYNONYMS: [(&str, &[&str]); 85] = [
     ("bake", &["into pixels"]),
     ("operator", &["bend"]),
     ("chrome", &["bend: gloss"]),
-    ("shading", &["layer", "bend: gloss"]),
+    ("shading", LIT_LAYERS),
+    ("light", LIT_LAYERS),
     ("phong", &["soft plastic"]),
     ("lambertian", &["velvet"]),
     ("anisotropic", &["brushed metal"]),
@@ -222,6 +238,8 @@ mod tests {
         assert!(names("flip").contains(&"Mirror canvas left and right"));
         assert!(names("rotate canvas").contains(&"Turn canvas…"), "{:?}", names("rotate canvas"));
         assert_eq!(names("turn view"), ["Turn right", "Turn left"]);
+        assert_eq!(names("new shading layer")[0], "New painter's light layer");
+        assert!(!names("new shading layer").contains(&"New paint layer"));
         assert_eq!(names("stabiliser"), ["Stabilizer"]);
         assert_eq!(names("magic wand"), ["Wand", "Surface wand"]);
         assert!(names("hue").contains(&"Color"));
