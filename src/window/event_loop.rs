@@ -1,8 +1,10 @@
 //! The window's event loop: pens receive its events before the window does, and give it theirs.
 //! Floor 7.
 
+use super::opened_files;
 use super::pen::{self, PenFeed, SharedTablet};
 use eframe::{EframeWinitApplication, UserEvent};
+use std::path::PathBuf;
 use std::time::Duration;
 use winit::application::ApplicationHandler;
 use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
@@ -21,13 +23,17 @@ const PREFERS_WAYLAND: &str = "RILIEVO_WAYLAND";
 
 /// Runs the window until it is closed; the tablet receives every motion first.
 ///
+/// * `open`: is given the files that the desktop asks the running program to open.
+///
 /// Fails if there is no display, or the window cannot be opened on it.
 pub fn run(
     options: eframe::NativeOptions,
     tablet: SharedTablet,
+    open: impl Fn(Vec<PathBuf>) + 'static,
     start: eframe::AppCreator<'_>,
 ) -> eframe::Result {
     let events = event_loop()?;
+    let _listening = opened_files::listen(open);
     let window = eframe::create_native("rilievo", options, start, &events);
     let feed = PenFeed::new(tablet, pen::devices(&events));
     events.run_app(&mut PenListener { window, feed })?;

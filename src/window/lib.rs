@@ -26,6 +26,8 @@ mod keys;
 mod look_pictures;
 mod messages;
 mod mood_pictures;
+#[cfg(not(target_family = "wasm"))]
+mod opened_files;
 mod operators;
 mod panel_layout;
 mod panels;
