@@ -12,6 +12,7 @@ pub mod noise;
 pub(crate) mod number_settings;
 pub mod oklab;
 pub mod oklch;
+pub mod parallel;
 pub mod plane_map;
 pub mod range;
 pub mod rect;

@@ -2,9 +2,9 @@
 //! (`layer::content`), what adjustments do (`paint::adjustment`).
 
 use super::{Content, Document, LayerId, LayerLock, PixelLayer};
+use crate::math::parallel;
 use crate::paint::LiveAdjustment;
 use crate::raster::{CoverageTile, PlanarTile, TILE, Tile, TileCoverage, TileGrid};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 impl Document {
@@ -37,10 +37,9 @@ impl Document {
                 None => Some((at, tile, None)),
             })
             .collect();
-        let made: Vec<_> = all
-            .par_iter()
-            .map(|(at, tile, covered)| (*at, adjusted(tile, covered.map(|c| &**c), by)))
-            .collect();
+        let made: Vec<_> = parallel::map(&all, |(at, tile, covered)| {
+            (*at, adjusted(tile, covered.map(|c| &**c), by))
+        });
         let mut tiles: TileGrid = pixels.tiles.clone();
         made.into_iter().for_each(|(at, tile)| tiles.set(at, tile));
         let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };

@@ -6,10 +6,10 @@ use super::selections::picture;
 use super::{
     Content, Document, Layer, LayerId, LayerLock, LayerMask, Live, PixelLayer, StrokeList,
 };
+use crate::math::parallel;
 use crate::paint::{Selection, Stroke, StrokeSelection};
 use crate::raster::coverage::product;
 use crate::raster::{CoverageGrid, CoverageTile, TILE, Tile, TileGrid};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 impl Document {
@@ -122,10 +122,8 @@ pub fn multiply(tiles: &TileGrid, covered: &CoverageGrid) -> TileGrid {
     let mut out = TileGrid::for_rect(tiles.bounds().intersect(covered.bounds()));
     let both: Vec<_> =
         tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
-    let made: Vec<_> = both
-        .par_iter()
-        .map(|(at, tile, covered)| (*at, multiply_tile(tile, covered, |c| c)))
-        .collect();
+    let made: Vec<_> =
+        parallel::map(&both, |(at, tile, covered)| (*at, multiply_tile(tile, covered, |c| c)));
     made.into_iter().for_each(|(at, tile)| out.set(at, tile));
     out
 }
@@ -139,8 +137,7 @@ fn change_tiles(
     let mut out = tiles.clone();
     let both: Vec<_> =
         tiles.iter().filter_map(|(at, tile)| Some((at, tile, covered.tile(at)?))).collect();
-    let made: Vec<_> =
-        both.par_iter().map(|(at, tile, covered)| (*at, change(tile, covered))).collect();
+    let made: Vec<_> = parallel::map(&both, |(at, tile, covered)| (*at, change(tile, covered)));
     made.into_iter().for_each(|(at, tile)| out.set(at, tile));
     out
 }

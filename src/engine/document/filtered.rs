@@ -2,11 +2,10 @@
 //! (`layer::content`), what filters do (`paint::filter`).
 
 use super::{Content, Document, LayerId, LayerLock, PixelLayer};
-use crate::math::Rect;
+use crate::math::{Rect, parallel};
 use crate::paint::LiveFilter;
 use crate::paint::filter::{FilterPlace, FilterSource, FilterWindow};
 use crate::raster::{PlanarTile, TILE, TileAt, TileCoverage, TileGrid};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The paint of a layer; beyond `bounds` its border is repeated.
@@ -54,7 +53,7 @@ impl Document {
             let tile = |at: TileAt| (at, filtered_tile(&pixels.tiles, &filtered, at, keeps_alpha));
             TileAt::covering(*block).map(tile).collect::<Vec<_>>()
         };
-        let made: Vec<_> = blocks.par_iter().flat_map_iter(of_block).collect();
+        let made = parallel::map(&blocks, of_block).into_iter().flatten();
         let mut tiles: TileGrid = pixels.tiles.clone();
         tiles.reserve(bounds);
         for (at, after) in made {

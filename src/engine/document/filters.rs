@@ -9,10 +9,9 @@ use super::filter_stage::{FilterStage, ReadTiles, StoredTile, part_row};
 use super::floats::FloatTiles;
 use super::prepare::PreparedDocument;
 use super::progress::in_parallel;
-use crate::math::Rect;
+use crate::math::{Rect, parallel};
 use crate::paint::filter::FilterPlace;
 use crate::raster::{PlanarTile, TileAt};
-use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Which of a stage's tiles: composed in floats, or not.
@@ -56,7 +55,7 @@ impl PreparedDocument {
             let composed =
                 in_parallel(&missing, progress, |at| self.compose_beneath(stage, at, floats))?;
             missing.iter().zip(composed).for_each(|(at, tile)| beneath.set(*at, tile));
-            blocks.par_iter().for_each(|block| {
+            parallel::for_each(&blocks, 1, |block| {
                 if !progress.is_canceled() {
                     self.filter_block(stage, *block, floats);
                 }

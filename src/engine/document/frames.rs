@@ -4,11 +4,11 @@
 use super::layer::on_canvas::on_canvas;
 use super::layer::warp::displaced_mask;
 use super::{Content, Document, Group, Layer, LayerId, LayerMap, LayerMask, LayerWarp, MaskKind};
+use crate::math::parallel;
 use crate::math::srgb::Color;
 use crate::paint::{LivePath, PathRule, PlacedImage, Scene};
 use crate::raster::coverage::shapes;
 use crate::raster::{CoverageGrid, TileAt, TileGrid};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 impl Layer {
@@ -103,8 +103,7 @@ fn cover_bent(image: &PlacedImage, path: &LivePath, scene: &Scene) -> Option<Cov
     let solid = PlacedImage { bend: image.bend.clone(), ..image.with_path(scene.size, solid)? };
     solid.source.texture();
     let places: Vec<TileAt> = TileAt::covering(scene.size.rect()).collect();
-    let tiles: Vec<_> =
-        places.par_iter().map(|at| solid.render_tile(scene, *at).map(Arc::new)).collect();
+    let tiles: Vec<_> = parallel::map(&places, |at| solid.render_tile(scene, *at).map(Arc::new));
     let mut grid = TileGrid::for_rect(scene.size.rect());
     places.into_iter().zip(tiles).for_each(|(at, tile)| grid.set(at, tile));
     Some(CoverageGrid::of_alpha(&grid))

@@ -3,8 +3,8 @@
 
 #![warn(missing_docs)]
 
+use crate::math::parallel;
 use crate::raster::TileAt;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -67,5 +67,5 @@ pub(super) fn in_parallel<T: Send>(
         progress.step();
         Some(result)
     };
-    tiles.par_iter().map(each).collect()
+    parallel::map(tiles, each).into_iter().collect()
 }

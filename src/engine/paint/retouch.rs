@@ -22,13 +22,12 @@ use super::stroke::Stroke;
 use super::stroke::dabs::{StrokeDabs, tiles_of};
 use super::stroke_tile::StrokeTile;
 use super::tint;
-use crate::math::{Rect, Vec2, srgb::Color};
+use crate::math::{Rect, Vec2, parallel, srgb::Color};
 use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, TileGrid};
 use crate::surface::objects::CanvasPart;
 use pixels::RetouchPixels;
-use rayon::prelude::*;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
@@ -141,7 +140,7 @@ impl ActiveRetouching {
         changed.extend(&self.tail);
         let tile = |&at: &TileAt| (at, shown.stored_tile(at));
         let changed: Vec<TileAt> = changed.into_iter().collect();
-        changed.par_iter().map(tile).collect()
+        parallel::map(&changed, tile)
     }
 
     /// The pixels with the dabs that are due if the strokes end here.
@@ -224,8 +223,7 @@ impl RetouchStroke {
             mix(&mut tile, &touch, &colors, self.brush.keeps_alpha);
             Some((*at, tile))
         };
-        let made: Vec<_> =
-            tiles_of(&placed).par_iter().map_init(DabScratch::default, rubbed).collect();
+        let made: Vec<_> = parallel::map_with(&tiles_of(&placed), DabScratch::default, rubbed);
         let mut changed = Vec::new();
         for (at, tile) in made.into_iter().flatten() {
             retouched.set(at, tile);

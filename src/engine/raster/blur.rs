@@ -3,8 +3,7 @@
 //! jumps (`surface::curvature`).
 
 use super::Plane;
-use crate::math::Size;
-use rayon::prelude::*;
+use crate::math::{Size, parallel};
 
 /// What the filter finds beyond the picture.
 #[derive(Clone, Copy, PartialEq)]
@@ -144,8 +143,9 @@ fn down_columns<const N: usize>(
             .enumerate()
             .for_each(|strip| blur_strip(&mut buffers, strip));
     } else {
-        let strips = out.par_chunks_mut(across * height).enumerate();
-        strips.for_each_init(|| (ColumnStrip::new(), ColumnStrip::new()), blur_strip);
+        let strips = out.chunks_mut(across * height).enumerate();
+        let buffers = || (ColumnStrip::new(), ColumnStrip::new());
+        parallel::for_each_with(strips, 1, buffers, blur_strip);
     }
     out
 }

@@ -2,10 +2,10 @@
 //! conversion of a color (`math::color_profile`), what of a document holds colors (`document`).
 
 use crate::math::ProfileConversion;
+use crate::math::parallel;
 use crate::raster::picture::Texels;
 use crate::raster::tile::sixteen_bit::{self, Row16};
 use crate::raster::{Picture, TILE, Tile, TileAt, TileGrid};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Converts the texels of a run: neighbors are often of one color, and the curve is costly.
@@ -30,13 +30,10 @@ impl TileGrid {
     /// and whether the other profile lacks some of them, which are then clamped.
     pub fn converted(&self, by: &ProfileConversion) -> (TileGrid, bool) {
         let all: Vec<(TileAt, &Arc<Tile>)> = self.iter().collect();
-        let made: Vec<(TileAt, Option<Tile>, bool)> = all
-            .par_iter()
-            .map(|(at, tile)| {
-                let (tile, is_clamped) = convert_tile(tile, by);
-                (*at, tile, is_clamped)
-            })
-            .collect();
+        let made: Vec<(TileAt, Option<Tile>, bool)> = parallel::map(&all, |(at, tile)| {
+            let (tile, is_clamped) = convert_tile(tile, by);
+            (*at, tile, is_clamped)
+        });
         let mut next = TileGrid::for_rect(self.bounds());
         let is_clamped = made.iter().any(|(.., is_clamped)| *is_clamped);
         made.into_iter().for_each(|(at, tile, _)| next.set(at, tile.map(Arc::new)));

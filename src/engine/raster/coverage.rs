@@ -12,8 +12,7 @@ use super::bits::{TileBits, bytes_of};
 use super::grid::Grid;
 use super::tile::{TILE, TILE_AREA, TileAt};
 use super::{Plane, Tile};
-use crate::math::{Rect, Size};
-use rayon::prelude::*;
+use crate::math::{Rect, Size, parallel};
 use std::sync::{Arc, OnceLock};
 
 /// The coverage of one tile; 255 is wholly covered. `None` in a grid means no coverage.
@@ -126,7 +125,7 @@ impl Grid<CoverageTile> {
     /// Computes the tiles that a rectangle touches, in parallel.
     pub fn gather(rect: Rect, tile: impl Fn(TileAt) -> Option<Arc<CoverageTile>> + Sync) -> Self {
         let tiles: Vec<TileAt> = TileAt::covering(rect).collect();
-        let made: Vec<_> = tiles.par_iter().map(|&at| tile(at)).collect();
+        let made: Vec<_> = parallel::map(&tiles, |&at| tile(at));
         let mut grid = Self::for_rect(rect);
         for (at, tile) in tiles.into_iter().zip(made) {
             grid.set(at, tile);
@@ -165,7 +164,7 @@ impl Grid<CoverageTile> {
         if rect.is_empty() {
             return plane;
         }
-        plane.values_mut().par_chunks_mut(rect.width()).enumerate().for_each(|(y, row)| {
+        parallel::for_each_row(plane.values_mut(), rect.width(), 1, |y, row| {
             self.copy_row(rect.x0, rect.y0 + y as i32, row);
         });
         plane

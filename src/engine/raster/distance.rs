@@ -2,7 +2,7 @@
 //! pixel centers (Meijster, Roerdink and Hesselink 2000: columns first, then along rows).
 
 use super::Plane;
-use rayon::prelude::*;
+use crate::math::parallel;
 
 /// The farthest limit, px: its square fits the planes.
 pub const FARTHEST: u16 = 200;
@@ -18,7 +18,9 @@ pub fn squared_distances(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
     let around = usize::from(limit);
     let band = (2 * around).max(LEAST_BAND);
     let mut out = Plane::full(marked.size(), 0u16);
-    out.values_mut().par_chunks_mut(band * width).enumerate().for_each_init(
+    parallel::for_each_with(
+        out.values_mut().chunks_mut(band * width).enumerate(),
+        1,
         Vec::new,
         |columns, (i, out)| {
             let (first, rows) = (i * band, out.len() / width);

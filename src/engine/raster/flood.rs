@@ -6,8 +6,7 @@
 use super::bits::TileBits;
 use super::tile::{TILE, TileAt};
 use super::{CoverageGrid, CoverageTile};
-use crate::math::{Rect, Size};
-use rayon::prelude::*;
+use crate::math::{Rect, Size, parallel};
 
 /// What a flood may do in a tile.
 pub struct OpenTile {
@@ -76,9 +75,8 @@ impl Flooded {
                 .into_iter()
                 .filter_map(|(at, entry)| Some((at, entry, tiles.get_mut(index(at)?)?.take())))
                 .collect();
-            let spread: Vec<(TileAt, Box<FloodTile>, FloodEntry)> = taken
-                .into_par_iter()
-                .map(|(at, entry, reached)| {
+            let spread: Vec<(TileAt, Box<FloodTile>, FloodEntry)> =
+                parallel::map(taken, |(at, entry, reached)| {
                     let mut reached = reached.unwrap_or_else(|| {
                         Box::new(FloodTile { may: opened(at), filled: [0; TILE] })
                     });
@@ -92,8 +90,7 @@ impl Flooded {
                         start: None,
                     };
                     (at, reached, left)
-                })
-                .collect();
+                });
             wave = next_wave(&spread);
             for (at, reached, _) in spread {
                 if let Some(slot) = index(at).and_then(|i| tiles.get_mut(i)) {
@@ -127,8 +124,7 @@ impl Flooded {
     pub fn coverage(&self) -> CoverageGrid {
         let mut grid = CoverageGrid::for_rect(self.rect());
         let tiles: Vec<_> = self.tiles().collect();
-        let made: Vec<_> =
-            tiles.par_iter().map(|(at, bits)| (*at, CoverageTile::of_bits(bits))).collect();
+        let made: Vec<_> = parallel::map(&tiles, |(at, bits)| (*at, CoverageTile::of_bits(bits)));
         made.into_iter().for_each(|(at, tile)| grid.set(at, tile));
         grid
     }

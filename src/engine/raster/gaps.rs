@@ -7,8 +7,7 @@
 //! between them is a gap: low enough, and clearly lower than both tops.
 
 use super::{Plane, distance};
-use crate::math::{Rect, Size};
-use rayon::prelude::*;
+use crate::math::{Rect, Size, parallel};
 
 /// The widest gap that can be closed, px.
 pub const WIDEST_GAP_PX: f32 = 64.0;
@@ -60,17 +59,16 @@ pub fn close_gaps(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32
     let first = (start.1 - rect.y0) as usize * width + (start.0 - rect.x0) as usize;
     let (room, parents) = (rooms.top_of(first), rooms.parent);
     // Runs of a row mostly share their hill: each is looked up once.
-    pixels.values_mut().par_chunks_mut(width).zip(parents.par_chunks(width)).for_each(
-        |(row, ups)| {
-            let mut last = (NONE, false);
-            for (pixel, &up) in row.iter_mut().zip(ups).filter(|(pixel, _)| **pixel != 0) {
-                if up != last.0 {
-                    last = (up, root_of(&parents, up) == room);
-                }
-                *pixel = u8::from(last.1);
+    let rows = pixels.values_mut().chunks_mut(width).zip(parents.chunks(width));
+    parallel::for_each(rows, 1, |(row, ups)| {
+        let mut last = (NONE, false);
+        for (pixel, &up) in row.iter_mut().zip(ups).filter(|(pixel, _)| **pixel != 0) {
+            if up != last.0 {
+                last = (up, root_of(&parents, up) == room);
             }
-        },
-    );
+            *pixel = u8::from(last.1);
+        }
+    });
     PixelSet { rect, pixels }
 }
 

@@ -6,8 +6,7 @@
 //! that color may be, a = max (p − d) / p over the channels.
 
 use super::{Plane, Tile, TileAt, TileGrid};
-use crate::math::{Rect, Size};
-use rayon::prelude::*;
+use crate::math::{Rect, Size, parallel};
 use std::sync::Arc;
 
 /// The paper's color is found in squares of this side, px: larger than most of what is drawn,
@@ -32,17 +31,12 @@ type PaperColor = [f32; 3];
 pub fn without_paper(tiles: &TileGrid) -> Option<TileGrid> {
     let rect = tiles.bounds();
     let paper = PaperLight::of(tiles, rect)?;
-    let all: Vec<(TileAt, Option<Arc<Tile>>)> = TileAt::covering(rect)
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .map(|at| {
-            let own = at.rect();
-            let places = (own.y0..own.y1).flat_map(|y| (own.x0..own.x1).map(move |x| (x, y)));
-            let drawn =
-                places.flat_map(|(x, y)| paper.remove_paper(tiles.pixel(x, y), x, y)).collect();
-            (at, Tile::from_pixels(drawn).map(Arc::new))
-        })
-        .collect();
+    let all: Vec<(TileAt, Option<Arc<Tile>>)> = parallel::map(TileAt::covering(rect), |at| {
+        let own = at.rect();
+        let places = (own.y0..own.y1).flat_map(|y| (own.x0..own.x1).map(move |x| (x, y)));
+        let drawn = places.flat_map(|(x, y)| paper.remove_paper(tiles.pixel(x, y), x, y)).collect();
+        (at, Tile::from_pixels(drawn).map(Arc::new))
+    });
     let mut drawn = TileGrid::default();
     all.into_iter().for_each(|(at, tile)| drawn.set(at, tile));
     Some(drawn)

@@ -1,7 +1,7 @@
 //! A contiguous map: one value per pixel, row by row, the top row first.
 //! Floor 1. Not for layers, which are sparse tiles (`grid`).
 
-use crate::math::Size;
+use crate::math::{Size, parallel};
 use crate::memory::{copy_or_unwind, fill_or_unwind};
 
 /// `size.area()` values; pixel (x, y) is at index `y · width + x`.
@@ -42,16 +42,13 @@ impl<T: Copy> Plane<T> {
     where
         T: Send + Sync + Default,
     {
-        use rayon::prelude::*;
         let width = size.width.max(1) as usize;
         let mut values = fill_or_unwind(size.area(), T::default());
-        values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(
-            |(y, row)| {
-                for (x, v) in row.iter_mut().enumerate() {
-                    *v = value(x, y);
-                }
-            },
-        );
+        parallel::for_each_row(&mut values, width, least_rows(width), |y, row| {
+            for (x, v) in row.iter_mut().enumerate() {
+                *v = value(x, y);
+            }
+        });
         Self { size, values }
     }
 
@@ -61,15 +58,12 @@ impl<T: Copy> Plane<T> {
     where
         T: Send + Sync,
     {
-        use rayon::prelude::*;
         let width = self.size.width.max(1) as usize;
-        self.values.par_chunks_mut(width).enumerate().with_min_len(least_rows(width)).for_each(
-            |(y, row)| {
-                for (x, v) in row.iter_mut().enumerate() {
-                    *v = value(x, y, *v);
-                }
-            },
-        );
+        parallel::for_each_row(&mut self.values, width, least_rows(width), |y, row| {
+            for (x, v) in row.iter_mut().enumerate() {
+                *v = value(x, y, *v);
+            }
+        });
         self
     }
 
@@ -78,12 +72,10 @@ impl<T: Copy> Plane<T> {
     where
         T: Send + Sync,
     {
-        use rayon::prelude::*;
         let width = self.width().max(1);
         let mut values = fill_or_unwind(self.size.area(), U::default());
-        let rows = values.par_chunks_mut(width).zip(self.values.par_chunks(width));
-        rows.with_min_len(least_rows(width)).for_each(|(row, from)| {
-            row.iter_mut().zip(from).for_each(|(v, &from)| *v = f(from));
+        parallel::for_each_row(&mut values, width, least_rows(width), |y, row| {
+            row.iter_mut().zip(self.row(y)).for_each(|(v, &from)| *v = f(from));
         });
         Plane { size: self.size, values }
     }

@@ -26,8 +26,7 @@ use super::{Plane, TileGrid};
 use crate::math::fast::{max, min};
 use crate::math::plane_map::PixelMove;
 use crate::math::srgb::{quantize, quantize16};
-use crate::math::{Mat2, Rect, Size, Vec2};
-use rayon::prelude::*;
+use crate::math::{Mat2, Rect, Size, Vec2, parallel};
 use std::sync::Arc;
 
 crate::named! {
@@ -72,7 +71,7 @@ pub fn warp_tiles(
     wanted: &[TileAt],
 ) -> TileGrid {
     let tiles: Vec<Option<Arc<Tile>>> =
-        wanted.par_iter().map(|&at| warp_tile(grid, map, filter, at)).collect();
+        parallel::map(wanted, |&at| warp_tile(grid, map, filter, at));
     let mut out = TileGrid::default();
     if let Some(all) = wanted.iter().map(|at| at.rect()).reduce(Rect::union) {
         out.reserve(all);
@@ -195,7 +194,7 @@ pub fn warp_plane_onto(
     let canvas = size.rect();
     let blocks: Vec<TileAt> = TileAt::covering(canvas).collect();
     let values: Vec<Vec<(i32, i32, u8)>> =
-        blocks.par_iter().map(|at| warp.values(at.rect().intersect(canvas))).collect();
+        parallel::map(&blocks, |at| warp.values(at.rect().intersect(canvas)));
     let mut out = Plane::full(size, 0);
     values.into_iter().flatten().for_each(|(x, y, value)| out.set(x as usize, y as usize, value));
     out

@@ -2,7 +2,7 @@
 //! gives depth; the part that is seen at a pixel is its object.
 
 use super::Form;
-use crate::math::{Range, Size, Vec3, vec3};
+use crate::math::{Range, Size, Vec3, parallel, vec3};
 use crate::raster::Plane;
 use crate::surface::{Maps, NearestCache, Surface, SurfaceError};
 use rayon::prelude::*;
@@ -107,35 +107,34 @@ impl Relief {
         }
         let width = self.height.width();
         let (first, last) = (rect.y0 as usize * width, rect.y1 as usize * width);
-        let heights = self.height.values_mut()[first..last].par_chunks_mut(width);
-        let normals = self.normals.values_mut()[first..last].par_chunks_mut(width);
-        let coverages = self.coverage.values_mut()[first..last].par_chunks_mut(width);
-        let ids = self.ids.values_mut()[first..last].par_chunks_mut(width);
-        heights.zip(normals).zip(coverages).zip(ids).enumerate().for_each(
-            |(row, (((heights, normals), covers), ids))| {
-                let fy = (rect.y0 - form.corner.1) as usize + row;
-                for x in rect.x0 as usize..rect.x1 as usize {
-                    let fx = (x as i32 - form.corner.0) as usize;
-                    let above = FormTexel {
-                        height: form.height.at(fx, fy) + offset,
-                        normal: form.normals.at(fx, fy),
-                        coverage: form.coverage.at(fx, fy),
-                        id,
-                    };
-                    let beneath = FormTexel {
-                        height: heights[x],
-                        normal: normals[x],
-                        coverage: covers[x],
-                        id: ids[x],
-                    };
-                    if above.coverage > 0 {
-                        let met = beneath.combine_with(above, combine);
-                        (heights[x], normals[x], covers[x], ids[x]) =
-                            (met.height, met.normal, met.coverage, met.id);
-                    }
+        let heights = self.height.values_mut()[first..last].chunks_mut(width);
+        let normals = self.normals.values_mut()[first..last].chunks_mut(width);
+        let coverages = self.coverage.values_mut()[first..last].chunks_mut(width);
+        let ids = self.ids.values_mut()[first..last].chunks_mut(width);
+        let rows = heights.zip(normals).zip(coverages).zip(ids).enumerate();
+        parallel::for_each(rows, 1, |(row, (((heights, normals), covers), ids))| {
+            let fy = (rect.y0 - form.corner.1) as usize + row;
+            for x in rect.x0 as usize..rect.x1 as usize {
+                let fx = (x as i32 - form.corner.0) as usize;
+                let above = FormTexel {
+                    height: form.height.at(fx, fy) + offset,
+                    normal: form.normals.at(fx, fy),
+                    coverage: form.coverage.at(fx, fy),
+                    id,
+                };
+                let beneath = FormTexel {
+                    height: heights[x],
+                    normal: normals[x],
+                    coverage: covers[x],
+                    id: ids[x],
+                };
+                if above.coverage > 0 {
+                    let met = beneath.combine_with(above, combine);
+                    (heights[x], normals[x], covers[x], ids[x]) =
+                        (met.height, met.normal, met.coverage, met.id);
                 }
-            },
-        );
+            }
+        });
     }
 
     fn piece(&self, id: u32) -> u32 {

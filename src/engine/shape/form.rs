@@ -2,9 +2,8 @@
 //! Not here: how forms are combined (`combine`).
 
 use super::{Outline, OutlineRim};
-use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, vec2, vec3};
+use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, parallel, vec2, vec3};
 use crate::raster::Plane;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The shape of one part over a rectangle of the canvas. A copy shares the planes.
@@ -48,11 +47,9 @@ impl Form {
         let mut height = Plane::full(size, 0.0);
         let mut normals = Plane::full(size, Vec3::Z);
         let width = size.width as usize;
-        let rows = height
-            .values_mut()
-            .par_chunks_mut(width)
-            .zip(normals.values_mut().par_chunks_mut(width));
-        rows.enumerate().for_each(|(y, (heights, normals))| {
+        let rows =
+            height.values_mut().chunks_mut(width).zip(normals.values_mut().chunks_mut(width));
+        parallel::for_each(rows.enumerate(), 1, |(y, (heights, normals))| {
             for (x, (height, normal)) in heights.iter_mut().zip(normals).enumerate() {
                 if inside.at(x, y) {
                     let root = puff * squares.at(x, y).max(0.0).sqrt();

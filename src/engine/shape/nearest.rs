@@ -2,9 +2,8 @@
 //! Lower envelopes of parabolas (Felzenszwalb and Huttenlocher 2012), which `tube` uses as well.
 
 use super::Outline;
-use crate::math::{Size, Vec2, vec2};
+use crate::math::{Size, Vec2, parallel, vec2};
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 /// Distances from the rim of an outline.
 pub struct RimDistance {
@@ -137,7 +136,7 @@ fn nearest_crossings(
         }
     }
     let mut out = Plane::full(size, Vec2::splat(NOWHERE));
-    out.values_mut().par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(out.values_mut(), w, 1, |y, row| {
         let beside = column.row(y);
         let cost: Vec<f64> = beside
             .iter()

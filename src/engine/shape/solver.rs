@@ -8,11 +8,10 @@ mod level;
 use crate::math::conjugate_gradients::{
     ConjugateSystem, JACOBI_STEPS as STEPS, conjugate_gradients,
 };
-use crate::math::{Rect, Size};
+use crate::math::{Rect, Size, parallel};
 use crate::memory::fill_or_unwind;
 use crate::raster::Plane;
 use level::*;
-use rayon::prelude::*;
 
 /// The most steps of conjugate gradients.
 const MOST_STEPS: usize = 60;
@@ -88,9 +87,8 @@ impl Solver {
             let nothing = fill_or_unwind(rest.len(), 0.0);
             let coarse = self.solve_by_conjugate_gradients(1, &rest, nothing, GOAL);
             grid.fill(&mut other, |y, out| interpolate_blocks(grid, below, &coarse, y, out));
-            v.par_chunks_mut(grid.w * BAND)
-                .zip(other.par_chunks(grid.w * BAND))
-                .for_each(|(v, c)| add(v, 1.0, c));
+            let bands = v.chunks_mut(grid.w * BAND).zip(other.chunks(grid.w * BAND));
+            parallel::for_each(bands, 1, |(v, c)| add(v, 1.0, c));
         }
         grid.relax(&v, b, STEPS[1], &mut other);
         grid.relax(&other, b, STEPS[0], &mut v);
@@ -288,8 +286,8 @@ impl ConjugateSystem for SolverSystem<'_> {
 
     fn turn(&mut self, turn: f32) -> f64 {
         let (grid, w) = (&self.solver.levels[self.at], self.grid().w);
-        let bands = self.direction.par_chunks_mut(w * BAND).zip(self.z.par_chunks(w * BAND));
-        bands.with_min_len(least_bands(w)).for_each(|(d, z)| {
+        let bands = self.direction.chunks_mut(w * BAND).zip(self.z.chunks(w * BAND));
+        parallel::for_each(bands, least_bands(w), |(d, z)| {
             d.iter_mut().zip(z).for_each(|(d, z)| *d = z + turn * *d);
         });
         self.scratch.keep(std::mem::take(&mut self.z));
@@ -302,9 +300,9 @@ impl ConjugateSystem for SolverSystem<'_> {
 
     fn walk(&mut self, along: f32) -> f64 {
         let w = self.grid().w;
-        let bands = self.v.par_chunks_mut(w * BAND).zip(self.residual.par_chunks_mut(w * BAND));
-        let moved = self.direction.par_chunks(w * BAND).zip(self.pulled.par_chunks(w * BAND));
-        bands.zip(moved).with_min_len(least_bands(w)).for_each(|((v, r), (d, p))| {
+        let bands = self.v.chunks_mut(w * BAND).zip(self.residual.chunks_mut(w * BAND));
+        let moved = self.direction.chunks(w * BAND).zip(self.pulled.chunks(w * BAND));
+        parallel::for_each(bands.zip(moved), least_bands(w), |((v, r), (d, p))| {
             add(v, along, d);
             add(r, -along, p);
         });

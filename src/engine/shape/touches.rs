@@ -5,10 +5,9 @@
 use super::following::Following;
 use super::rim::Equation;
 use super::{Form, Outline, OutlineRim};
-use crate::math::{Range, Rect, Vec2, Vec3, vec2, vec3};
+use crate::math::{Range, Rect, Vec2, Vec3, parallel, vec2, vec3};
 use crate::raster::Plane;
 use crate::surface::integrate::depth_from_normals;
-use rayon::prelude::*;
 
 /// How firmly a touch holds, relative to the couplings between pixels, which are 1.
 const FIRM: f32 = 1e3;
@@ -329,7 +328,7 @@ fn with_heights(
             let held = plane.row(y).iter().zip(inside.row(y)).filter(|(_, is)| **is);
             held.fold((0.0f64, 0u32), |(sum, n), (z, _)| (sum + f64::from(*z), n + 1))
         };
-        let sums: Vec<(f64, u32)> = rows.clone().into_par_iter().map(of_row).collect();
+        let sums: Vec<(f64, u32)> = parallel::map(rows.clone(), of_row);
         let (sum, count) = sums.iter().fold((0.0, 0), |(s, n), (sum, count)| (s + sum, n + count));
         (sum / f64::from(count.max(1))) as f32
     };

@@ -3,9 +3,8 @@
 
 use super::nearest::{lower_envelope, silhouette_distance};
 use super::{Outline, OutlineRim};
-use crate::math::Size;
+use crate::math::{Size, parallel};
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 /// A residual of 3e-3 of the right-hand side, squared.
 const GOAL: f64 = 1e-5;
@@ -81,7 +80,7 @@ pub fn balls(outline: &Outline, reach: &Plane<f32>) -> Plane<f32> {
 fn envelopes(size: Size, f: impl Fn(usize, usize) -> f64 + Sync) -> Vec<f64> {
     let w = size.width as usize;
     let mut out = crate::memory::fill_or_unwind(size.area(), f64::INFINITY);
-    out.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(&mut out, w, 1, |y, row| {
         let line: Vec<f64> = (0..w).map(|x| f(x, y)).collect();
         lower_envelope(&line, |q, v| row[q] = (q as f64 - v as f64).powi(2) + line[v]);
     });

@@ -2,9 +2,8 @@
 //! cube. Nothing that changes smoothly over a surface is differenced across one. Floor 2.
 
 use super::links;
-use crate::math::{Vec2, vec2};
+use crate::math::{Vec2, parallel, vec2};
 use crate::raster::Plane;
-use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// A step of n̄ of at least this length turns at a crease where it is this many times as long as
@@ -40,11 +39,7 @@ pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u
     let maps = NormalSteps { links, nbar };
     let mut steps = Plane::full(links.size(), 0u8);
     let width = links.width().max(1);
-    steps
-        .values_mut()
-        .par_chunks_mut(width)
-        .enumerate()
-        .for_each(|(y, row)| maps.flags_of_row(y, row));
+    parallel::for_each_row(steps.values_mut(), width, 1, |y, row| maps.flags_of_row(y, row));
     keep_chains(&mut steps, links);
     maps.close_corners(&mut steps);
     if steps.values().iter().all(|&flags| flags & ANY_CREASE == 0) {

@@ -5,9 +5,8 @@
 
 use super::contours::{ContourMaps, EnlargedContours};
 use super::{Maps, Surface, SurfaceError};
-use crate::math::{Size, Vec2, Vec3, vec2};
+use crate::math::{Size, Vec2, Vec3, parallel, vec2};
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 impl Surface {
     /// The whole surface as large as `canvas` allows, its aspect kept, centered; what is left of the
@@ -55,7 +54,7 @@ impl Surface {
         let planes = [&mut self.nbar_x, &mut self.nbar_y, &mut self.nz, &mut self.depth];
         for (plane, from) in planes.into_iter().zip([&of.nbar_x, &of.nbar_y, &of.nz, &of.depth]) {
             let width = plane.width();
-            plane.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            parallel::for_each_row(plane.values_mut(), width, 1, |y, row| {
                 for (x, v) in row.iter_mut().enumerate().filter(|(x, _)| coverage.at(*x, y) == 0) {
                     let at = map_from_canvas(vec2(x as f32 + 0.5, y as f32 + 0.5))
                         .max(Vec2::ZERO)

@@ -2,6 +2,7 @@
 //! differenced across a depth jump or the mask's edge. Floor 2.
 
 use crate::math::fast::{max, min};
+use crate::math::parallel;
 use crate::raster::Plane;
 use rayon::prelude::*;
 
@@ -92,11 +93,7 @@ pub fn find(
     let maps = StepMaps { nbar: [nbar_x, nbar_y], nz, depth, coverage, depth_range_px };
     let mut jumps = Plane::full(depth.size(), 0u8);
     let width = depth.width().max(1);
-    jumps
-        .values_mut()
-        .par_chunks_mut(width)
-        .enumerate()
-        .for_each(|(y, row)| maps.jumps_of_row(y, row));
+    parallel::for_each_row(jumps.values_mut(), width, 1, |y, row| maps.jumps_of_row(y, row));
     spread(&mut jumps);
     Plane::from_fn(depth.size(), |x, y| {
         // A step is stored at its left or upper pixel.

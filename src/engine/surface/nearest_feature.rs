@@ -1,8 +1,8 @@
 //! Grows valid values outward: finds the nearest surface pixel of every pixel.
 //! Floor 2.
 
+use crate::math::parallel;
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 /// A pixel, column and row; [`NONE`] where none is known. Sides of maps are shorter than this
 /// holds.
@@ -140,7 +140,7 @@ pub fn punch_holes(coverage: &mut Plane<u8>, valid: &Plane<bool>) {
             .any(|dy| (-2..=2).any(|dx| valid.get(x as i32 + dx, y as i32 + dy).unwrap_or(false)))
     };
     let width = valid.width().max(1);
-    coverage.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(coverage.values_mut(), width, 1, |y, row| {
         for (x, (c, valid)) in row.iter_mut().zip(valid.row(y)).enumerate() {
             if *c > 0 && !valid && !(*c < 255 && near_valid(x, y)) {
                 *c = 0;

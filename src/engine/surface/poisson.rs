@@ -16,6 +16,7 @@ mod rows;
 use crate::math::conjugate_gradients::{
     ConjugateSystem, JACOBI_STEPS as STEPS, conjugate_gradients,
 };
+use crate::math::parallel;
 use crate::memory::fill_or_unwind;
 pub use constraints::SoftConstraints;
 use graph::PoissonGraph;
@@ -216,9 +217,7 @@ impl PoissonSolver {
     /// Σ a b, folded row by row.
     fn dot(&self, a: &[f32], b: &[f32]) -> f64 {
         let w = self.grid.w * BAND;
-        let bands: Vec<f64> =
-            a.par_chunks(w).zip(b.par_chunks(w)).map(|(a, b)| rows::dot(a, b)).collect();
-        bands.iter().sum()
+        parallel::map(a.chunks(w).zip(b.chunks(w)), |(a, b)| rows::dot(a, b)).iter().sum()
     }
 
     /// `out` = b − A v; returns its length, squared.
@@ -230,7 +229,7 @@ impl PoissonSolver {
         out: &mut [f32],
     ) -> f64 {
         let w = self.grid.w;
-        let bands = out.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
+        let bands = parallel::map(out.chunks_mut(w * BAND).enumerate(), |(band, out)| {
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
                 residual_row(
                     self.grid.row(y),
@@ -243,7 +242,7 @@ impl PoissonSolver {
             }
             rows::dot(out, out)
         });
-        bands.collect::<Vec<f64>>().iter().sum()
+        bands.iter().sum()
     }
 
     /// `direction` = z + turn · direction and `pulled` = A direction; returns the two's product.
@@ -256,12 +255,10 @@ impl PoissonSolver {
         pulled: &mut [f32],
     ) -> f64 {
         let w = self.grid.w;
-        direction
-            .par_chunks_mut(w * BAND)
-            .zip(z.par_chunks(w * BAND))
-            .for_each(|(d, z)| rows::turn(z, turn, d));
+        let bands = direction.chunks_mut(w * BAND).zip(z.chunks(w * BAND));
+        parallel::for_each(bands, 1, |(d, z)| rows::turn(z, turn, d));
         let direction = &*direction;
-        let bands = pulled.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
+        let bands = parallel::map(pulled.chunks_mut(w * BAND).enumerate(), |(band, out)| {
             let mut sum = 0.0;
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
                 rows::apply_row(self.grid.row(y), neighboring_rows(direction, w, y), out);
@@ -272,7 +269,7 @@ impl PoissonSolver {
             }
             sum
         });
-        bands.collect::<Vec<f64>>().iter().sum()
+        bands.iter().sum()
     }
 
     /// v += step · direction and residual −= step · pulled; returns the residual's length, squared.
@@ -284,15 +281,14 @@ impl PoissonSolver {
         residual: &mut [f32],
     ) -> f64 {
         let w = self.grid.w * BAND;
-        let ways = direction.par_chunks(w).zip(pulled.par_chunks(w));
-        let bands = v.par_chunks_mut(w).zip(residual.par_chunks_mut(w)).zip(ways).map(
-            |((v, r), (d, p))| {
-                rows::walk(step, d, v);
-                rows::walk(-step, p, r);
-                rows::dot(r, r)
-            },
-        );
-        bands.collect::<Vec<f64>>().iter().sum()
+        let ways = direction.chunks(w).zip(pulled.chunks(w));
+        let bands = v.chunks_mut(w).zip(residual.chunks_mut(w)).zip(ways);
+        let lengths = parallel::map(bands, |((v, r), (d, p))| {
+            rows::walk(step, d, v);
+            rows::walk(-step, p, r);
+            rows::dot(r, r)
+        });
+        lengths.iter().sum()
     }
 
     /// One symmetric V-cycle: `z[0]` becomes an approximate solution of A z = b.
@@ -305,7 +301,7 @@ impl PoissonSolver {
     ) {
         let w = self.grid.w;
         let rows_of = |out: &mut [f32], each: &(dyn Fn(usize, &mut [f32]) + Sync)| {
-            out.par_chunks_mut(w * BAND).enumerate().for_each(|(band, out)| {
+            parallel::for_each_row(out, w * BAND, 1, |band, out| {
                 (band * BAND..).zip(out.chunks_mut(w)).for_each(|(y, out)| each(y, out));
             });
         };
@@ -335,10 +331,8 @@ impl PoissonSolver {
         graph::gather(&self.parent, twin, levels, &self.graphs);
         graph::cycle(&self.graphs, levels, constraints.coarser());
         if let Some(coarse) = levels.first() {
-            let parents = self.parent.par_chunks(w * BAND);
-            z.par_chunks_mut(w * BAND)
-                .zip(parents)
-                .for_each(|(z, parents)| graph::spread(parents, coarse, z));
+            let bands = z.chunks_mut(w * BAND).zip(self.parent.chunks(w * BAND));
+            parallel::for_each(bands, 1, |(z, parents)| graph::spread(parents, coarse, z));
         }
         relax(STEPS[0], z, twin);
         relax(STEPS[1], twin, z);

@@ -8,12 +8,11 @@ mod deviation;
 mod tests;
 
 use super::{Surface, links};
-use crate::math::{Range, UNIT, Vec2};
+use crate::math::{Range, UNIT, Vec2, parallel};
 use crate::raster::bits::TileBits;
 use crate::raster::coverage::CoverageGrid;
 use crate::raster::flood::{Flooded, OpenTile, TileLinks};
 use crate::raster::{Plane, TILE, TileAt};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 crate::named! {
@@ -225,7 +224,7 @@ fn links_of(surface: &Surface) -> Vec<TileLinks> {
         }
         joined
     };
-    tiles.par_iter().map(of_tile).collect()
+    parallel::map(&tiles, of_tile)
 }
 
 crate::widest! {

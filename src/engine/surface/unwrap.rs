@@ -26,7 +26,7 @@ use super::operator::UnwrapSettings;
 use super::poisson::{Effort, GoOn, PoissonGrid, PoissonSolver, SolveScratch};
 use super::pyramid::{Pyramid, TurnSpan};
 use super::{Surface, links};
-use crate::math::{Rect, Size, Vec2, vec2};
+use crate::math::{Rect, Size, Vec2, parallel, vec2};
 use crate::memory::fill_or_unwind;
 use crate::raster::Plane;
 use rayon::prelude::*;
@@ -218,7 +218,7 @@ fn couplings(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> Poisso
     };
     let plane = |bit: u8, step: usize, along: Vec2| {
         let mut plane = fill_or_unwind(n, 0.0f32);
-        plane.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+        parallel::for_each_row(&mut plane, w, 1, |y, row| {
             let linked = surface.links_plane().row(y + rect.y0 as usize);
             for (x, (coupling, linked)) in
                 row.iter_mut().zip(&linked[rect.x0 as usize..]).enumerate()

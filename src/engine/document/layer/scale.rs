@@ -9,13 +9,12 @@ use super::map::LayerMap;
 use super::mask::{DerivedMask, MaskKind};
 use super::transform::{LayerTransform, scaled_matrix};
 use crate::math::srgb::{quantize, quantize16};
-use crate::math::{PlaneMap, Rect, Size, Vec2, vec2};
+use crate::math::{PlaneMap, Rect, Size, Vec2, parallel, vec2};
 use crate::paint::{LayerEffect, Placement, Sample, Selection, Stroke, StrokeAttachment};
 use crate::raster::tile::sixteen_bit;
 use crate::raster::warp::{warp_plane_onto, warp_tile};
 use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
@@ -223,7 +222,7 @@ impl CanvasScale {
             Some(sampler) => warp_tile(grid, sampler, sampler.filter, at),
             None => self.tile(grid, at).map(Arc::new),
         };
-        let resampled: Vec<Option<Arc<Tile>>> = tiles.par_iter().map(tile).collect();
+        let resampled: Vec<Option<Arc<Tile>>> = parallel::map(tiles, tile);
         tiles.iter().zip(resampled).for_each(|(&at, tile)| next.set(at, tile));
     }
 

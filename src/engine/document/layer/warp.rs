@@ -17,7 +17,7 @@ use super::transform::TransformShape;
 use super::transform::mesh::Mesh;
 use super::{Layer, LayerId};
 use crate::document::Document;
-use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2, vec2};
+use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2, parallel, vec2};
 use crate::raster::warp::{PixelMap, TileMap, TilePoints, warp_block, warp_tile};
 use crate::raster::{Lattice, Plane, Resampling, TileAt, TileGrid};
 use rayon::prelude::*;
@@ -264,7 +264,7 @@ impl PixelLayer {
             Some(moved) => warp_tile(&self.tiles, &moved, warp.filter, *at),
             None => warp_tile(&self.tiles, map, map.filter, *at),
         };
-        let seen: Vec<_> = wanted.par_iter().map(one).collect();
+        let seen: Vec<_> = parallel::map(&wanted, one);
         tiles.reserve(canvas);
         wanted.into_iter().zip(seen).for_each(|(at, tile)| tiles.set(at, tile));
         Self { tiles, ..self.clone() }
@@ -296,7 +296,7 @@ pub(in crate::document) fn displaced_mask(
             None => warp_block(coverage, map, map.filter, rect),
         }
     };
-    let values: Vec<Vec<(i32, i32, u8)>> = wanted.par_iter().map(one).collect();
+    let values: Vec<Vec<(i32, i32, u8)>> = parallel::map(&wanted, one);
     values.into_iter().flatten().for_each(|(x, y, value)| out.set(x as usize, y as usize, value));
     LayerMask {
         kind: MaskKind::File { file: file.clone(), coverage: Arc::new(out) },

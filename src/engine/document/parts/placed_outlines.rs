@@ -6,10 +6,9 @@ use super::outlines::OutlineKey;
 use super::unchanged::split_whole_px;
 use super::{OutlineSource, Part};
 use crate::document::Document;
-use crate::math::Affine2;
 use crate::math::srgb::Color;
+use crate::math::{Affine2, parallel};
 use crate::shape::Outline;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Each outline needs several planes of the canvas while it is found; on larger canvases they are
@@ -45,7 +44,7 @@ impl Document {
             group.into_iter().for_each(|Sought { part, found }| *found = self.placed_outline(part));
         };
         match self.size.area() <= MOST_AT_ONCE_PX {
-            true => groups.into_par_iter().for_each(find),
+            true => parallel::for_each(groups, 1, find),
             false => groups.into_iter().for_each(find),
         }
         found

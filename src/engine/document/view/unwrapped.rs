@@ -5,7 +5,7 @@ use super::ViewUnavailable;
 use crate::document::{
     Document, Highlights, Layer, Progress, flatten, flatten_layer, flatten_to_floats,
 };
-use crate::math::{Rect, Size, Vec2, srgb::quantize, vec2};
+use crate::math::{Rect, Size, Vec2, parallel, srgb::quantize, vec2};
 use crate::memory::fill_or_unwind;
 use crate::paint::Placement;
 use crate::raster::{Picture, TileGrid};
@@ -59,7 +59,7 @@ impl UnwrappedPicture {
             let over = 1.0 / a.max(1e-6);
             [r * over, g * over, b * over, a].map(quantize)
         };
-        Picture::srgb8(self.size, self.pixels.par_iter().map(straight).collect())
+        Picture::srgb8(self.size, parallel::map(&self.pixels, straight))
     }
 }
 
@@ -182,7 +182,7 @@ fn pull_painting(painting: &Painting, view: &PlaneView, scale: u32) -> (Size, Ve
     let corner = vec2(view.rect.x0 as f32, view.rect.y0 as f32);
     let w = size.width as usize;
     let mut pixels = fill_or_unwind(size.area(), [f32::NAN; 4]);
-    pixels.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(&mut pixels, w, 1, |y, row| {
         for (x, pixel) in row.iter_mut().enumerate() {
             let p = corner + (vec2(x as f32, y as f32) + 0.5) / scale as f32;
             if let Some(point) = view.sample(p) {

@@ -2,10 +2,9 @@
 //! the relief shows. Floor 4. What is hidden from the front is not known; what lies behind is drawn
 //! over it.
 
-use crate::math::Size;
+use crate::math::{Size, parallel};
 use crate::raster::{Plane, TileGrid};
 use crate::surface::Surface;
-use rayon::prelude::*;
 
 /// A picture with its heights, as large as a screen needs.
 pub struct WobbleScene {
@@ -55,7 +54,7 @@ impl WobbleScene {
         let lean = -angle_rad.max(-1.0).min(1.0).tan();
         let width = self.size.width as usize;
         let mut out = vec![[0u8; 4]; self.size.area()];
-        out.par_chunks_mut(width).enumerate().for_each(|(y, row)| self.row(y, lean, row));
+        parallel::for_each_row(&mut out, width, 1, |y, row| self.row(y, lean, row));
         out
     }
 

@@ -3,7 +3,7 @@
 
 use super::brush_coverage::BrushCoverage;
 use super::{FormDrawing, TonePicture};
-use crate::math::{Size, Vec2, Vec3, vec3};
+use crate::math::{Size, Vec2, Vec3, parallel, vec3};
 use crate::paint::brush::Brush;
 use crate::paint::dynamics::{Curve, Input, Property};
 use crate::paint::stroke::Stroke;
@@ -12,7 +12,6 @@ use crate::surface::Surface;
 use crate::surface::form_lines::{LinePoint, SmoothNormals};
 use crate::surface::hatching::{HatchLine, HatchPoint, HatchSettings, HatchTone};
 use crate::surface::shadow::{ShadowLamp, ShareMap};
-use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -138,7 +137,7 @@ pub(super) fn strokes(
     let lines = surface.hatch_lines(settings, &drawing.found.guides);
     let covered = BrushCoverage::of(&drawing.brush);
     let of_line = |line: &HatchLine| of_line(drawing, line, &tone, covered);
-    lines.lines.par_iter().flat_map_iter(of_line).collect()
+    parallel::map(&lines.lines, |line| of_line(line).into_iter().collect::<Vec<_>>()).concat()
 }
 
 fn of_line(

@@ -2,6 +2,7 @@
 //! holds. Floor 3. Colors are premultiplied, so that transparent pixels add nothing.
 
 use super::pixels::RetouchPixels;
+use crate::math::parallel;
 use crate::math::srgb::Color;
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab, round_extent};
@@ -13,7 +14,6 @@ use crate::paint::stroke::dabs::tiles_of;
 use crate::paint::stroke_tile::StrokeTile;
 use crate::paint::tint;
 use crate::raster::{TILE, TileAt};
-use rayon::prelude::*;
 
 /// Most paint is picked up in the middle: a soft round dab whose weights add up to half its disc.
 const SOFT: f32 = 0.4;
@@ -91,8 +91,7 @@ fn pick_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) -
         }
         sum
     };
-    let sums: Vec<[f32; 5]> =
-        tiles_of(&placed).par_iter().map_init(DabScratch::default, seen).collect();
+    let sums: Vec<[f32; 5]> = parallel::map_with(&tiles_of(&placed), DabScratch::default, seen);
     // In the tiles' order, whichever thread added them up.
     let sum = sums.iter().fold([0.0f32; 5], |all, sum| std::array::from_fn(|c| all[c] + sum[c]));
     (sum[4] > 0.0).then(|| [0, 1, 2, 3].map(|c| sum[c] / sum[4]))

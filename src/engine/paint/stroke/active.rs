@@ -4,7 +4,7 @@
 
 use super::dabs::{StrokeDabs, TOGETHER, for_each_tile_of};
 use super::{Sample, Stroke, StrokeCache, render_pixels};
-use crate::math::{Rect, Vec2, srgb::Color};
+use crate::math::{Rect, Vec2, parallel, srgb::Color};
 use crate::paint::brush::Brush;
 use crate::paint::brush::dual_brush::DualSettings;
 use crate::paint::dab::{DabScratch, PlacedDab};
@@ -16,7 +16,6 @@ use crate::paint::stroke_tile::{StrokeBlend, StrokeTile};
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use crate::surface::Operator;
 use crate::surface::objects::CanvasPart;
-use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex};
 
@@ -120,7 +119,8 @@ impl ActiveTip {
             for_each_tile_of(&placed, |i, at| tiles[i].push(at));
             placed.into_iter().zip(tiles).collect::<Vec<_>>()
         };
-        let placed: Vec<_> = dabs.par_chunks(TOGETHER).flat_map_iter(place).collect();
+        let placed: Vec<_> =
+            parallel::map(dabs.chunks(TOGETHER), place).into_iter().flatten().collect();
         self.tail.clear();
         let mut fresh =
             NewDabs { dabs: Vec::with_capacity(placed.len()), settled, tiles: BTreeMap::new() };
@@ -348,8 +348,8 @@ impl ActiveStrokes {
             };
             (shows_all || !is_same).then_some((*at, pixels))
         };
-        let painted = active_tiles.par_iter_mut().map_init(DabScratch::default, paint);
-        let painted = painted.flatten_iter().collect();
+        let painted = parallel::map_with(&mut active_tiles, DabScratch::default, paint);
+        let painted = painted.into_iter().flatten().collect();
         tiles.extend(active_tiles);
         painted
     }

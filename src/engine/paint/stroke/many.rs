@@ -5,6 +5,7 @@
 
 use super::Stroke;
 use super::dabs::{StrokeDabs, TileReach};
+use crate::math::parallel;
 use crate::paint::dab::DabScratch;
 use crate::paint::scene::Scene;
 use crate::raster::{PlanarTile, Tile, TileAt};
@@ -73,7 +74,7 @@ pub fn render_many(
         for batch in batches(strokes, |stroke| stroke.most_dabs(&front)) {
             is_wanted().then_some(())?;
             let laid: Vec<Option<Arc<StrokeDabs>>> =
-                batch.par_iter().map(|stroke| place_dabs(stroke, &front, part)).collect();
+                parallel::map(batch, |stroke| place_dabs(stroke, &front, part));
             for (i, stroke_dabs) in laid.iter().enumerate() {
                 for place in stroke_dabs
                     .iter()
@@ -83,15 +84,16 @@ pub fn render_many(
                     active_tiles[*place].here.push(i);
                 }
             }
-            active_tiles
-                .par_iter_mut()
-                .for_each_init(DabScratch::default, |scratch, active_tile| {
-                    active_tile.paint(batch, &laid, scene, scratch)
-                });
+            parallel::for_each_with(
+                &mut active_tiles,
+                1,
+                DabScratch::default,
+                |scratch, active_tile| active_tile.paint(batch, &laid, scene, scratch),
+            );
         }
-        active_tiles
-            .into_par_iter()
-            .for_each(|active_tiles| done(active_tiles.at, active_tiles.pixels));
+        parallel::for_each(active_tiles, 1, |active_tiles| {
+            done(active_tiles.at, active_tiles.pixels)
+        });
     }
     Some(())
 }

@@ -2,9 +2,8 @@
 //! inside. Floor 1. Not here: who draws them (`tools`).
 
 use super::{CoverageGrid, CoverageTile, blank, clip};
-use crate::math::{Rect, Vec2, vec2};
+use crate::math::{Rect, Vec2, parallel, vec2};
 use crate::raster::{TILE, TileAt};
-use rayon::prelude::*;
 
 /// The part of a rectangle's pixels that lies between two corners, in any order.
 pub fn rectangle(a: Vec2, b: Vec2, within: Rect) -> CoverageGrid {
@@ -81,7 +80,7 @@ pub fn polygons(lines: &[&[Vec2]], has_holes: bool, within: Rect) -> CoverageGri
     let edges = edges(lines());
     let bands: Vec<Rect> = bands(area).collect();
     let share = share_by(has_holes);
-    let made: Vec<Vec<_>> = bands.par_iter().map(|&band| band_tiles(&edges, band, share)).collect();
+    let made: Vec<Vec<_>> = parallel::map(&bands, |&band| band_tiles(&edges, band, share));
     let mut grid = CoverageGrid::for_rect(area);
     made.into_iter().flatten().for_each(|(at, tile)| grid.set(at, tile));
     grid

@@ -2,8 +2,7 @@
 
 use super::super::tile::{TILE, Tile, TileAt, sixteen_bit};
 use super::TileGrid;
-use crate::math::{Rect, srgb};
-use rayon::prelude::*;
+use crate::math::{Rect, parallel, srgb};
 use std::sync::Arc;
 
 impl TileGrid {
@@ -67,8 +66,7 @@ impl TileGrid {
             }
             (at, Tile::from_rows16(rows).map(Arc::new))
         };
-        let places: Vec<TileAt> = TileAt::covering(rect).collect();
-        let tiles: Vec<_> = places.into_par_iter().map(tile).collect();
+        let tiles = parallel::map(TileAt::covering(rect), tile);
         let mut grid = Self::for_rect(rect);
         tiles.into_iter().for_each(|(at, tile)| grid.set(at, tile));
         grid

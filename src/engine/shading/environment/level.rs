@@ -2,8 +2,7 @@
 //! poles. Floor 3.
 
 use super::projection::lat_long_place;
-use crate::math::{Vec2, Vec3, Vec3A, fast};
-use rayon::prelude::*;
+use crate::math::{Vec2, Vec3, Vec3A, fast, parallel};
 use std::f32::consts::{PI, TAU};
 
 /// Means over about equally large parts of the sphere, twice as many columns as rows. Texels take
@@ -126,7 +125,10 @@ impl SphereLevel {
             let sin = ((row as f32 + 0.5) / self.rows as f32 * PI).sin();
             average_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
         };
-        SphereLevel::new(self.rows, (0..self.rows).into_par_iter().flat_map_iter(of_row).collect())
+        SphereLevel::new(
+            self.rows,
+            parallel::map(0..self.rows, |row| of_row(row).into_iter().collect::<Vec<_>>()).concat(),
+        )
     }
 }
 

@@ -4,6 +4,7 @@
 use super::areas::LEAST_SEEN;
 use super::color_distance::{color_distance, is_near};
 use super::picture::{FlatPicture, Pixel};
+use crate::math::parallel;
 use crate::raster::Plane;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
@@ -130,10 +131,9 @@ fn shade_of_each(
 ) -> Plane<u16> {
     let mut of = Plane::full(pixels.size(), NONE);
     let width = pixels.width().max(1);
-    let rows = of.values_mut().par_chunks_mut(width).zip(pixels.values().par_chunks(width));
-    rows.zip(is_flat.values().par_chunks(width)).for_each(|((row, pixels), is_flat)| {
+    parallel::for_each_row(of.values_mut(), width, 1, |y, row| {
         let mut last = ([0u8; 4], NONE);
-        for ((of, pixel), is_flat) in row.iter_mut().zip(pixels).zip(is_flat) {
+        for ((of, pixel), is_flat) in row.iter_mut().zip(pixels.row(y)).zip(is_flat.row(y)) {
             if *is_flat {
                 if last.0 != *pixel {
                     let shade = nearest(shades.iter().map(|(shade, _)| *shade), *pixel);

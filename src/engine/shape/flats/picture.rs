@@ -2,9 +2,8 @@
 //! lies. Floor 3.
 
 use super::color_distance::{NEAR, is_near, share_on_the_way};
-use crate::math::{Rect, Size};
+use crate::math::{Rect, Size, parallel};
 use crate::raster::{Plane, TileGrid};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Premultiplied.
@@ -103,7 +102,7 @@ impl FlatPicture {
             let mixed = (0..self.pixels.width()).filter(move |x| !self.is_flat.at(*x, y));
             mixed.filter_map(move |x| self.mixed_pixel(x, y)).collect::<Vec<_>>()
         };
-        let rows: Vec<Vec<Between>> = (0..self.pixels.height()).into_par_iter().map(row).collect();
+        let rows: Vec<Vec<Between>> = parallel::collect(self.pixels.height(), 1, row);
         rows.into_iter().flatten().collect()
     }
 
@@ -172,8 +171,7 @@ impl FlatPicture {
             let open = (0..pixels.width()).filter(|x| pixels.at(*x, y)[3] < 255);
             open.filter_map(|x| Some((x, y, closed(x as i32, y as i32)?))).collect::<Vec<_>>()
         };
-        let closed: Vec<Vec<(usize, usize, Pixel)>> =
-            (0..pixels.height()).into_par_iter().map(row).collect();
+        let closed: Vec<Vec<(usize, usize, Pixel)>> = parallel::collect(pixels.height(), 1, row);
         for (x, y, pixel) in closed.into_iter().flatten() {
             self.pixels.set(x, y, pixel);
             self.is_flat.set(x, y, true);

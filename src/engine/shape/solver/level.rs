@@ -1,8 +1,8 @@
 //! One grid of the solver: its couplings, and what is done row by row with planes over it.
 //! Floor 3.
 
+use crate::math::parallel;
 use crate::memory::fill_or_unwind;
-use rayon::prelude::*;
 
 /// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: the
 /// block is held by this share of what holds its pixels there. Measured on discs and ragged stars:
@@ -36,20 +36,19 @@ impl Level {
     pub(super) fn new(w: usize, h: usize, right: Vec<f32>, down: Vec<f32>, held: Vec<f32>) -> Self {
         let mut diagonal = fill_or_unwind(w * h, 0.0);
         let mut inverse = fill_or_unwind(w * h, 0.0);
-        diagonal.par_chunks_mut(w).zip(inverse.par_chunks_mut(w)).enumerate().for_each(
-            |(y, (diagonal, inverse))| {
-                if y == 0 || y + 1 == h {
-                    return;
-                }
-                let at = y * w;
-                for x in 1..w - 1 {
-                    let i = at + x;
-                    let sum = right[i] + down[i] + right[i - 1] + down[i - w] + held[i];
-                    diagonal[x] = sum;
-                    inverse[x] = if sum > 0.0 { 1.0 / sum } else { 0.0 };
-                }
-            },
-        );
+        let rows = diagonal.chunks_mut(w).zip(inverse.chunks_mut(w)).enumerate();
+        parallel::for_each(rows, 1, |(y, (diagonal, inverse))| {
+            if y == 0 || y + 1 == h {
+                return;
+            }
+            let at = y * w;
+            for x in 1..w - 1 {
+                let i = at + x;
+                let sum = right[i] + down[i] + right[i - 1] + down[i - w] + held[i];
+                diagonal[x] = sum;
+                inverse[x] = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+            }
+        });
         Self { w, h, right, down, held, diagonal, inverse }
     }
 
@@ -59,7 +58,7 @@ impl Level {
         let (w, h) = ((self.w - 1) / 2 + 2, (self.h - 1) / 2 + 2);
         let blocks = |value: &(dyn Fn(usize, usize) -> f32 + Sync)| {
             let mut out = fill_or_unwind(w * h, 0.0);
-            out.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+            parallel::for_each_row(&mut out, w, 1, |y, row| {
                 for (x, v) in row.iter_mut().enumerate() {
                     *v = value(x, y);
                 }
@@ -117,15 +116,13 @@ impl Level {
     /// Fills the inner rows of a plane; the function gets each row's number.
     pub(super) fn fill(&self, out: &mut [f32], row: impl Fn(usize, &mut [f32]) + Sync) {
         let (w, h) = (self.w, self.h);
-        out.par_chunks_mut(w * BAND).enumerate().with_min_len(least_bands(w)).for_each(
-            |(band, rows)| {
-                for (y, out) in (band * BAND..).zip(rows.chunks_mut(w)) {
-                    if y > 0 && y + 1 < h {
-                        row(y, out);
-                    }
+        parallel::for_each_row(out, w * BAND, least_bands(w), |band, rows| {
+            for (y, out) in (band * BAND..).zip(rows.chunks_mut(w)) {
+                if y > 0 && y + 1 < h {
+                    row(y, out);
                 }
-            },
-        );
+            }
+        });
     }
 
     pub(super) fn couplings(&self, y: usize) -> Couplings<'_> {
@@ -244,7 +241,6 @@ pub(super) fn multiply_into(couplings: Couplings, v: [&[f32]; 3], out: &mut [f32
 
 /// Sums over two planes, folded band by band.
 pub(super) fn dots(w: usize, a: &[f32], b: &[f32]) -> f64 {
-    let bands = a.par_chunks(w * BAND).zip(b.par_chunks(w * BAND)).with_min_len(least_bands(w));
-    let bands: Vec<f64> = bands.map(|(a, b)| dot(a, b)).collect();
-    bands.iter().sum()
+    let [a, b] = [a, b].map(|values| values.chunks(w * BAND).collect::<Vec<_>>());
+    parallel::collect(a.len(), least_bands(w), |i| dot(a[i], b[i])).iter().sum()
 }

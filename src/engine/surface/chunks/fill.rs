@@ -5,9 +5,8 @@ use super::sown::SownParts;
 use super::{
     BallPlace, BallPlaces, ChunkMaps, LANES, LOOKED_UP, Seed, SeedGrid, neighboring_cells, seams,
 };
-use crate::math::{Mat2, Rect, Vec2, fast, vec2};
+use crate::math::{Mat2, Rect, Vec2, fast, parallel, vec2};
 use crate::raster::{Plane, TILE};
-use rayon::prelude::*;
 
 /// Cells from this side on are worked on in lanes; in smaller ones few pixels are left.
 const IN_LANES_PX: f32 = 8.0;
@@ -17,9 +16,9 @@ pub(super) fn places(maps: &ChunkMaps) -> BallPlaces {
     let size = maps.surface.size();
     let (mut places, mut chunks) = (Plane::full(size, [0u16; 2]), Plane::full(size, 0u8));
     let (width, steps) = (places.width().max(1), maps.settings.steps());
-    let chunk_bands = chunks.values_mut().par_chunks_mut(width * TILE);
-    let bands = places.values_mut().par_chunks_mut(width * TILE).zip(chunk_bands).enumerate();
-    bands.for_each_init(PlaceTile::default, |tile, (band, (places, chunks))| {
+    let chunk_bands = chunks.values_mut().chunks_mut(width * TILE);
+    let bands = places.values_mut().chunks_mut(width * TILE).zip(chunk_bands).enumerate();
+    parallel::for_each_with(bands, 1, PlaceTile::default, |tile, (band, (places, chunks))| {
         for x0 in (0..width).step_by(TILE) {
             tile.fill(maps, (x0, band * TILE));
             let end = (x0 + TILE).min(width);

@@ -2,9 +2,8 @@
 
 use super::ways::{WayLanes, WayPairs};
 use super::{BallPlaces, ChunkMaps, ChunkSettings};
-use crate::math::vec2;
+use crate::math::{parallel, vec2};
 use crate::raster::Plane;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// The directions in which neighbors are looked for.
@@ -26,7 +25,7 @@ pub(super) fn find_seams(
     places.seam_px = seam_px as usize;
     let mut seams = Plane::full(chunks.size(), 0u8);
     let width = chunks.width().max(1);
-    seams.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(seams.values_mut(), width, 1, |y, row| {
         for (bit, step) in SEAM_STEPS.into_iter().enumerate() {
             if let Some(pairs) = SeamPairs::of(maps, (&places, chunks), y, step) {
                 mark_seams(&pairs, 1 << bit, &mut row[pairs.own.columns.clone()]);

@@ -1,9 +1,8 @@
 //! Ways from pixel to pixel within a surface. Floor 2.
 
-use crate::math::{Rect, Size};
+use crate::math::{Rect, Size, parallel};
 use crate::raster::Plane;
 use crate::surface::{Surface, links};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// For every pixel how many links are missing before it, in its row and in its column: two pixels
@@ -20,7 +19,7 @@ impl WayCounts {
         let width = linked.width().max(1);
         let (mut across, mut down) = (Plane::full(size, 0u16), Plane::full(size, 0u16));
         let missing = |bits: u8, link: u8| u16::from(bits & link == 0);
-        across.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        parallel::for_each_row(across.values_mut(), width, 1, |y, row| {
             let mut count = 0u16;
             for (out, &bits) in row.iter_mut().zip(linked.row(y)) {
                 count = count.wrapping_add(missing(bits, links::LEFT));

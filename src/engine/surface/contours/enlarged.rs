@@ -7,10 +7,9 @@ use super::line::ContourLine;
 use super::maps::ContourMaps;
 use super::window::{CENTER, PixelWindow, REACH, SIDE};
 use super::{ContourPixel, Contours};
-use crate::math::{Vec2, Vec3, vec2, vec3};
+use crate::math::{Vec2, Vec3, parallel, vec2, vec3};
 use crate::raster::Plane;
 use crate::surface::links;
-use rayon::prelude::*;
 
 /// The pixels of a surface that must not be interpolated.
 pub struct EnlargedContours<'m> {
@@ -46,7 +45,7 @@ impl<'m> EnlargedContours<'m> {
         for pixel in contours.pixels() {
             known[pixel.y as usize].push(pixel);
         }
-        let rows = known.into_par_iter().enumerate().map(|(y, mut known)| {
+        let rows = parallel::map(known.into_iter().enumerate(), |(y, mut known)| {
             known.sort_by_key(|pixel| pixel.x);
             let coverage = maps.coverage.row(y);
             let mut known = known.into_iter().peekable();
@@ -58,7 +57,7 @@ impl<'m> EnlargedContours<'m> {
             };
             (0..coverage.len()).filter_map(at).collect()
         });
-        Self { maps, rows: rows.collect() }
+        Self { maps, rows }
     }
 
     fn at(&self, x: i32, y: i32) -> Option<&DividedPixel> {

@@ -11,11 +11,10 @@ use super::continued::{Continued, nz_of};
 use super::line::bits;
 use super::window::{PixelWindow, steps_of};
 use super::{ContourPixel, Contours};
-use crate::math::{Rect, Size, vec2};
+use crate::math::{Rect, Size, parallel, vec2};
 use crate::raster::{Plane, TILE, TileAt};
 use crate::surface::pyramid::TileBlocks;
 use crate::surface::{Surface, links, pyramid};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Arc, Weak};
 
@@ -163,7 +162,7 @@ impl FarSide {
     ) -> Plane<T> {
         let mut map = Plane::full(size, T::default());
         let width = map.width().max(1);
-        map.values_mut().par_chunks_mut(2 * width).enumerate().for_each(|(i, rows)| {
+        parallel::for_each_row(map.values_mut(), 2 * width, 1, |i, rows| {
             let (upper, lower) = rows.split_at_mut(width);
             let pairs = upper.as_chunks_mut::<2>().0.iter_mut().zip(lower.as_chunks_mut::<2>().0);
             for (j, (upper, lower)) in pairs.enumerate() {
@@ -232,18 +231,16 @@ impl Surface {
         let contours = self.contours().clone();
         let band = BLOCK * COLUMNS;
         let FarMaps { nbar: [nx, ny], nz, depth, coverage, links } = &mut maps;
-        let planes = (
-            nx.values_mut().par_chunks_mut(band),
-            ny.values_mut().par_chunks_mut(band),
-            nz.values_mut().par_chunks_mut(band),
-            depth.values_mut().par_chunks_mut(band),
-            coverage.values_mut().par_chunks_mut(band),
-            links.values_mut().par_chunks_mut(band),
-        );
+        let [nx, ny, nz, depth] =
+            [nx, ny, nz, depth].map(|plane| plane.values_mut().chunks_mut(band));
+        let [coverage, links] = [coverage, links].map(|plane| plane.values_mut().chunks_mut(band));
+        let planes = nx.zip(ny).zip(nz).zip(depth).zip(coverage.zip(links));
         let detailed = self.far_normals();
         self.with_contour_maps(None, |read| {
-            planes.into_par_iter().zip(&contours.far_rows).enumerate().for_each(
-                |(row, ((nx, ny, nz, depth, coverage, links), pixels))| {
+            parallel::for_each(
+                planes.zip(&contours.far_rows).enumerate(),
+                1,
+                |(row, (((((nx, ny), nz), depth), (coverage, links)), pixels))| {
                     let pixels = &contours.pixels[pixels.start as usize..pixels.end as usize];
                     for (i, pixel) in pixels.iter().enumerate() {
                         let window = PixelWindow::around(read, pixel.x, pixel.y);

@@ -6,7 +6,7 @@ use super::line::{ContourLine, EXPLAINED_PX};
 use super::maps::ContourMaps;
 use super::window::{ALL, BESIDE, Beside, CENTER, PixelWindow};
 use super::{ContourPixel, Contours};
-use crate::math::Vec2;
+use crate::math::{Vec2, parallel};
 use crate::raster::{Plane, TILE};
 use rayon::prelude::*;
 
@@ -62,7 +62,7 @@ pub fn find(maps: &ContourMaps) -> Found {
         }
         (tiles, amended)
     };
-    let found: Vec<_> = (0..rows).into_par_iter().map(of_row).collect();
+    let found: Vec<_> = parallel::collect(rows, 1, of_row);
     let (tiles, amended): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     Found {
         contours: Contours::of_tiles(maps.size, tiles.into_iter().flatten().collect()),

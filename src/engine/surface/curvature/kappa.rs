@@ -2,10 +2,9 @@
 //! Floor 2.
 
 use super::{Curvature, Surface};
-use crate::math::{Size, fast};
+use crate::math::{Size, fast, parallel};
 use crate::raster::Plane;
 use crate::surface::cache::HeapSize;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// One scale of curvature of several that are weighed at once.
@@ -60,7 +59,7 @@ impl Kappa {
     ) -> Kappa {
         let mut steps =
             recycled.map_or_else(|| vec![0; size.area()], |kappa| kappa.steps.into_values());
-        steps.par_chunks_mut(CHUNK).enumerate().for_each(|(i, steps)| {
+        parallel::for_each_row(&mut steps, CHUNK, 1, |i, steps| {
             let mut kappa = [0.0; CHUNK];
             let kappa = &mut kappa[..steps.len()];
             for (curvature, scale) in parts {

@@ -1,6 +1,7 @@
 //! Curvature at the ends of a surface: continued from nearby pixels that have all their neighbors.
 //! Floor 2.
 
+use crate::math::parallel;
 use crate::raster::Plane;
 use crate::surface::Surface;
 use crate::surface::cache::HeapSize;
@@ -38,14 +39,11 @@ impl Surface {
 
 impl CurvatureRims {
     fn of(surface: &Surface) -> Self {
-        let rows: Vec<Vec<RimPixel>> = (0..surface.size().height as i32)
-            .into_par_iter()
-            .map(|y| {
-                let links = surface.links_plane().row(y as usize);
-                let ends = (0..links.len()).filter(|&x| links[x] != 15);
-                ends.filter_map(|x| rim(surface, x as i32, y)).collect()
-            })
-            .collect();
+        let rows: Vec<Vec<RimPixel>> = parallel::collect(surface.links_plane().height(), 1, |y| {
+            let links = surface.links_plane().row(y);
+            let ends = (0..links.len()).filter(|&x| links[x] != 15);
+            ends.filter_map(|x| rim(surface, x as i32, y as i32)).collect()
+        });
         Self { pixels: rows.concat() }
     }
 

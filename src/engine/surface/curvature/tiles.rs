@@ -4,10 +4,10 @@
 use super::ends::{EndBlur, FlowRegion};
 use super::tile_rect::{BAND_ROWS, LANES, STRIDE, TileRect};
 use super::{Curvature, slope, tensor};
+use crate::math::parallel;
 use crate::math::simd::prefetch;
 use crate::raster::{Plane, blur::half_kernel};
 use crate::surface::{Surface, links};
-use rayon::prelude::*;
 
 /// Chunks of a row of scratch.
 const CHUNKS: usize = STRIDE / LANES;
@@ -29,10 +29,12 @@ pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvatur
     let rims = surface.rims();
     let ends = EndBlur::new(surface, &rims, blur_px);
     let band = BAND_ROWS * size.width as usize;
-    let [hxx, hxy, hyy] = planes.each_mut().map(|p| p.par_chunks_mut(band));
-    (hxx, hxy, hyy).into_par_iter().enumerate().for_each_init(
+    let [hxx, hxy, hyy] = planes.each_mut().map(|p| p.chunks_mut(band));
+    parallel::for_each_with(
+        hxx.zip(hxy).zip(hyy).enumerate(),
+        1,
         || (TileScratch::new(taps.len() - 1), FlowRegion::default()),
-        |(scratch, region), (i, (hxx, hxy, hyy))| {
+        |(scratch, region), (i, ((hxx, hxy), hyy))| {
             for tile in TileRect::of_band(size, i * BAND_ROWS) {
                 if tile.is_empty(surface) {
                     [&mut *hxx, hxy, hyy]

@@ -7,12 +7,11 @@ use super::smooth::{SmoothNormals, diffuse_copy, gradient_of, gradient_row};
 use super::tidy::RawLine;
 use super::turns::Turns;
 use super::{LineKind, LinePoint, LineSettings};
-use crate::math::{Vec2, Vec3, fast, vec2, vec3};
+use crate::math::{Vec2, Vec3, fast, parallel, vec2, vec3};
 use crate::raster::Plane;
 use crate::surface::shadow::ShadowLamp;
 use crate::surface::unwrap::Unwrapping;
 use crate::surface::{Surface, links};
-use rayon::prelude::*;
 
 /// Where the surface is tilted less, sin, it is not about to be an outline.
 const LEAST_TILT: f32 = 0.25;
@@ -99,8 +98,10 @@ impl FormCurves<'_> {
         let ([nx, ny, nz], links) = (&self.normals.planes, self.surface.links_plane());
         let mut slopes = Plane::full(nz.size(), 0.0f32);
         let width = nz.width().max(1);
-        let rows = slopes.values_mut().par_chunks_mut(width).enumerate();
-        rows.for_each_init(
+        let rows = slopes.values_mut().chunks_mut(width).enumerate();
+        parallel::for_each_with(
+            rows,
+            1,
             || [vec![0.0f32; width], vec![0.0f32; width]],
             |[across, down], (y, out)| {
                 gradient_row(nz, links, y, across, down);
@@ -200,8 +201,8 @@ pub(super) fn trace_lines(
         }
         steps
     };
-    let rows = (0..links.height().saturating_sub(1)).into_par_iter();
-    let steps = rows.map_init(|| vec![0u8; width], steps_of_row).collect::<Vec<Vec<LineStep>>>();
+    let rows = 0..links.height().saturating_sub(1);
+    let steps: Vec<Vec<LineStep>> = parallel::map_with(rows, || vec![0u8; width], steps_of_row);
     join_rows(kind, &steps)
 }
 
@@ -256,16 +257,14 @@ pub(super) fn wires(
     let spacing = settings.wires.max(1.0);
     let mut lines = Vec::new();
     for plane in unwrapped.planes() {
-        let rows: Vec<Vec<LineStep>> = (0..links.height().saturating_sub(1))
-            .into_par_iter()
-            .map(|y| {
+        let rows: Vec<Vec<LineStep>> =
+            parallel::collect(links.height().saturating_sub(1), 1, |y| {
                 let mut steps = Vec::new();
                 for x in (0..links.width() - 1).filter(|&x| links::is_one_piece(links, x, y)) {
                     wire_steps(plane, spacing, (x, y), &mut steps);
                 }
                 steps
-            })
-            .collect();
+            });
         lines.extend(join_rows(LineKind::Wire, &rows));
     }
     lines

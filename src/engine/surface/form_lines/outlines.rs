@@ -8,10 +8,9 @@ mod tests;
 use super::chains::{CellSide, Chain, LineStep, join_steps, sides};
 use super::tidy::RawLine;
 use super::{LineKind, LinePoint, LineSettings};
-use crate::math::{Vec2, vec2};
+use crate::math::{Vec2, parallel, vec2};
 use crate::raster::Plane;
 use crate::surface::{Surface, links};
-use rayon::prelude::*;
 
 /// A gap of this ratio of the canvas is as clear as the rim of the surface.
 const WHOLE_GAP: f32 = 0.03;
@@ -72,7 +71,7 @@ pub(super) fn trace(surface: &Surface, settings: &LineSettings) -> Vec<RawLine> 
 /// The cells whose four pixels are not all one smooth piece of one part, row by row.
 fn parted_cells(surface: &Surface, shares: &Plane<u8>) -> Vec<Vec<(usize, usize)>> {
     let width = shares.width().saturating_sub(1);
-    let rows = (0..shares.height().saturating_sub(1)).into_par_iter();
+    let rows = 0..shares.height().saturating_sub(1);
     let cells_of_row = |marks: &mut Vec<u8>, y: usize| -> Vec<(usize, usize)> {
         let [shares, linked, smooth] =
             [shares, surface.links_plane(), surface.smooth_links_plane()]
@@ -87,7 +86,7 @@ fn parted_cells(surface: &Surface, shares: &Plane<u8>) -> Vec<Vec<(usize, usize)
         }
         (0..width).filter(|&x| marks[x] != 0).map(|x| (x, y)).collect()
     };
-    rows.map_init(|| vec![0u8; width], cells_of_row).collect()
+    parallel::map_with(rows, || vec![0u8; width], cells_of_row)
 }
 
 crate::widest! {
@@ -210,7 +209,7 @@ impl Partings<'_> {
             cells.iter().for_each(|cell| self.steps_of_cell(parting, *cell, &mut steps));
             steps
         };
-        let rows: Vec<Vec<CellStep>> = self.cells.par_iter().map(steps_of_row).collect();
+        let rows: Vec<Vec<CellStep>> = parallel::map(&self.cells, steps_of_row);
         let cells: Vec<CellStep> = rows.into_iter().flatten().collect();
         let steps: Vec<LineStep> = cells.iter().map(|cell| cell.step).collect();
         let chains = join_steps(&steps);

@@ -1,7 +1,7 @@
 //! Normals diffused along links, and their derivatives. Floor 2. Nothing crosses a broken
 //! link.
 
-use crate::math::{Vec2, vec2};
+use crate::math::{Vec2, parallel, vec2};
 use crate::raster::Plane;
 use crate::surface::cache::HeapSize;
 use crate::surface::{Surface, links};
@@ -100,14 +100,12 @@ pub(in crate::surface) fn diffuse(plane: &mut Plane<f32>, links: &Plane<u8>, sig
     for _ in 0..count as usize {
         let width = plane.width().max(1);
         let from = &*plane;
-        other.values_mut().par_chunks_mut(width).enumerate().with_min_len(8).for_each(
-            |(y, row)| {
-                let here = from.row(y);
-                let above = from.row(y.saturating_sub(1));
-                let below = from.row((y + 1).min(from.height() - 1));
-                step_row(here, [above, below], links.row(y), share, row);
-            },
-        );
+        parallel::for_each_row(other.values_mut(), width, 8, |y, row| {
+            let here = from.row(y);
+            let above = from.row(y.saturating_sub(1));
+            let below = from.row((y + 1).min(from.height() - 1));
+            step_row(here, [above, below], links.row(y), share, row);
+        });
         std::mem::swap(plane, &mut other);
     }
 }
@@ -167,7 +165,7 @@ fn blur_along_links(plane: &mut Plane<f32>, links: &Plane<u8>, sigma_px: f32) {
 
 fn smooth_rows(plane: &mut Plane<f32>, links: &Plane<u8>, feedback: f32) {
     let width = plane.width().max(1);
-    plane.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(plane.values_mut(), width, 1, |y, row| {
         let linked = links.row(y);
         for x in 1..width {
             let share = if linked[x] & links::LEFT != 0 { feedback } else { 0.0 };

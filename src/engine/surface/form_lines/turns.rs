@@ -3,9 +3,8 @@
 
 use super::chains::{place, zero};
 use super::smooth::gradient_row;
-use crate::math::{Vec2, vec2};
+use crate::math::{Vec2, parallel, vec2};
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 /// The cosine of the angle between directions of neighbors from which they agree: 60°.
 const AGREES: f32 = 0.5;
@@ -37,9 +36,11 @@ impl Turns {
         let size = links.size();
         let width = links.width().max(1);
         let [mut most, mut x, mut y, mut growth] = [0; 4].map(|_| Plane::full(size, 0.0f32));
-        let ways = x.values_mut().par_chunks_mut(width).zip(y.values_mut().par_chunks_mut(width));
-        let rows = most.values_mut().par_chunks_mut(width).zip(ways).enumerate();
-        rows.for_each_init(
+        let ways = x.values_mut().chunks_mut(width).zip(y.values_mut().chunks_mut(width));
+        let rows = most.values_mut().chunks_mut(width).zip(ways).enumerate();
+        parallel::for_each_with(
+            rows,
+            1,
             || [0; 6].map(|_| vec![0.0f32; width]),
             |slopes, (row, (most, (x, y)))| {
                 for (plane, slopes) in planes.iter().zip(slopes.as_chunks_mut::<2>().0) {
@@ -49,8 +50,10 @@ impl Turns {
                 turn_row(slopes, most, x, y);
             },
         );
-        let rows = growth.values_mut().par_chunks_mut(width).enumerate();
-        rows.for_each_init(
+        let rows = growth.values_mut().chunks_mut(width).enumerate();
+        parallel::for_each_with(
+            rows,
+            1,
             || [vec![0.0f32; width], vec![0.0f32; width]],
             |[across, down], (row, out)| {
                 gradient_row(&most, links, row, across, down);

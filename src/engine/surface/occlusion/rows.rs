@@ -4,10 +4,9 @@
 use super::{
     FLOATS, HorizonDirection, HorizonSlices, excess, height_between, open_part, slope, tangents,
 };
-use crate::math::{Vec2, fast};
+use crate::math::{Vec2, fast, parallel};
 use crate::raster::Plane;
 use crate::surface::{Surface, links};
-use rayon::prelude::*;
 
 /// Pixels computed side by side.
 const LANES: usize = 64;
@@ -31,15 +30,14 @@ impl Heights {
         let margin = ways.reach() as usize;
         let stride = w.next_multiple_of(LANES) + 2 * margin;
         let mut values = vec![NOWHERE; stride * (h + 2 * margin)];
-        values[margin * stride..].par_chunks_mut(stride).enumerate().take(h).for_each(
-            |(y, row)| {
-                for (x, v) in row[margin..margin + w].iter_mut().enumerate() {
-                    if surface.coverage(x, y) > 0 {
-                        *v = -surface.depth(x, y) * surface.depth_range_px();
-                    }
+        let rows = &mut values[margin * stride..][..h * stride];
+        parallel::for_each_row(rows, stride, 1, |y, row| {
+            for (x, v) in row[margin..margin + w].iter_mut().enumerate() {
+                if surface.coverage(x, y) > 0 {
+                    *v = -surface.depth(x, y) * surface.depth_range_px();
                 }
-            },
-        );
+            }
+        });
         Self { values, stride, margin }
     }
 
@@ -57,29 +55,27 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
     let size = surface.size();
     let heights = Heights::of(surface, ways);
     let mut open = Plane::full(size, 1.0f32);
-    open.values_mut().par_chunks_mut(size.width.max(1) as usize).enumerate().for_each(
-        |(y, row)| {
-            for (i, out) in row.chunks_mut(LANES).enumerate() {
-                let x0 = i * LANES;
-                if surface.coverage_plane().row(y)[x0..x0 + out.len()].iter().all(|&c| c == 0) {
-                    continue;
-                }
-                let mut found = [0.0; LANES];
-                open_lanes(
-                    &heights,
-                    (x0, y),
-                    &LaneSlopes::of(surface, &heights, (x0, y), out.len()),
-                    ways,
-                    &mut found,
-                );
-                for (x, (out, &found)) in out.iter_mut().zip(&found).enumerate() {
-                    if surface.coverage(x0 + x, y) > 0 {
-                        *out = found;
-                    }
+    parallel::for_each_row(open.values_mut(), size.width.max(1) as usize, 1, |y, row| {
+        for (i, out) in row.chunks_mut(LANES).enumerate() {
+            let x0 = i * LANES;
+            if surface.coverage_plane().row(y)[x0..x0 + out.len()].iter().all(|&c| c == 0) {
+                continue;
+            }
+            let mut found = [0.0; LANES];
+            open_lanes(
+                &heights,
+                (x0, y),
+                &LaneSlopes::of(surface, &heights, (x0, y), out.len()),
+                ways,
+                &mut found,
+            );
+            for (x, (out, &found)) in out.iter_mut().zip(&found).enumerate() {
+                if surface.coverage(x0 + x, y) > 0 {
+                    *out = found;
                 }
             }
-        },
-    );
+        }
+    });
     open
 }
 

@@ -4,9 +4,8 @@
 
 use super::PoissonGrid;
 use super::merge::{children, couplings_at, in_series, is_strong, number_rows, number_trees};
-use crate::math::union_find;
+use crate::math::{parallel, union_find};
 use crate::memory::fill_or_unwind;
-use rayon::prelude::*;
 
 /// No unknown of a coarser level.
 pub(super) const NONE: u32 = u32::MAX;
@@ -48,17 +47,16 @@ impl PoissonGraph {
             return (parent, Self::from_blocks(blocks, |_, _| {}));
         }
         // Each two rows number their unknowns from 0; what precedes them is added afterwards.
-        let counts: Vec<Vec<u32>> = parent
-            .par_chunks_mut(2 * w)
-            .enumerate()
-            .map(|(y, rows)| number_rows(grid, y, rows))
-            .collect();
+        let counts: Vec<Vec<u32>> =
+            parallel::map(parent.chunks_mut(2 * w).enumerate(), |(y, rows)| {
+                number_rows(grid, y, rows)
+            });
         let mut before = Vec::with_capacity(counts.len());
         for (y, columns) in counts.iter().enumerate() {
             before.push(blocks.len() as u32);
             blocks.extend(columns.iter().map(|&x| [x, y as u32]));
         }
-        parent.par_chunks_mut(2 * w).zip(&before).for_each(|(rows, before)| {
+        parallel::for_each(parent.chunks_mut(2 * w).zip(&before), 1, |(rows, before)| {
             rows.iter_mut().filter(|p| **p != NONE).for_each(|p| *p += before);
         });
         let of_block = |[x, y]: [u32; 2]| {
@@ -108,8 +106,7 @@ impl PoissonGraph {
             }
             (rows, counts, inner)
         };
-        let starts: Vec<usize> = (0..blocks.len()).step_by(CHUNK).collect();
-        let chunks: Vec<_> = starts.into_par_iter().map(chunk).collect();
+        let chunks = parallel::map((0..blocks.len()).step_by(CHUNK), chunk);
         let inner: Vec<f32> =
             chunks.iter().flat_map(|(_, _, inner)| inner.iter().copied()).collect();
         let mut graph = Self {
@@ -266,7 +263,7 @@ impl PoissonGraph {
         if self.len() <= CHUNK {
             return out.iter_mut().enumerate().for_each(one);
         }
-        out.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, out)| {
+        parallel::for_each_row(out, CHUNK, 1, |chunk, out| {
             (chunk * CHUNK..).zip(out).for_each(&one);
         });
     }

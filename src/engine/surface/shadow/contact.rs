@@ -7,12 +7,11 @@
 
 use super::ShareMap;
 use super::heights::halve;
-use crate::math::{Size, fast};
+use crate::math::{Size, fast, parallel};
 use crate::raster::{Plane, blur};
 use crate::surface::Surface;
 use crate::surface::cache::HeapSize;
 use crate::surface::contours::FarSide;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The sizes, as shares of the largest.
@@ -79,7 +78,9 @@ fn enlarge(map: &Plane<f32>, step: usize, size: Size) -> Plane<f32> {
     let columns: Vec<(usize, usize, f32)> =
         (0..size.width as usize).map(|x| place(x, step, map.width())).collect();
     let (mut large, width) = (Plane::full(size, 0.0), size.width.max(1) as usize);
-    large.values_mut().par_chunks_mut(width).enumerate().for_each_init(
+    parallel::for_each_with(
+        large.values_mut().chunks_mut(width).enumerate(),
+        1,
         Vec::new,
         |between, (y, row)| {
             let (above, below, down) = place(y, step, map.height());
@@ -125,9 +126,10 @@ impl ContactShade {
     fn sum(map: &Plane<f32>, blurred: &[Blurred; 4], page: &Blurred) -> Self {
         let width = map.width().max(1);
         let (mut higher, mut lower) = (Plane::full(map.size(), 0), Plane::full(map.size(), 0));
-        let rows =
-            higher.values_mut().par_chunks_mut(width).zip(lower.values_mut().par_chunks_mut(width));
-        rows.enumerate().for_each_init(
+        let rows = higher.values_mut().chunks_mut(width).zip(lower.values_mut().chunks_mut(width));
+        parallel::for_each_with(
+            rows.enumerate(),
+            1,
             || (std::array::from_fn(|_| vec![0.0; width]), Vec::new()),
             |([row, up, down], between), (y, (higher, lower))| {
                 up.fill(0.0);
@@ -180,7 +182,7 @@ fn halve_page(surface: &Surface) -> Plane<f32> {
     let side = |n: usize| n.div_ceil(2).max(1) as u32;
     let mut page = Plane::full(Size::new(side(coverage.width()), side(coverage.height())), 1.0);
     let width = page.width();
-    page.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(page.values_mut(), width, 1, |y, row| {
         let last = coverage.height().saturating_sub(1);
         let rows = [2 * y, 2 * y + 1].map(|y| coverage.row(y.min(last)));
         let pairs = rows[0].chunks(2).zip(rows[1].chunks(2));

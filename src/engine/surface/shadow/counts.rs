@@ -4,9 +4,8 @@
 use super::ShareMap;
 use super::heights::turned;
 use super::seen_share;
-use crate::math::{Size, fast};
+use crate::math::{Size, fast, parallel};
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 /// What a ray counts where it is hidden wholly.
 pub(super) const WHOLE: f32 = 1000.0;
@@ -53,7 +52,7 @@ impl HiddenCounts {
             (None, None) => return ShareMap::full(self.size),
         };
         let width = counts.width().max(1);
-        counts.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        parallel::for_each_row(counts.values_mut(), width, 1, |y, row| {
             if let Some(turned) = &turned {
                 row.iter_mut().zip(turned.row(y)).for_each(|(a, b)| *a += b);
             }

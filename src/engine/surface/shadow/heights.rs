@@ -1,10 +1,9 @@
 //! The heights that shadows are computed from. Floor 2.
 
-use crate::math::{Size, Vec2, fast};
+use crate::math::{Size, Vec2, fast, parallel};
 use crate::raster::Plane;
 use crate::surface::Surface;
 use crate::surface::cache::HeapSize;
-use rayon::prelude::*;
 use std::sync::OnceLock;
 
 /// Heights toward the viewer, px: 0 at the surface's farthest point, and off it, where the page is.
@@ -35,7 +34,7 @@ impl HeightMaps {
         let range = surface.depth_range_px();
         let mut whole = Plane::full(surface.size(), 0.0);
         let width = whole.width().max(1);
-        whole.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        parallel::for_each_row(whole.values_mut(), width, 1, |y, row| {
             let (depth, coverage) = (surface.depth_plane().row(y), surface.coverage_plane().row(y));
             for ((height, depth), coverage) in row.iter_mut().zip(depth).zip(coverage) {
                 *height = if *coverage == 0 { 0.0 } else { (1.0 - depth) * range };
@@ -86,7 +85,7 @@ impl BlockSlopes {
         let blocks = |n: usize| n.div_ceil(Self::SIDE).max(1);
         let (across, down) = (blocks(map.width()), blocks(map.height()));
         let mut slopes = Plane::full(Size::new(across as u32, down as u32), [0.0; 4]);
-        slopes.values_mut().par_chunks_mut(across).enumerate().for_each(|(block, steepest)| {
+        parallel::for_each_row(slopes.values_mut(), across, 1, |block, steepest| {
             let rows = block * Self::SIDE..((block + 1) * Self::SIDE).min(map.height());
             let mut values = vec![[0.0; Self::SIDE]; 4 * across];
             for y in rows {
@@ -161,7 +160,7 @@ pub(super) fn halve(map: &Plane<f32>) -> Plane<f32> {
     if map.width() == 0 || map.height() == 0 {
         return half;
     }
-    half.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    parallel::for_each_row(half.values_mut(), width, 1, |y, row| {
         let (above, below) = (map.row(2 * y), map.row((2 * y + 1).min(map.height() - 1)));
         let pairs = above.as_chunks::<2>().0.iter().zip(below.as_chunks::<2>().0);
         for (value, (a, b)) in row.iter_mut().zip(pairs) {
@@ -179,7 +178,7 @@ pub(super) fn turned<T: Copy + Send + Sync + Default>(plane: &Plane<T>) -> Plane
     const SIDE: usize = 32;
     let (w, h) = (plane.width(), plane.height());
     let mut values = Plane::full(Size::new(h as u32, w as u32), T::default());
-    values.values_mut().par_chunks_mut((h * SIDE).max(1)).enumerate().for_each(|(band, rows)| {
+    parallel::for_each_row(values.values_mut(), (h * SIDE).max(1), 1, |band, rows| {
         let x0 = band * SIDE;
         for y0 in (0..h).step_by(SIDE) {
             for (x, row) in rows.chunks_exact_mut(h).enumerate() {

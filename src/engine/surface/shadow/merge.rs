@@ -5,9 +5,8 @@
 use super::counts::WHOLE;
 use super::heights::HeightMap;
 use super::sweep::NearBand;
-use crate::math::{Size, fast};
+use crate::math::{Size, fast, parallel};
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 /// Pixels of a row at a time, and at half the size.
 const CHUNK: usize = 64;
@@ -32,7 +31,7 @@ impl FarCounts {
             return Plane::full(Size::new(0, 0), 0);
         };
         let (mut total, width) = (first.clone(), first.width().max(1));
-        total.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        parallel::for_each_row(total.values_mut(), width, 1, |y, row| {
             for other in others {
                 row.iter_mut().zip(other.row(y)).for_each(|(sum, v)| *sum += v);
             }

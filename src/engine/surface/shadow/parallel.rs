@@ -7,9 +7,8 @@ use super::heights::{HeightMap, HeightMaps};
 use super::merge::{self, FarCounts};
 use super::sweep::{NearBand, Sweep};
 use super::{Aim, LampPlace, LampRay, MOST_RAYS, ShadowLamp};
-use crate::math::vec2;
+use crate::math::{parallel, vec2};
 use crate::raster::Plane;
-use rayon::prelude::*;
 
 /// Groups of a disc's rays.
 const GROUPS: u32 = 8;
@@ -111,7 +110,7 @@ impl RayGroups {
     /// Adds what is hidden from groups of rays that sweep one map, a band of rows after another.
     fn add(&self, map: &HeightMap, highest: f32, groups: &[&RayGroup], counts: &mut Plane<u16>) {
         let far = FarCounts {
-            groups: groups.par_iter().map(|group| self.far(map, highest, group)).collect(),
+            groups: parallel::map(groups, |group| self.far(map, highest, group)),
             is_half: self.is_half,
         };
         let near: Vec<(Sweep, Plane<bool>, u32)> = groups
@@ -124,8 +123,10 @@ impl RayGroups {
             })
             .collect();
         let (width, total) = (map.whole.width(), far.total());
-        let bands = counts.values_mut().par_chunks_mut((width * BAND).max(1)).enumerate();
-        bands.for_each_init(
+        let bands = counts.values_mut().chunks_mut((width * BAND).max(1)).enumerate();
+        parallel::for_each_with(
+            bands,
+            1,
             || near.iter().map(|near| (NearBand::new(width), near.2)).collect::<Vec<_>>(),
             |bands, (band, counts)| {
                 let rows = band * BAND..band * BAND + counts.len() / width.max(1);

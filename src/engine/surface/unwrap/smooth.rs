@@ -1,7 +1,7 @@
 //! Normals blurred before a surface is unwrapped, so that fine relief does not shear a print.
 //! Floor 2. The blur crosses neither the mask's edge nor a depth jump.
 
-use crate::math::Rect;
+use crate::math::{Rect, parallel};
 use crate::memory::fill_or_unwind;
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ const PASSES: i32 = 3;
 pub(super) fn normals(surface: &Surface, rect: Rect, blur_px: f32) -> Normals {
     let mut planes = surface.normal_planes().map(|plane| {
         let mut out = fill_or_unwind(rect.width() * rect.height(), 0.0f32);
-        out.par_chunks_mut(rect.width()).enumerate().for_each(|(y, row)| {
+        parallel::for_each_row(&mut out, rect.width(), 1, |y, row| {
             row.copy_from_slice(
                 &plane.row(y + rect.y0 as usize)[rect.x0 as usize..rect.x1 as usize],
             );
@@ -29,7 +29,7 @@ pub(super) fn normals(surface: &Surface, rect: Rect, blur_px: f32) -> Normals {
         out
     });
     if blur_px > 0.0 {
-        planes.par_iter_mut().for_each(|plane| blur(surface, rect, plane, blur_px));
+        parallel::for_each(&mut planes, 1, |plane| blur(surface, rect, plane, blur_px));
         let [nx, ny, nz] = &mut planes;
         nx.par_iter_mut().zip(ny.par_iter_mut().zip(nz)).for_each(|(nx, (ny, nz))| {
             let length = (*nx * *nx + *ny * *ny + *nz * *nz).sqrt();

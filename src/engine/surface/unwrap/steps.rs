@@ -2,9 +2,8 @@
 //! it, then solved again (MATH 8). Floor 2. Here they run over whole rows; `reference` in the tests
 //! reads like the equation.
 
-use crate::math::Vec2;
+use crate::math::{Vec2, parallel};
 use crate::surface::poisson::PoissonGrid;
-use rayon::prelude::*;
 
 /// S − 1 of every pixel of a grid: the entries xx, xy and yy.
 pub(super) struct Metric {
@@ -33,8 +32,8 @@ pub(super) fn sources(
 ) {
     let w = grid.width();
     let [out_x, out_y] = out;
-    let bands = out_x.par_chunks_mut(w * BAND).zip(out_y.par_chunks_mut(w * BAND)).enumerate();
-    bands.for_each(|(band, (out_x, out_y))| {
+    let bands = out_x.chunks_mut(w * BAND).zip(out_y.chunks_mut(w * BAND)).enumerate();
+    parallel::for_each(bands, 1, |(band, (out_x, out_y))| {
         let empty = TurnedRow(std::array::from_fn(|_| vec![0.0; w]));
         let (mut above, mut here, mut below) = (empty.clone(), empty.clone(), empty);
         let first = band * BAND;

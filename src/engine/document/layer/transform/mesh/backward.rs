@@ -1,9 +1,8 @@
 //! A mesh inverted: which point of its frame shows at each place of the canvas. Floor 4.
 
 use super::Mesh;
-use crate::math::{Rect, Size, Vec2, vec2};
+use crate::math::{Rect, Size, Vec2, parallel, vec2};
 use crate::raster::{Lattice, lattice};
-use rayon::prelude::*;
 
 /// A mesh being inverted: the nodes near the canvas, and which point of the frame shows at each.
 pub(super) struct Backward<'m> {
@@ -63,7 +62,7 @@ impl<'m> Backward<'m> {
         let place = |i: usize, j: usize| start + vec2(i as f32, j as f32) * step;
         let line =
             |j: usize| -> Vec<Vec2> { (0..=columns).map(|i| mesh.at(place(i, j)).0).collect() };
-        let lines: Vec<Vec<Vec2>> = (0..=rows).into_par_iter().map(line).collect();
+        let lines: Vec<Vec<Vec2>> = parallel::collect(1 + rows, 1, line);
         for j in 0..rows {
             for i in 0..columns {
                 let [a, b, c, d] =
@@ -125,7 +124,7 @@ impl<'m> Backward<'m> {
 
     pub(super) fn lattice(&self) -> Lattice {
         let by = |k: usize| self.found[k].map(|p| self.closer(self.node(k), p) - self.node(k));
-        let mut by: Vec<Option<Vec2>> = (0..self.found.len()).into_par_iter().map(by).collect();
+        let mut by: Vec<Option<Vec2>> = parallel::collect(self.found.len(), 1, by);
         self.continue_from_neighbors(&mut by);
         // Where nothing is known at all, nothing shows.
         let nowhere = Vec2::splat(Lattice::FARTHEST_PX);
