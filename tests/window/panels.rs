@@ -8,6 +8,7 @@ use eframe::egui::{
 };
 use egui_kittest::kittest::Queryable;
 use rilievo::{Progress, flatten_layer};
+use std::path::Path;
 
 const PANELS: [&str; 6] = ["Color", "Brushes", "Properties", "Surface", "History", "Navigator"];
 
@@ -290,9 +291,14 @@ fn a_reference_is_pinned_over_the_canvas_gives_its_colors_and_is_there_again() {
     command(&mut harness, "Show references");
     assert!(!is_seen(&harness));
     command(&mut harness, "Show references");
-    // The settings are written after a moment.
+    // The settings are written a moment after each change: this waits for the last one.
+    let stored = |settings: &Path| -> Option<f64> {
+        let text = std::fs::read_to_string(settings).ok()?;
+        let value: serde_json::Value = serde_json::from_str(&text).ok()?;
+        value["references"][0]["width"].as_f64()
+    };
     until(&mut harness, |_| {
-        std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("parrot.png"))
+        stored(&settings).is_some_and(|width| (width - f64::from(kept.x)).abs() < 0.1)
     });
     drop(harness);
     let mut harness = window_at(1.0, Some(settings));
