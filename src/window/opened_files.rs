@@ -8,6 +8,8 @@ mod macos;
 #[cfg(target_os = "macos")]
 pub use macos::listen;
 
-/// Elsewhere they come as arguments of a start.
+/// `None`: elsewhere they come as arguments of a start.
 #[cfg(not(target_os = "macos"))]
-pub fn listen(_open: impl Fn(Vec<std::path::PathBuf>) + 'static) {}
+pub fn listen(_open: impl Fn(Vec<std::path::PathBuf>) + 'static) -> Option<()> {
+    None
+}
