@@ -127,13 +127,14 @@ fn what_is_exported_unwrapped_and_imported_again_is_the_painting() {
         let mut session = round();
         let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
         let file = folder.path().join(name);
-        let file = file.to_str().unwrap();
+        // As JSON writes it: on Windows it has `\`.
+        let file = serde_json::json!(file);
         then(
             &mut session,
             &format!(
-                r#"{{"in":"file","do":"export unwrapped","file":"{file}","scale":{scale},"bits":{bits}}}
+                r#"{{"in":"file","do":"export unwrapped","file":{file},"scale":{scale},"bits":{bits}}}
 {{"in":"layer","do":"delete","layer":"0"}}
-{{"in":"file","do":"import unwrapped","file":"{file}"}}"#
+{{"in":"file","do":"import unwrapped","file":{file}}}"#
             ),
         );
         assert!(session.notes.is_empty(), "{:?}", session.notes);
@@ -161,7 +162,7 @@ fn a_picture_of_other_proportions_is_placed_as_wide_and_that_is_told() {
     let mut session = round();
     then(
         &mut session,
-        &format!(r#"{{"in":"file","do":"import unwrapped","file":"{}"}}"#, file.display()),
+        &serde_json::json!({ "in": "file", "do": "import unwrapped", "file": file }).to_string(),
     );
     assert_eq!(names(&session), ["painting", "square"]);
     assert!(
