@@ -81,12 +81,16 @@ impl Address {
         Some(Self { port, word: text("word")?, display: text("display")? })
     }
 
+    fn to_json(&self) -> Value {
+        let Self { port, word, display } = self;
+        json!({ "port": port, "word": word, "display": display })
+    }
+
     fn write_all(addresses: &[Self], place: &Path) -> Result<()> {
         if let Some(folder) = place.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        let value = |Self { port, word, display }: &Self| json!({ "port": port, "word": word, "display": display });
-        let values: Vec<Value> = addresses.iter().map(value).collect();
+        let values: Vec<Value> = addresses.iter().map(Self::to_json).collect();
         platform::write_private(place, format!("{}\n", json!(values)).as_bytes())
     }
 

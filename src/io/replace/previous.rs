@@ -6,7 +6,7 @@ use crate::fs::{EntryKind, Fs};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// What disks take, bytes or more.
+/// The longest name that every disk takes, bytes.
 const LONGEST_NAME: usize = 255;
 
 /// The previous version next to the file, and the version before that, until the new file is in

@@ -93,8 +93,10 @@ fn say_values(option: Arg) -> Arg {
     }
     let with = |help: &StyledStr| format!("{help} {}", said.join(" "));
     let (short, long) = (option.get_help().map(with), option.get_long_help().map(with));
-    let option =
-        option.hide_default_value(true).hide_possible_values(true).help(short.unwrap_or_default());
+    let option = option
+        .hide_default_value(true)
+        .hide_possible_values(true)
+        .help(short.unwrap_or_else(|| said.join(" ")));
     match long {
         Some(long) => option.long_help(long),
         None => option,

@@ -59,7 +59,7 @@ impl UnwrappedPicture {
             let over = 1.0 / a.max(1e-6);
             [r * over, g * over, b * over, a].map(quantize)
         };
-        Picture::srgb8(self.size, parallel::map(&self.pixels, straight))
+        Picture::srgb8(self.size, self.pixels.par_iter().map(straight).collect())
     }
 }
 

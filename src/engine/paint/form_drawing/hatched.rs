@@ -137,7 +137,7 @@ pub(super) fn strokes(
     let lines = surface.hatch_lines(settings, &drawing.found.guides);
     let covered = BrushCoverage::of(&drawing.brush);
     let of_line = |line: &HatchLine| of_line(drawing, line, &tone, covered);
-    parallel::map(&lines.lines, |line| of_line(line).into_iter().collect::<Vec<_>>()).concat()
+    parallel::map(&lines.lines, of_line).into_iter().flatten().collect()
 }
 
 fn of_line(

@@ -5,7 +5,8 @@
 use super::level::SphereLevel;
 use super::map::EnvironmentMap;
 use super::projection::lat_long_direction;
-use crate::math::{Vec3, Vec3A, parallel, srgb};
+use crate::math::{Vec3, Vec3A, srgb};
+use rayon::prelude::*;
 use std::f32::consts::PI;
 
 /// Rows of the samples of light that are summed (2.8° each) and of the resulting map: a cosine lobe
@@ -36,7 +37,7 @@ impl Irradiance {
             let sum: Vec3 = samples.iter().map(|p| p.light * n.dot(p.toward).max(0.0)).sum();
             Vec3A::from(sum / PI)
         };
-        let texels: Vec<Vec3A> = parallel::collect(2 * ROWS * ROWS, 1, gather);
+        let texels: Vec<Vec3A> = (0..2 * ROWS * ROWS).into_par_iter().map(gather).collect();
         let brightest = texels.iter().map(|t| srgb::luminance(t.x, t.y, t.z)).fold(0.0, f32::max);
         Self { level: SphereLevel::new(ROWS, texels), brightest }
     }
@@ -80,5 +81,5 @@ fn samples(fine: &SphereLevel) -> Vec<LightSample> {
         }
         LightSample { toward: toward.normalize_or(Vec3::Y), light }
     };
-    parallel::collect(2 * rows * rows, 1, gathered)
+    (0..2 * rows * rows).into_par_iter().map(gathered).collect()
 }

@@ -125,10 +125,8 @@ impl SphereLevel {
             let sin = ((row as f32 + 0.5) / self.rows as f32 * PI).sin();
             average_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
         };
-        SphereLevel::new(
-            self.rows,
-            parallel::map(0..self.rows, |row| of_row(row).into_iter().collect::<Vec<_>>()).concat(),
-        )
+        let rows = parallel::collect(self.rows, 1, of_row);
+        SphereLevel::new(self.rows, rows.into_iter().flatten().collect())
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::level::{SphereLevel, Spot};
 use super::projection::{Projection, lat_long_direction, lat_long_place};
-use crate::math::{Size, Vec2, Vec3, Vec3A, fast, parallel, srgb, vec2};
+use crate::math::{Size, Vec2, Vec3, Vec3A, fast, srgb, vec2};
 use crate::raster::Picture;
 use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
@@ -269,7 +269,7 @@ impl EnvironmentMap {
             }
             Vec3A::from(sum / (per_side * per_side) as f32)
         };
-        SphereLevel::new(rows, parallel::collect(rows * columns, 1, texel))
+        SphereLevel::new(rows, (0..rows * columns).into_par_iter().map(texel).collect())
     }
 }
 

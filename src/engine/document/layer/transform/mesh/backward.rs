@@ -3,6 +3,7 @@
 use super::Mesh;
 use crate::math::{Rect, Size, Vec2, parallel, vec2};
 use crate::raster::{Lattice, lattice};
+use rayon::prelude::*;
 
 /// A mesh being inverted: the nodes near the canvas, and which point of the frame shows at each.
 pub(super) struct Backward<'m> {
@@ -124,7 +125,7 @@ impl<'m> Backward<'m> {
 
     pub(super) fn lattice(&self) -> Lattice {
         let by = |k: usize| self.found[k].map(|p| self.closer(self.node(k), p) - self.node(k));
-        let mut by: Vec<Option<Vec2>> = parallel::collect(self.found.len(), 1, by);
+        let mut by: Vec<Option<Vec2>> = (0..self.found.len()).into_par_iter().map(by).collect();
         self.continue_from_neighbors(&mut by);
         // Where nothing is known at all, nothing shows.
         let nowhere = Vec2::splat(Lattice::FARTHEST_PX);
