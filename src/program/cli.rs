@@ -32,7 +32,8 @@ use crate::language;
 use crate::{Error, Remedy, Result};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
-use std::{ffi::OsString, path::PathBuf, process::ExitCode};
+use std::path::{Path, PathBuf};
+use std::{ffi::OsString, process::ExitCode};
 
 /// Opens the window on some files and returns when it is closed, or once a running one has taken the
 /// files; true: opens a new one even if one is running. It is passed in because the window is on the
@@ -128,12 +129,16 @@ fn dispatch(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result<(
     }
 }
 
-/// Files alone, or no arguments at all, open the window: `open` may be left out.
+/// Files alone, or no arguments at all, open the window: `open` may be left out. A name with an
+/// ending or in a folder is meant as a file, even if there is none.
 fn with_command(mut arguments: Vec<OsString>, has_window: bool) -> Vec<OsString> {
     let is_file = |word: &OsString| {
         let is_command =
             Arguments::command().get_subcommands().any(|command| *word == *command.get_name());
-        !is_command && std::path::Path::new(word).is_file()
+        let path = Path::new(word);
+        let is_option = word.as_encoded_bytes().starts_with(b"-");
+        let is_path = path.extension().is_some() || path.components().nth(1).is_some();
+        !is_command && (path.is_file() || (is_path && !is_option))
     };
     if has_window && arguments.get(1).is_none_or(is_file) {
         arguments.insert(1.min(arguments.len()), "open".into());
@@ -195,7 +200,10 @@ mod tests {
         assert_eq!(said(&["rilievo"]), ["rilievo", "open"]);
         assert_eq!(said(&["rilievo", "Cargo.toml"]), ["rilievo", "open", "Cargo.toml"]);
         assert_eq!(said(&["rilievo", "render", "Cargo.toml"]), ["rilievo", "render", "Cargo.toml"]);
+        assert_eq!(said(&["rilievo", "missing.ora"]), ["rilievo", "open", "missing.ora"]);
+        assert_eq!(said(&["rilievo", "art/missing"]), ["rilievo", "open", "art/missing"]);
         assert_eq!(said(&["rilievo", "--help"]), ["rilievo", "--help"]);
+        assert_eq!(said(&["rilievo", "--max.side"]), ["rilievo", "--max.side"]);
         assert_eq!(said(&["rilievo", "no such file"]), ["rilievo", "no such file"]);
     }
 
