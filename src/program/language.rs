@@ -52,6 +52,18 @@ impl Language {
         }
     }
 
+    /// An amount of bytes such as `1.4 GB`, as the language writes it; nothing if it is none.
+    fn amount_text(self, amount: &str) -> Option<String> {
+        let (number, unit) = amount.split_once(' ')?;
+        let is_amount = matches!(unit, "kB" | "MB" | "GB") && number.parse::<f64>().is_ok();
+        let number = number.replace('.', self.decimal_mark().encode_utf8(&mut [0; 4]));
+        let unit = match self {
+            Self::French => unit.replace('B', "o"),
+            _ => unit.to_owned(),
+        };
+        is_amount.then(|| format!("{number} {unit}"))
+    }
+
     /// Whether its letters are not among those of the window's own font.
     pub fn is_written_in_han(self) -> bool {
         matches!(self, Self::Japanese | Self::Chinese)
@@ -128,6 +140,11 @@ pub fn tr_number(number: &str) -> Cow<'_, str> {
         '.' => Cow::Borrowed(number),
         mark => Cow::Owned(number.replace('.', mark.encode_utf8(&mut [0; 4]))),
     }
+}
+
+/// An amount of bytes such as `1.4 GB`, as the current language writes it.
+pub fn tr_amount(amount: &str) -> Cow<'_, str> {
+    language().amount_text(amount).map_or(Cow::Borrowed(amount), Cow::Owned)
 }
 
 /// A text in the current language, with values: `tr!("Close {title}", title = name)`. A value that is

@@ -21,7 +21,7 @@ const FILES: [(Language, &str); 5] = [
 pub fn find_catalog(language: Language) -> Option<&'static Catalog> {
     static READ: [OnceLock<Catalog>; FILES.len()] = [const { OnceLock::new() }; FILES.len()];
     let index = FILES.iter().position(|(of, _)| *of == language)?;
-    let read = || Catalog { colon: language.colon(), ..Catalog::read(FILES[index].1) };
+    let read = || Catalog { language, ..Catalog::read(FILES[index].1) };
     Some(READ[index].get_or_init(read))
 }
 
@@ -35,8 +35,8 @@ pub struct Catalog {
     by_word: HashMap<String, Vec<usize>>,
     /// The templates without a whole word.
     wordless: Vec<usize>,
-    /// As [`Language::colon`].
-    colon: &'static str,
+    /// How numbers and colons are written.
+    language: Language,
     /// Messages that were translated before: what is shown is asked for again in every frame.
     seen: Mutex<HashMap<String, Option<String>>>,
 }
@@ -66,8 +66,8 @@ impl Catalog {
                 None => wordless.push(i),
             }
         }
-        let (colon, seen) = (Language::English.colon(), Mutex::default());
-        Self { texts, templates, by_word, wordless, colon, seen }
+        let (language, seen) = (Language::English, Mutex::default());
+        Self { texts, templates, by_word, wordless, language, seen }
     }
 
     pub fn rows(&self) -> impl Iterator<Item = (&str, &str)> {
@@ -102,6 +102,9 @@ impl Catalog {
         }
         if depth == DEEPEST || !message.contains(char::is_alphabetic) {
             return None;
+        }
+        if let Some(amount) = self.language.amount_text(message) {
+            return Some(amount);
         }
         if message.contains('\n') {
             return self.translate_parts(message, "\n", depth);
@@ -166,7 +169,7 @@ impl Catalog {
             let (head, tail) = (&message[..at], &message[at + colon.len()..]);
             let tail = self.translate(tail, depth + 1)?;
             let head = self.find_text(head).unwrap_or(head);
-            Some(format!("{head}{}{tail}", self.colon))
+            Some(format!("{head}{}{tail}", self.language.colon()))
         })
     }
 

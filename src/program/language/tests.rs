@@ -167,3 +167,16 @@ fn only_the_thread_that_asks_changes_its_language() {
     set_language(Language::English);
     assert_eq!(tr_number("1.50"), "1.50");
 }
+
+#[test]
+fn amounts_of_memory_are_written_as_the_language_does() {
+    assert_eq!(Language::French.amount_text("1.4 GB").as_deref(), Some("1,4 Go"));
+    assert_eq!(Language::German.amount_text("12.3 kB").as_deref(), Some("12,3 kB"));
+    assert_eq!(Language::French.amount_text("312 layers"), None);
+    assert_eq!(Language::French.amount_text("no MB"), None);
+    set_language(Language::French);
+    let within =
+        tr_message("there is no memory for 4.0 GB more; close other programs").into_owned();
+    set_language(Language::English);
+    assert!(within.contains("4,0 Go"), "{within}");
+}

@@ -4,7 +4,7 @@
 use crate::canvas::Canvas;
 use crate::document::{Document, MemoryUse};
 use crate::jobs::{JobKind, JobWindow, Jobs, RunningJob};
-use crate::language::{tr, tr_message, tr_number};
+use crate::language::{tr, tr_amount, tr_message, tr_number};
 use crate::math::Vec2;
 use crate::memory::bytes_text;
 use crate::requests::{UiRequests, WindowRequest};
@@ -13,7 +13,7 @@ use crate::session::{OpenDocument, Session};
 use crate::tr;
 use crate::usage::{KEPT_SHARE, MemoryMeter};
 use crate::widgets::{NumberField, bar, set_accessible_name};
-use eframe::egui::{self, Button, RichText, Ui};
+use eframe::egui::{Align, Button, Grid, Label, Layout, RichText, Ui};
 
 pub fn show<W: JobWindow>(
     ui: &mut Ui,
@@ -40,16 +40,21 @@ pub fn show<W: JobWindow>(
         // The canvas is drawn later: its state may still belong to the previous document.
         let is_here =
             |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
-        match canvas.under.filter(is_here) {
-            Some(at) => show_point(ui, document, at, details.is_some()),
-            None => _ = ui.weak(tr(session.tool.hint())),
+        let under = canvas.under.filter(is_here);
+        if let Some(at) = under {
+            show_point(ui, document, at, details.is_some());
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(memory) = details {
                 show_measurements(ui, session, canvas, (memory, kept_share), requests);
             }
             if document.surface.is_none() {
                 ui.weak(tr("No surface: marks stay flat"));
+            }
+            if under.is_none() {
+                // What there is no room for is shown under the pointer.
+                let hint = Label::new(RichText::new(tr(session.tool.hint())).weak()).truncate();
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(hint));
             }
         });
     });
@@ -139,7 +144,7 @@ fn show_measurements(
 
 /// An amount of memory, as the language of the window writes numbers.
 fn memory_text(bytes: u64) -> String {
-    tr_number(&bytes_text(bytes)).into_owned()
+    tr_amount(&bytes_text(bytes)).into_owned()
 }
 
 /// How much may be kept for speed.
@@ -179,7 +184,7 @@ fn memory_menu(
             ("Maps of the shape", maps),
             ("Caches", kept),
         ];
-        egui::Grid::new("memory").num_columns(2).show(ui, |ui| {
+        Grid::new("memory").num_columns(2).show(ui, |ui| {
             let others = used.all.total() - used.front.total();
             let program = memory.bytes().map(|bytes| ("The whole program", bytes));
             let rows = rows

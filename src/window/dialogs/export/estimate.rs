@@ -5,7 +5,7 @@ use crate::document::{Document, Progress};
 use crate::io::Budget;
 use crate::io::export::high_depth::encode_document;
 use crate::jobs;
-use crate::language::tr_number;
+use crate::language::tr_amount;
 use crate::session::{ExportSettings, is_same};
 use crate::tr;
 use eframe::egui::Context;
@@ -102,12 +102,13 @@ impl Asked {
 
 /// Bytes as people read them.
 pub fn size_text(bytes: usize) -> String {
-    match bytes as f64 {
-        b if b < 1e3 => tr!("{count} bytes", count = format!("{b:.0}")),
-        b if b < 1e5 => tr_number(&format!("{:.1} kB", b / 1e3)).into_owned(),
+    let amount = match bytes as f64 {
+        b if b < 1e3 => return tr!("{count} bytes", count = format!("{b:.0}")),
+        b if b < 1e5 => format!("{:.1} kB", b / 1e3),
         b if b < 1e6 => format!("{:.0} kB", b / 1e3),
-        b => tr_number(&format!("{:.1} MB", b / 1e6)).into_owned(),
-    }
+        b => format!("{:.1} MB", b / 1e6),
+    };
+    tr_amount(&amount).into_owned()
 }
 
 #[cfg(test)]
