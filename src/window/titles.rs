@@ -10,3 +10,8 @@ pub fn title_of(open: &OpenDocument) -> String {
         None => tr_message(&open.title()).into_owned(),
     }
 }
+
+/// The name with a dot before it if there are unsaved changes.
+pub fn marked_title(open: &OpenDocument) -> String {
+    format!("{}{}", if open.is_dirty() { "• " } else { "" }, title_of(open))
+}

@@ -43,7 +43,7 @@ use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
 use crate::surface::Surface;
 use crate::surface::operator::UnwrapSettings;
-use crate::titles::title_of;
+use crate::titles::marked_title;
 use crate::tools::snap::ViewAids;
 use crate::tr;
 use crate::usage::MemoryMeter;
@@ -472,9 +472,7 @@ impl MainWindow {
     fn set_title(&mut self, ctx: &egui::Context) {
         let title = self.session.active().map_or_else(
             || "Rilievo".to_owned(),
-            |open| {
-                format!("{}{} – Rilievo", if open.is_dirty() { "• " } else { "" }, title_of(open))
-            },
+            |open| format!("{} – Rilievo", marked_title(open)),
         );
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));

@@ -14,7 +14,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::{FileAction, SelectionAction};
 use crate::session::{Action, Session};
 use crate::settings::Settings;
-use crate::titles::title_of;
+use crate::titles::{marked_title, title_of};
 use crate::tr;
 use crate::widgets::{set_accessible_name, tab};
 use eframe::egui::load::SizedTexture;
@@ -145,7 +145,7 @@ pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (index, open) in session.open_documents.iter().enumerate() {
             let is_front = index == session.current;
-            let title = format!("{}{}", if open.is_dirty() { "• " } else { "" }, title_of(open));
+            let title = marked_title(open);
             let path = open
                 .file
                 .as_ref()

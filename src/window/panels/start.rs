@@ -10,6 +10,7 @@ use crate::requests::{UiRequests, WindowRequest};
 use crate::sample::SAMPLES;
 use crate::sample_pictures::SamplePictures;
 use crate::tools::ToolKind;
+use eframe::egui::text::{LayoutJob, TextFormat, TextWrapping};
 use eframe::egui::{
     Align2, Color32, Context, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
     StrokeKind, TextStyle, TextWrapMode, TextureHandle, Ui, UiBuilder, Vec2, WidgetInfo,
@@ -107,9 +108,16 @@ fn beginnings(ui: &mut Ui, keymap: &Keymap, requests: &mut UiRequests) {
             );
             icon.draw(ui.painter(), sign, strong);
             let left = sign.right() + 12.0;
-            let middle = rect.center().y;
-            line(ui, pos2(left, middle - 9.0), rect.right() - left - 8.0, title, strong);
-            line(ui, pos2(left, middle + 9.0), rect.right() - left - 8.0, about, weak);
+            let room = rect.right() - left - 8.0;
+            let wrap = TextWrapping { max_rows: 3, ..TextWrapping::wrap_at_width(room) };
+            let mut texts = LayoutJob { wrap, ..LayoutJob::default() };
+            let font = TextStyle::Body.resolve(ui.style());
+            for (text, color) in [(title, strong), ("\n", weak), (about, weak)] {
+                texts.append(text, 0.0, TextFormat::simple(font.clone(), color));
+            }
+            let texts = ui.painter().layout_job(texts);
+            let at = Align2::LEFT_CENTER.anchor_size(pos2(left, rect.center().y), texts.size());
+            ui.painter().galley(at.min, texts, strong);
             if response.on_hover_text(hint.trim()).clicked() {
                 // None of them asks about a document.
                 (command.run)(&crate::session::Session::default(), requests);

@@ -83,11 +83,12 @@ pub fn show(ui: &mut Ui, session: &Session) {
     let Some(document) = session.shown_document() else { return };
     let mut filter = current(ui);
     let buttons = if filter.is_empty() { 1.0 } else { 2.0 };
+    let name = tr("Filter layers");
     let field = TextEdit::singleline(&mut filter.text)
-        .hint_text(tr("Filter"))
+        .hint_text(name)
         .desired_width(ui.available_width() - buttons * (BUTTON_PT + 2.0) - 10.0);
     let field = ui.add(field);
-    set_accessible_name(&field, tr("Filter layers"));
+    set_accessible_name(&field, name);
     if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
         filter = LayerFilter::default();
     }
