@@ -45,7 +45,7 @@ use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::tools::ToolKind;
 use ants::Ants;
-use blocks::{ShownColors, ShownLook, corners, on_screen, quad};
+use blocks::{ShownColors, ShownLook, corners, middle_on_pixels, on_screen, quad};
 use eframe::egui::{self, Color32, Painter, Sense, Stroke, TextureHandle, Ui, pos2};
 use ground::{Checker, surround_shape};
 use overlay::{Insets, Overlay};
@@ -215,13 +215,14 @@ impl Canvas {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
         }
-        let middle = rect.center();
+        let per_point = ui.ctx().pixels_per_point();
+        let middle = middle_on_pixels(rect, &view, per_point);
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();
         self.shown_at = layout.is_none().then_some((rect, screen_from_canvas));
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
-        self.magnify(view.zoom * ui.ctx().pixels_per_point(), open.document().size, size);
+        self.magnify(&view, per_point, open.document().size, size);
         self.show_colors(session);
 
         let painter = ui.painter_at(rect);
@@ -273,10 +274,11 @@ impl Canvas {
     }
 
     /// Says at what scale the pictures are seen: `size_px` and `sheet_px` are theirs.
-    fn magnify(&mut self, scale: f32, size_px: Size, sheet_px: Size) {
-        self.whole.magnify(scale, size_px);
-        self.draft.magnify(scale, size_px);
-        self.sheet.shown.magnify(scale, sheet_px);
+    fn magnify(&mut self, view: &CanvasView, per_point: f32, size_px: Size, sheet_px: Size) {
+        let seen = (view.zoom * per_point, view.turn_rad == 0.0);
+        self.whole.magnify(seen, size_px);
+        self.draft.magnify(seen, size_px);
+        self.sheet.shown.magnify(seen, sheet_px);
     }
 
     /// Shows the pictures in their colors, in grays, or as they will be printed.

@@ -4,6 +4,7 @@
 use crate::io::proof::ProofTable;
 use crate::math::{Affine2, ColorProfile, Rect, Size, srgb, vec2};
 use crate::raster::{TILE, TileAt, TileGrid};
+use crate::session::CanvasView;
 use eframe::egui::{
     self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle, TextureId,
     TextureOptions, TextureWrapMode, pos2,
@@ -22,17 +23,21 @@ pub enum Magnification {
     Reduced,
     #[default]
     Smooth,
-    /// As squares.
+    /// As squares; at their own size one pixel of the screen for each.
     Squares,
 }
 
+/// Pixels of the screen per pixel of a picture that is seen at its own size, or larger: slightly below
+/// 1 means 1, rounded.
+pub const OWN_SIZE: f32 = 0.999;
+
 impl Magnification {
     /// * `scale`: pixels of the screen per pixel of the picture.
-    pub fn of(scale: f32) -> Self {
+    pub fn of(scale: f32, is_upright: bool) -> Self {
+        let is_own_size = is_upright && (scale - 1.0).abs() < 1e-5;
         match scale {
-            _ if scale >= 2.0 => Self::Squares,
-            // Slightly below 1 means 1, rounded.
-            _ if scale > 0.999 => Self::Smooth,
+            _ if scale >= 2.0 || is_own_size => Self::Squares,
+            _ if scale > OWN_SIZE => Self::Smooth,
             _ => Self::Reduced,
         }
     }
@@ -267,6 +272,19 @@ pub fn on_screen(screen_from_canvas: Affine2, x: i32, y: i32) -> Pos2 {
     pos2(p.x, p.y)
 }
 
+/// The middle of an area of the window, moved by less than a pixel of the screen so that a canvas which
+/// is not turned lies on whole ones: its own pixels would be mixed between them.
+pub fn middle_on_pixels(area: egui::Rect, view: &CanvasView, per_point: f32) -> Pos2 {
+    let middle = area.center();
+    if view.turn_rad != 0.0 || view.zoom * per_point < OWN_SIZE {
+        return middle;
+    }
+    let corner = view.screen_from_canvas().translation + vec2(middle.x, middle.y);
+    let corner_px = corner * per_point;
+    let by = (corner_px.round() - corner_px) / per_point;
+    middle + egui::vec2(by.x, by.y)
+}
+
 fn block_rect((col, row): (i32, i32)) -> Rect {
     Rect::new(col * BLOCK, row * BLOCK, (col + 1) * BLOCK, (row + 1) * BLOCK)
 }
@@ -329,6 +347,30 @@ fn value_of([r, g, b, a]: [u8; 4]) -> [u8; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_canvas_at_its_own_size_lies_on_pixels_of_the_screen() {
+        let area = egui::Rect::from_min_size(pos2(40.0, 61.5), egui::vec2(1001.0, 700.0));
+        for (zoom, per_point, mirrored) in [(1.0, 1.0, false), (0.8, 1.25, true), (3.0, 2.0, false)]
+        {
+            let center = vec2(151.3, 80.5);
+            let view = CanvasView { center, zoom, turn_rad: 0.0, mirrored };
+            let middle = middle_on_pixels(area, &view, per_point);
+            assert!(middle.distance(area.center()) * per_point <= 0.71, "less than a pixel");
+            let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
+            for (x, y) in [(0, 0), (7, 200)] {
+                let at = on_screen(to_window * view.screen_from_canvas(), x, y);
+                let px = vec2(at.x, at.y) * per_point;
+                assert!((px - px.round()).abs().max_element() < 1e-3, "{zoom} {px}");
+            }
+            assert_eq!(Magnification::of(zoom * per_point, true), Magnification::Squares);
+        }
+        let turned =
+            CanvasView { turn_rad: 0.3, ..CanvasView::fitting(Size::new(9, 9), vec2(1.0, 1.0)) };
+        assert_eq!(middle_on_pixels(area, &turned, 1.0), area.center());
+        assert_eq!(Magnification::of(1.0, false), Magnification::Smooth);
+        assert_eq!(Magnification::of(0.5, true), Magnification::Reduced);
+    }
 
     #[test]
     fn squares_are_drawn_behind_blocks_that_something_is_seen_through() {

@@ -2,7 +2,7 @@
 //! or a detail on another screen. Both are painted in; each has its own zoom. Floor 7.
 
 use super::ants::Ants;
-use super::blocks::{corners, on_screen};
+use super::blocks::{corners, middle_on_pixels, on_screen};
 use super::ground::surround_shape;
 use super::parts::PartMarks;
 use super::pointer::PointerState;
@@ -103,7 +103,7 @@ impl SecondView {
         let ground = painter.rect_filled(rect, 0.0, theme::surround(ui.visuals()));
         let Some(open) = session.active() else { return self.hand.overhear(ui) };
         let view = self.view_of(open, vec2(rect.width(), rect.height()));
-        let middle = rect.center();
+        let middle = middle_on_pixels(rect, &view, ui.ctx().pixels_per_point());
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();
         let outline = corners(open.shown_document().size.rect());

@@ -76,16 +76,16 @@ impl TileSheet {
         true
     }
 
-    /// * `scale`: pixels of the screen per pixel of the canvas.
+    /// * `scale`: pixels of the screen per pixel of the canvas; and whether it is seen upright.
     /// * `canvas`: the size that the picture is drawn at.
-    pub fn magnify(&mut self, scale: f32, canvas: Size) {
+    pub fn magnify(&mut self, (scale, is_upright): (f32, bool), canvas: Size) {
         let Some(size) = self.size else { return };
         // A smaller picture represents the canvas: its own pixels must not be visible.
-        let magnification =
-            match Magnification::of(scale * canvas.width as f32 / size.width.max(1) as f32) {
-                Magnification::Squares if size != canvas => Magnification::Smooth,
-                own => own,
-            };
+        let own_scale = scale * canvas.width as f32 / size.width.max(1) as f32;
+        let magnification = match Magnification::of(own_scale, is_upright) {
+            Magnification::Squares if size != canvas => Magnification::Smooth,
+            own => own,
+        };
         self.blocks.magnify(magnification, &self.grid);
     }
 
