@@ -35,6 +35,7 @@ use super::pen::{PenReport, SharedTablet};
 use super::preferences::Preferences;
 use super::render_thread::RenderThread;
 use super::theme;
+use super::urgency::request_repaint_now;
 use crate::Error;
 use crate::document::Document;
 use crate::io::proof::ProofTable;
@@ -119,7 +120,8 @@ struct AidsPlace {
 impl Canvas {
     pub fn new(ctx: &egui::Context) -> Self {
         let waker = ctx.clone();
-        let (render_thread, trouble) = match RenderThread::new(move || waker.request_repaint()) {
+        let wake = move || request_repaint_now(&waker);
+        let (render_thread, trouble) = match RenderThread::new(wake) {
             Ok(thread) => (Some(thread), None),
             Err(error) => (None, Some(Error::io("painter", error))),
         };

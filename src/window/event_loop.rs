@@ -3,14 +3,17 @@
 
 use super::opened_files;
 use super::pen::{self, PenFeed, SharedTablet};
+use super::urgency::try_take_urgency;
 use eframe::{EframeWinitApplication, UserEvent};
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
-use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
+use winit::event::{DeviceEvent, DeviceId, ElementState, StartCause, TouchPhase, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::WindowId;
 
+/// While something is held down, a frame that no event asks for waits so long for one.
+const SETTLING: Duration = Duration::from_millis(25);
 /// The time that a loop waits which would wait for ever.
 const LONGEST_WAIT: Duration = Duration::from_secs(60);
 
@@ -36,7 +39,7 @@ pub fn run(
     let _listening = opened_files::listen(open);
     let window = eframe::create_native("rilievo", options, start, &events);
     let feed = PenFeed::new(tablet, pen::devices(&events));
-    events.run_app(&mut PenListener { window, feed })?;
+    events.run_app(&mut PenListener { window, feed, held: 0 })?;
     Ok(())
 }
 
@@ -59,6 +62,8 @@ fn event_loop() -> eframe::Result<EventLoop<UserEvent>> {
 struct PenListener<'a> {
     window: EframeWinitApplication<'a>,
     feed: PenFeed,
+    /// Buttons and fingers that are down.
+    held: usize,
 }
 
 impl PenListener<'_> {
@@ -66,16 +71,34 @@ impl PenListener<'_> {
     fn move_by_pens(&mut self, events: &ActiveEventLoop) {
         self.feed.read_pens();
         while let Some((window, event)) = self.feed.next_event() {
-            self.window.window_event(events, window.into(), event);
+            self.pass_on(events, window.into(), event);
         }
     }
+
+    fn pass_on(&mut self, events: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
+        self.held = held_after(self.held, &event);
+        self.window.window_event(events, window, event);
+    }
+}
+
+/// How many buttons and fingers are down after an event.
+fn held_after(held: usize, event: &WindowEvent) -> usize {
+    let is_down = match event {
+        WindowEvent::MouseInput { state, .. } => *state == ElementState::Pressed,
+        WindowEvent::Touch(touch) if touch.phase == TouchPhase::Moved => return held,
+        WindowEvent::Touch(touch) => touch.phase == TouchPhase::Started,
+        // What is let go elsewhere is not heard of.
+        WindowEvent::Focused(false) => return 0,
+        _ => return held,
+    };
+    if is_down { held + 1 } else { held.saturating_sub(1) }
 }
 
 impl ApplicationHandler<UserEvent> for PenListener<'_> {
     fn window_event(&mut self, events: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
         self.move_by_pens(events);
         if let Some(event) = self.feed.read_event(window.into(), event) {
-            self.window.window_event(events, window, event);
+            self.pass_on(events, window, event);
         }
     }
 
@@ -91,7 +114,13 @@ impl ApplicationHandler<UserEvent> for PenListener<'_> {
         self.window.suspended(events);
     }
 
-    fn user_event(&mut self, events: &ActiveEventLoop, event: UserEvent) {
+    fn user_event(&mut self, events: &ActiveEventLoop, mut event: UserEvent) {
+        if let UserEvent::RequestRepaint { when, .. } = &mut event
+            && !try_take_urgency()
+            && self.held > 0
+        {
+            *when = (*when).max(Instant::now() + SETTLING);
+        }
         self.window.user_event(events, event);
     }
 
@@ -115,5 +144,26 @@ impl ApplicationHandler<UserEvent> for PenListener<'_> {
 
     fn memory_warning(&mut self, events: &ActiveEventLoop) {
         self.window.memory_warning(events);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use winit::event::MouseButton;
+
+    #[test]
+    fn what_is_held_down_is_counted_until_the_window_loses_the_focus() {
+        let button = |state| WindowEvent::MouseInput {
+            device_id: DeviceId::dummy(),
+            state,
+            button: MouseButton::Left,
+        };
+        let (press, release) = (button(ElementState::Pressed), button(ElementState::Released));
+        let held = |events: &[&WindowEvent]| events.iter().fold(0, |held, of| held_after(held, of));
+        assert_eq!(held(&[&press, &press, &release]), 1);
+        assert_eq!(held(&[&release, &press]), 1, "a release of another window's press");
+        assert_eq!(held(&[&press, &WindowEvent::Focused(false)]), 0);
+        assert_eq!(held(&[&press, &WindowEvent::CloseRequested]), 1);
     }
 }

@@ -53,6 +53,7 @@ mod thumbnails;
 mod titles;
 mod tour;
 mod typed_range;
+mod urgency;
 mod usage;
 mod widgets;
 mod window;

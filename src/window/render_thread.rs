@@ -15,6 +15,7 @@ use crate::memory::{self, OutOfMemory};
 use crate::raster::{Tile, TileAt};
 use draft::{DraftRender, Readiness};
 use pass::RenderPass;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
@@ -54,6 +55,8 @@ struct SharedRequest {
     wanted: Mutex<Option<RenderRequest>>,
     wake: Condvar,
     closed: Mutex<bool>,
+    /// A frame waits for what is painted: it need not be told.
+    is_awaited: AtomicBool,
 }
 
 /// The handle of the thread; the thread ends with it.
@@ -88,8 +91,8 @@ const SHAPING: Duration = Duration::from_nanos(120);
 const COARSEST: u32 = 8;
 
 impl RenderThread {
-    /// `done` is called on the render thread after each batch. Fails if the system cannot start a
-    /// thread.
+    /// `done` is called on the render thread after each batch that no frame waits for. Fails if the
+    /// system cannot start a thread.
     pub fn new(done: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(SharedRequest::default());
         let (sender, painted) = channel();
@@ -107,21 +110,21 @@ impl RenderThread {
     }
 
     /// What was painted since the last call, and what else is painted within some time.
-    pub fn take_rendered(&self, wait: Duration) -> impl Iterator<Item = RenderedTileBatch> + '_ {
-        let (until, mut is_settled) = (Instant::now() + wait, false);
-        std::iter::from_fn(move || {
-            let left = if is_settled {
-                Duration::ZERO
-            } else {
-                until.saturating_duration_since(Instant::now())
-            };
-            let batch = match left.is_zero() {
-                true => self.painted.try_recv().ok(),
-                false => platform::recv_timeout(&self.painted, left).ok(),
-            }?;
-            is_settled = batch.is_settled;
-            Some(batch)
-        })
+    pub fn take_rendered(&self, wait: Duration) -> Vec<RenderedTileBatch> {
+        let mut taken: Vec<RenderedTileBatch> = Vec::new();
+        let (until, is_awaited) = (Instant::now() + wait, &self.shared.is_awaited);
+        is_awaited.store(!wait.is_zero(), Ordering::SeqCst);
+        while taken.last().is_none_or(|batch| !batch.is_settled) {
+            let left = until.saturating_duration_since(Instant::now());
+            match platform::recv_timeout(&self.painted, left) {
+                Ok(batch) => taken.push(batch),
+                Err(_) => break,
+            }
+        }
+        // What was sent while this was so has told nobody.
+        is_awaited.store(false, Ordering::SeqCst);
+        taken.extend(self.painted.try_iter());
+        taken
     }
 }
 
@@ -169,7 +172,9 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
     let mut work = RenderWork::default();
     let send = |painted| {
         sender.send(painted).ok()?;
-        done();
+        if !shared.is_awaited.load(Ordering::SeqCst) {
+            done();
+        }
         Some(())
     };
     loop {

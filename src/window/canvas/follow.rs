@@ -87,9 +87,9 @@ impl Canvas {
 
     /// Takes what has been painted, after waiting for it for so long at most.
     fn take_rendered(&mut self, open: &OpenDocument, wait: Duration) {
-        let painted = self.render_thread.iter().flat_map(|thread| thread.take_rendered(wait));
-        let painted = painted.filter(|painted| painted.picture == self.picture);
-        for painted in painted {
+        let Some(thread) = &self.render_thread else { return };
+        let painted = thread.take_rendered(wait).into_iter();
+        for painted in painted.filter(|painted| painted.picture == self.picture) {
             (self.took, self.is_busy) = (painted.took, !painted.is_settled);
             if let Some(refused) = painted.refused {
                 self.trouble = Some(Error::out_of_memory(open.title(), refused));

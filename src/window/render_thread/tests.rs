@@ -138,3 +138,35 @@ fn pixels_grow_only_where_a_draft_of_all_of_them_would_take_longer_than_a_frame(
     let steps = [16, 42, 44, 170, 180, 900].map(|ms| step_for(Duration::from_millis(ms)));
     assert_eq!(steps, [1, 1, 2, 2, 4, 8]);
 }
+
+#[test]
+fn a_frame_that_waits_for_the_picture_is_not_told_of_it_again() {
+    let told = Arc::new(AtomicBool::new(false));
+    let teller = told.clone();
+    let render_thread = RenderThread::new(move || teller.store(true, Ordering::SeqCst)).unwrap();
+    let size = Size::new(100, 80);
+    let want = move |picture| {
+        let (document, visible) = (Document::empty(size), size.rect());
+        RenderRequest { picture, document, visible, is_dragged: false }
+    };
+    // The request comes while a frame waits already.
+    let shared = render_thread.shared.clone();
+    let asking = std::thread::spawn(move || {
+        while !shared.is_awaited.load(Ordering::SeqCst) {
+            std::thread::yield_now();
+        }
+        *lock(&shared.wanted) = Some(want(1));
+        shared.wake.notify_one();
+    });
+    let taken = render_thread.take_rendered(Duration::from_secs(60));
+    asking.join().unwrap();
+    assert!(taken.last().is_some_and(|batch| batch.picture == 1 && batch.is_settled));
+    assert!(!told.load(Ordering::SeqCst));
+    // Nobody waits.
+    render_thread.want(want(2));
+    while !told.load(Ordering::SeqCst) {
+        std::thread::yield_now();
+    }
+    let taken = render_thread.take_rendered(Duration::ZERO);
+    assert!(taken.last().is_some_and(|batch| batch.picture == 2));
+}
