@@ -224,6 +224,12 @@ impl PlaneMap {
         if off(0, 2, 4, coefficients).max(off(1, 3, 5, coefficients)) > SAME_PX {
             return None;
         }
+        // A finer or farther map has none, and its numbers none of an `i32`.
+        let is_move = whole[..4].iter().all(|v| v.abs() <= 1.0)
+            && whole[4..].iter().all(|v| v.abs() <= f64::from(FAR));
+        if !is_move {
+            return None;
+        }
         let [a, b, c, d, e, f] = whole.map(|v| v as i32);
         let turns = (a * d - b * c).abs() == 1 && a.abs() + b.abs() == 1 && c.abs() + d.abs() == 1;
         turns.then_some(PixelMove { right: (a, b), down: (c, d), origin: (e, f) })
@@ -312,6 +318,16 @@ mod tests {
     use super::*;
 
     const CANVAS: Size = Size::new(400, 300);
+
+    #[test]
+    fn a_map_of_numbers_beyond_32_bits_moves_no_whole_pixels() {
+        for far in [[4e9, 0.0, 0.0, 4e9, 0.0, 0.0], [1e9, -2e9, 2e9, 1e9, 0.0, 0.0]] {
+            let map = PlaneMap::affine(far).unwrap();
+            assert!(map.pixel_move_on(CANVAS).is_none() && !map.is_identity_on(CANVAS));
+        }
+        let far = PlaneMap::affine([1.0, 0.0, 0.0, 1.0, 1e12, 0.0]).unwrap();
+        assert!(far.pixel_move_on(CANVAS).is_none());
+    }
 
     #[test]
     fn ten_turns_of_36_degrees_leave_every_pixel() {
