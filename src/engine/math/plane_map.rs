@@ -224,7 +224,7 @@ impl PlaneMap {
         if off(0, 2, 4, coefficients).max(off(1, 3, 5, coefficients)) > SAME_PX {
             return None;
         }
-        // A finer or farther map has none, and its numbers none of an `i32`.
+        // Other scales and farther moves are none, and may not fit into an `i32`.
         let is_move = whole[..4].iter().all(|v| v.abs() <= 1.0)
             && whole[4..].iter().all(|v| v.abs() <= f64::from(FAR));
         if !is_move {

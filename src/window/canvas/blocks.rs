@@ -273,7 +273,9 @@ pub fn on_screen(screen_from_canvas: Affine2, x: i32, y: i32) -> Pos2 {
 }
 
 /// The middle of an area of the window, moved by less than a pixel of the screen so that a canvas which
-/// is not turned lies on whole ones: its own pixels would be mixed between them.
+/// is not turned lies on whole ones: its own pixels would be mixed between them. Points.
+///
+/// * `per_point`: pixels of the screen per point.
 pub fn middle_on_pixels(area: egui::Rect, view: &CanvasView, per_point: f32) -> Pos2 {
     let middle = area.center();
     if view.turn_rad != 0.0 || view.zoom * per_point < OWN_SIZE {
