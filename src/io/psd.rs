@@ -24,6 +24,7 @@
 //! | `marks` | guides, and the colors of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
+//! | `read` | a file into the document that looks most like its own picture |
 //! | `restore` | the document that our own files hold |
 //! | `compare` | whether that looks like the file's own picture, and what is done if it does not |
 //! | `export` | a document into records |
@@ -64,6 +65,7 @@ mod parse;
 pub(super) mod pattern;
 mod profiled;
 mod ramp;
+mod read;
 mod restore;
 mod shape;
 #[cfg(test)]
@@ -74,7 +76,7 @@ mod write;
 
 pub(crate) use colors::Press;
 pub use export::write;
-pub use tree::read;
+pub use read::read;
 
 use crate::document::{Document, LayerLabel};
 use crate::math::Rect;
