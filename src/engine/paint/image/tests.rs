@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::math::{hash, vec2, vec3};
+use crate::paint::Adjust;
 use crate::raster::{Plane, TileGrid, picture::Texels, sampler};
 use crate::surface::operator::second_order;
 use crate::surface::{Anchor, Maps, Operator, Surface};

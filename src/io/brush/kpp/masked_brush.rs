@@ -115,3 +115,6 @@ fn second_tip(
     let brush = options::read(masked, brush, &mut notes);
     Ok((brush, notes))
 }
+
+#[cfg(test)]
+mod tests;
