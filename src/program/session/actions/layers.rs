@@ -4,6 +4,7 @@
 mod flattening;
 mod looks;
 mod new;
+mod previewed;
 mod refusal;
 mod steps;
 pub(super) mod texts;
@@ -11,21 +12,16 @@ pub(super) mod texts;
 pub use new::NewLayer;
 pub(super) use steps::copy_layer;
 
-use crate::Result;
 use crate::document::{Content, Document, Layer, LayerId, LayerSlot, Live, Progress};
 use crate::io::Budget;
 use crate::math::{PlaneMap, Vec2};
-use crate::paint::{
-    ColorAdjustment, EffectLight, FormDrawing, LiveAdjustment, LiveFilter, PictureFilter, Text,
-};
+use crate::paint::{ColorAdjustment, EffectLight, FormDrawing, PictureFilter, Text};
 use crate::session::drawing::colors_beneath;
 use crate::session::open_document::Edit;
 use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, PixelShading};
-use crate::tools::gizmo::TransformTarget;
-use crate::tools::path;
-use crate::tools::transform::{self, mapped};
+use crate::tools::transform;
 use flattening::bake_displacement;
 use new::{NewLayerSettings, lit_layer, make_layer, selecting};
 use steps::{
@@ -173,7 +169,7 @@ impl LayerAction {
                 open.forget_preview();
                 return session.say(why);
             }
-            let is_set = set(open, layer, to, *done);
+            let is_set = previewed::set(open, layer, to, *done);
             return session.said.extend(is_set.err());
         }
         if let LayerAction::Write { text, at } = self {
@@ -189,16 +185,16 @@ impl LayerAction {
             return looks::give_material(open, name, part.as_deref(), *done);
         }
         if let LayerAction::EffectLight { light, done } = self {
-            return light_effects(open, *light, *done);
+            return previewed::light_effects(open, *light, *done);
         }
         if let LayerAction::Adjust { layer, adjustment, done } = self {
-            return adjust(session, layer, adjustment, *done);
+            return previewed::adjust(session, layer, adjustment, *done);
         }
         if let LayerAction::Filter { layer, filter, done } = self {
-            return filter_paint(session, layer, filter, *done);
+            return previewed::filter_paint(session, layer, filter, *done);
         }
         if let LayerAction::TakeAlong { layer, by, done } = self {
-            return take_along(session, layer, *by, *done);
+            return previewed::take_along(session, layer, *by, *done);
         }
         open.forget_preview();
         let id = |path: &LayerPath| path.find(open.document()).map(|layer| layer.id);
@@ -409,106 +405,6 @@ fn tone_step(document: &Document, layer: &Layer) -> Option<EditStep> {
     let content = Content::Shading(Live::new(shading));
     let next = document.with_layer(layer.id, |layer| layer.content = content)?;
     Some(("Pixel shading", next, vec![layer.id]))
-}
-
-fn set(
-    open: &mut OpenDocument,
-    layers: &LayerPaths,
-    to: &Property,
-    done: bool,
-) -> Result<(), String> {
-    let Some(ids) = layers.find(open.document()) else {
-        open.forget_preview();
-        return Ok(());
-    };
-    let next = match to {
-        Property::Drawn { path } => path::replace_paths(open.document(), &ids, path)?,
-        Property::Worded { text } => {
-            texts::replace_texts(open.document(), open.shown_document(), &ids, text)
-                .map_err(|why| why.to_string())?
-        }
-        _ => open.document().with_layers(&ids, |layer| to.apply(layer)),
-    };
-    match next {
-        Some(document) if done => drop(open.commit(to.label(), document)),
-        Some(document) if matches!(to, Property::Worded { .. }) => {
-            open.show_typed(to.label(), document);
-        }
-        Some(document) => open.show(to.label(), document),
-        None => {}
-    }
-    Ok(())
-}
-
-/// Another light of effects: a step, or a preview of one.
-fn light_effects(open: &mut OpenDocument, light: EffectLight, done: bool) {
-    const LABEL: &str = "Light of effects";
-    let effect_light = light.clamp_to_ranges();
-    let next = Document { effect_light, ..open.document().clone() };
-    if done {
-        open.commit(LABEL, next);
-    } else {
-        open.show(LABEL, next);
-    }
-}
-
-/// The paint of layers adjusted: a step, or a preview of one. Layers that are no paint, or locked,
-/// stay as they are.
-fn adjust(session: &mut Session, layers: &LayerPaths, by: &ColorAdjustment, done: bool) {
-    let live = LiveAdjustment::new(by.clone());
-    let refused = "Select a paint layer that is not locked, or add an adjustment layer.";
-    let change = |document: &Document, id| document.with_paint_adjusted(id, &live);
-    change_paint(session, layers, (by.label(), refused), done, change);
-}
-
-/// The same, filtered.
-fn filter_paint(session: &mut Session, layers: &LayerPaths, by: &PictureFilter, done: bool) {
-    let live = LiveFilter::new(by.clone());
-    let refused = "Select a paint layer that is not locked, or add a filter layer.";
-    let change = |document: &Document, id| document.with_paint_filtered(id, &live);
-    change_paint(session, layers, (by.label(), refused), done, change);
-}
-
-/// `label`: the name of the step, and what is said where there is no paint.
-fn change_paint(
-    session: &mut Session,
-    layers: &LayerPaths,
-    (label, refused): (&'static str, &str),
-    done: bool,
-    change: impl Fn(&Document, LayerId) -> Option<Document>,
-) {
-    let Some(open) = session.active_mut() else { return };
-    let document = open.document();
-    let (mut next, mut is_any) = (document.clone(), false);
-    for id in layers.find(document).unwrap_or_default() {
-        if let Some(changed) = change(&next, id) {
-            (next, is_any) = (changed, true);
-        }
-    }
-    match (is_any, done) {
-        (true, true) => drop(open.commit(label, next)),
-        (true, false) => open.show(label, next),
-        (false, _) => {
-            open.forget_preview();
-            session.say(refused);
-        }
-    }
-}
-
-/// The document with what layers show moved by a map of the canvas: a step, or a preview of one.
-fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bool) {
-    let Some(open) = session.active_mut() else { return };
-    open.hold_gizmo(TransformTarget::Paint);
-    let document = open.document();
-    let ids = layers.find(document).map(|ids| document.outermost(&ids)).unwrap_or_default();
-    let map = PlaneMap::affine(by).filter(|_| !ids.is_empty());
-    let next = map
-        .and_then(|map| ids.iter().try_fold(document.clone(), |next, id| mapped(&next, *id, map)));
-    match next {
-        Some(next) if done => drop(open.commit("Transform", next)),
-        Some(next) => open.show("Transform", next),
-        None => open.forget_preview(),
-    }
 }
 
 /// Where a new layer goes: above the selected one; into it, on top, if it is a group.
