@@ -75,7 +75,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     asked(&mut harness);
     harness.get_by_label("A part for each color (2)");
     give(&mut harness);
-    assert_eq!(layers(&harness), ["creature", "Base"]);
+    assert_eq!(layers(&harness), ["creature", "Light"]);
     let made = parts(&harness);
     assert_eq!(made.len(), 2);
     // The panel with the parts is in front, one of them selected.
@@ -273,7 +273,7 @@ fn a_first_minute_leads_from_a_drawing_to_a_bent_stroke_and_its_picture() {
     assert!(apart > 200, "{apart} values differ from the flat stroke");
 
     key(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(layers(&harness), ["creature", "Base"]);
+    assert_eq!(layers(&harness), ["creature", "Light"]);
     key(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert!(painted(&harness, true) == bent);
     command(&mut harness, "Export…");

@@ -78,7 +78,7 @@ actions! {
         /// of all others.
         "add" Add { kind: NewPart }
         /// A layer gets a shape: one part from its alpha (`false`), one from each of its flat
-        /// colors (`true`) or from each area of one (`"areas"`), and a lit Base.
+        /// colors (`true`) or from each area of one (`"areas"`), and a layer of light.
         "shape" Shape { layer: LayerPath, preset: InflationPreset, flats: PartFor }
         /// A layer of an SVG gets a shape, a part for each filled path. `file`: the SVG, for a layer
         /// of paint that it was opened as.

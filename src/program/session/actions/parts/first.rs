@@ -1,5 +1,5 @@
 //! The first shape of a drawing: a part from its outline, or one from each of its flat colors or
-//! places, a lit Base, so that the form is seen at once, and its ink on top of that. Floor 6. Not
+//! places, a layer of light, so that the form is seen at once, and its ink on top of that. Floor 6. Not
 //! here: what a drawing is (`document::parts::drawing`).
 
 use super::{PartRefusal, free_id, new};
@@ -24,7 +24,7 @@ pub struct FirstShape {
     /// The nearest of the new parts.
     pub part: String,
     /// The layer that shows the form.
-    pub base: LayerId,
+    pub light: LayerId,
     /// What the user is told about colors without a part.
     pub note: Option<String>,
 }
@@ -33,7 +33,7 @@ impl FirstShape {
     /// Into an open document, as one step.
     pub fn put(self, open: &mut OpenDocument) {
         if open.commit("Give it a shape", self.document) {
-            (open.part, open.active_layer) = (Some(self.part), Some(self.base));
+            (open.part, open.active_layer) = (Some(self.part), Some(self.light));
             open.noted = self.note.or(open.noted.take());
         }
     }
@@ -93,12 +93,12 @@ pub fn shape_layer(
     // Its edge is the surface's: clipping as well would make it thinner.
     let next =
         document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);
-    let base = base(&next, Some(&tiles));
-    let id = base.id;
+    let light = light_layer(&next, Some(&tiles));
+    let id = light.id;
     let place = next
         .place_of(layer)
         .map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
-    let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
+    let next = next.with_inserted(light, place).ok_or("There is no such layer.")?;
     let lined = || as_paint(&next, layer, &tiles)?.with_lines_on_top(layer);
     let lined = if traits.has_flats() { lined() } else { None };
     let next = lined.map_or(next, |(lined, _)| lined);
@@ -110,7 +110,7 @@ pub fn shape_layer(
         PartFor::Color | PartFor::Area => next,
     };
     match next.surface {
-        Some(_) => Ok(FirstShape { document: next, part, base: id, note }),
+        Some(_) => Ok(FirstShape { document: next, part, light: id, note }),
         None => Err("Nothing in this layer is opaque enough to have a shape."),
     }
 }
@@ -173,12 +173,12 @@ pub(super) fn with_paint(
 
 /// The layer that shows the form: a painter's light on the drawing, in a few tones of its own colors
 /// if it was drawn pixel by pixel.
-pub(super) fn base(document: &Document, drawing: Option<&TileGrid>) -> Layer {
+pub(super) fn light_layer(document: &Document, drawing: Option<&TileGrid>) -> Layer {
     let mut shading = Shading::fitting(Model::Painter, document.size);
     shading.painter.beneath = true;
     if let Some(colors) = drawing.and_then(|drawing| pixel_art_colors(drawing, document.size)) {
         shading.pixel = PixelShading { bands: PixelShading::USUAL_BANDS, dither: 0.0, colors };
     }
     let content = Content::Shading(Live::new(shading));
-    Layer::new(document.free_layer_name("Base"), content)
+    Layer::new(document.free_layer_name("Light"), content)
 }

@@ -278,14 +278,14 @@ fn put(
         }
     };
     let next = next.ok_or(NO_LAYER)?;
-    let base = first::base(&next, None);
-    let id = base.id;
+    let light = first::light_layer(&next, None);
+    let id = light.id;
     let place = next.place_of(layer).ok_or(NO_LAYER)?;
     let above = LayerSlot { index: place.index + 1, ..place };
-    let next = next.with_inserted(base, above).ok_or(NO_LAYER)?;
+    let next = next.with_inserted(light, above).ok_or(NO_LAYER)?;
     let next = next.with_parts_with_progress(list, progress).ok_or("It was canceled.")?;
     match next.surface {
-        Some(_) => Ok(FirstShape { document: next, part, base: id, note }),
+        Some(_) => Ok(FirstShape { document: next, part, light: id, note }),
         None => Err("Nothing in this layer is opaque enough to have a shape.".into()),
     }
 }

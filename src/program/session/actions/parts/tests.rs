@@ -65,7 +65,7 @@ fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
     let document = shown_document(&session);
     assert_eq!(
         document.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
-        ["snowman", "Base"]
+        ["snowman", "Light"]
     );
     let Content::Shading(light) = &document.layers[1].content else { panic!("no light") };
     assert!(light.params().is_lighting_beneath() && light.params().shadows.on);

@@ -146,7 +146,7 @@ fn a_flat_ground_is_taken_off_and_lies_beneath_and_the_picture_stays() {
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
     let names: Vec<&str> =
         shown_document(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
-    assert_eq!(names, ["Ground", "snowman", "Base"]);
+    assert_eq!(names, ["Ground", "snowman", "Light"]);
     assert!(matches!(shown_document(&session).layers[1].content, Content::Pixels(_)));
     assert_eq!(shown_document(&session).surface.as_ref().unwrap().coverage(2, 2), 0);
     tell(

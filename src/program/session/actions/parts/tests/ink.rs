@@ -41,7 +41,7 @@ fn a_drawing_with_ink_gets_its_lines_on_top_as_they_were_drawn() {
     shape(&mut session);
     let names: Vec<&str> =
         shown_document(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
-    assert_eq!(names, ["disc", "Base", "Ink"]);
+    assert_eq!(names, ["disc", "Light", "Ink"]);
     let lit = render(&session);
     let mut whole = 0;
     let mut changed = 0;
