@@ -38,6 +38,7 @@ mod preferences;
 #[cfg(not(target_family = "wasm"))]
 mod program_icon;
 mod recovery;
+mod reduced;
 mod references;
 mod render_thread;
 mod requests;

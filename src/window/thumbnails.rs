@@ -11,6 +11,7 @@ use crate::io::profile_change::show_in_srgb;
 use crate::mood_pictures::MoodPictures;
 use crate::part_pictures::PartPictures;
 use crate::raster::{Plane, TileGrid};
+use crate::reduced::reduced;
 use crate::surface::Surface;
 use eframe::egui::{
     self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2, vec2,
@@ -138,16 +139,11 @@ impl Thumbnails {
             .get(&layer.id)
             .filter(|(of, inverted, _)| of.as_ptr() == Arc::as_ptr(coverage) && inverted == invert);
         if known.is_none() {
-            let size = coverage.size();
-            let step = size.width.max(size.height).div_ceil(SIDE).max(1);
-            let (width, height) =
-                (size.width.div_ceil(step) as usize, size.height.div_ceil(step) as usize);
-            let gray = |i: usize| {
-                let at = |v: usize| (v as u32 * step + step / 2) as i32;
-                let v = coverage.at_clamped(at(i % width), at(i / width));
-                Color32::from_gray(if *invert { 255 - v } else { v })
-            };
-            let image = ColorImage::new([width, height], (0..width * height).map(gray).collect());
+            let image = reduced(coverage.size(), SIDE, |x, y| {
+                let v = coverage.at_clamped(x, y);
+                let v = if *invert { 255 - v } else { v };
+                [v, v, v, 255]
+            });
             let texture =
                 ctx.load_texture(format!("mask {:?}", layer.id), image, TextureOptions::LINEAR);
             self.masks.insert(layer.id, (Arc::downgrade(coverage), *invert, texture));

@@ -6,11 +6,12 @@ use super::{Canvas, visible_rect};
 use crate::Error;
 use crate::document::Document;
 use crate::math::{Rect, Size};
+use crate::reduced::reduced;
 use crate::render_thread::RenderRequest;
 use crate::session::{CanvasView, OpenDocument, Session, is_same_look};
 use crate::theme::to_window;
 use crate::tools::ToolKind;
-use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureOptions};
+use eframe::egui::{self, Color32, TextureHandle, TextureOptions};
 use std::time::Duration;
 
 /// How long a frame waits for what is being painted before it is drawn without it.
@@ -116,24 +117,18 @@ impl Canvas {
         const SIDE: u32 = 200;
         if self.small.is_none() || (self.small_is_old && !self.is_busy) {
             self.small_is_old = false;
-            let step = canvas.width.max(canvas.height).div_ceil(SIDE).max(1);
-            let (width, height) = (canvas.width.div_ceil(step), canvas.height.div_ceil(step));
             let shown = if self.sheet.shown.size() == Some(canvas) {
                 &self.sheet.shown
             } else {
                 &self.whole
             };
-            let pixel = |i: u32| {
-                let (x, y) = (i % width * step + step / 2, i / width * step + step / 2);
-                let at = |v: u32, n: u32| v.min(n - 1) as i32;
-                let pixel = shown.grid.pixel(at(x, canvas.width), at(y, canvas.height));
-                let [r, g, b, a] = to_window().map_or(pixel, |by| by.premultiplied(pixel));
-                Color32::from_rgba_premultiplied(r, g, b, a)
-            };
-            let image = ColorImage::new(
-                [width as usize, height as usize],
-                (0..width * height).map(pixel).collect(),
-            );
+            let mut image = reduced(canvas, SIDE, |x, y| shown.grid.pixel(x, y));
+            if let Some(by) = to_window() {
+                for pixel in &mut image.pixels {
+                    let [r, g, b, a] = by.premultiplied(pixel.to_array());
+                    *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
+                }
+            }
             self.small = Some(ctx.load_texture("navigator", image, TextureOptions::LINEAR));
         }
         self.small.as_ref().map(TextureHandle::id)
