@@ -16,6 +16,7 @@ mod parts;
 mod paths;
 mod play;
 mod promises;
+mod shading_values;
 mod shrink;
 mod starts;
 mod values;
