@@ -29,6 +29,7 @@ mod scripting;
 mod shape;
 mod texts;
 mod verbs;
+mod version;
 mod view;
 #[cfg(feature = "window-tests")]
 mod window;

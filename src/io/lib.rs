@@ -51,4 +51,4 @@ pub use files::{Files, RecipeFolder, UserFiles};
 pub use open::{OpenedDocument, open};
 pub use replace::{Overwrite, Terms};
 pub use save::{SavedDocument, save};
-pub use version::version;
+pub use version::{set_commit, version};

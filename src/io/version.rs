@@ -1,20 +1,26 @@
 //! Which build of the program this is. Floor 5.
 
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
-/// The version, and the commit that it was built from if the environment variable `RILIEVO_COMMIT`
-/// named it while it was built, as in “0.2.0 (1a2b3c4d5)”.
+static VERSION: OnceLock<String> = OnceLock::new();
+
+/// The version, and the commit that it was built from if the program knows it, as in
+/// “0.2.0 (1a2b3c4d5e6f)”.
 pub fn version() -> &'static str {
-    static VERSION: LazyLock<String> =
-        LazyLock::new(|| with_commit(env!("CARGO_PKG_VERSION"), option_env!("RILIEVO_COMMIT")));
-    &VERSION
+    VERSION.get_or_init(|| with_commit(None))
 }
 
-fn with_commit(version: &str, commit: Option<&str>) -> String {
-    match commit.map(str::trim).filter(|commit| !commit.is_empty()) {
-        Some(commit) => format!("{version} ({commit})"),
-        None => version.to_owned(),
-    }
+/// Names the commit that the program was built from, before anything asks for the version.
+pub fn set_commit(commit: Option<&str>) {
+    VERSION.get_or_init(|| with_commit(commit));
+}
+
+fn with_commit(commit: Option<&str>) -> String {
+    /// As many digits name a commit of any repository.
+    const DIGITS: usize = 12;
+    let version = env!("CARGO_PKG_VERSION");
+    let commit: String = commit.unwrap_or_default().trim().chars().take(DIGITS).collect();
+    if commit.is_empty() { version.to_owned() } else { format!("{version} ({commit})") }
 }
 
 #[cfg(test)]
@@ -23,8 +29,10 @@ mod tests {
 
     #[test]
     fn a_build_without_a_commit_has_its_version_alone() {
-        assert_eq!(with_commit("0.2.0", None), "0.2.0");
-        assert_eq!(with_commit("0.2.0", Some("")), "0.2.0");
-        assert_eq!(with_commit("0.2.0", Some("1a2b3c4d5\n")), "0.2.0 (1a2b3c4d5)");
+        let version = env!("CARGO_PKG_VERSION");
+        assert_eq!(with_commit(None), version);
+        assert_eq!(with_commit(Some(" ")), version);
+        let named = with_commit(Some("1a2b3c4d5e6f708192a3b4c5d6e7f8091a2b3c4d\n"));
+        assert_eq!(named, format!("{version} (1a2b3c4d5e6f)"));
     }
 }
