@@ -1,6 +1,6 @@
 //! The commit that a build is told of.
 
-#[path = "../src/build.rs"]
+#[path = "../build.rs"]
 #[allow(dead_code)]
 mod build;
 

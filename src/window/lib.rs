@@ -38,7 +38,7 @@ mod preferences;
 #[cfg(not(target_family = "wasm"))]
 mod program_icon;
 mod recovery;
-mod reduced;
+mod reduce;
 mod references;
 mod render_thread;
 mod requests;

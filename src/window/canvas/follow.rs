@@ -6,7 +6,7 @@ use super::{Canvas, visible_rect};
 use crate::Error;
 use crate::document::Document;
 use crate::math::{Rect, Size};
-use crate::reduced::reduced;
+use crate::reduce::reduce;
 use crate::render_thread::RenderRequest;
 use crate::session::{CanvasView, OpenDocument, Session, is_same_look};
 use crate::theme::to_window;
@@ -122,7 +122,7 @@ impl Canvas {
             } else {
                 &self.whole
             };
-            let mut image = reduced(canvas, SIDE, |x, y| shown.grid.pixel(x, y));
+            let mut image = reduce(canvas, SIDE, |x, y| shown.grid.pixel(x, y));
             if let Some(by) = to_window() {
                 for pixel in &mut image.pixels {
                     let [r, g, b, a] = by.premultiplied(pixel.to_array());

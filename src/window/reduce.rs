@@ -10,7 +10,7 @@ const MOST_SAMPLES: u32 = 4;
 
 /// A picture whose pixels are the means of squares of a larger one; the longer side has as many px
 /// as are asked for at most. `at`: a pixel, with its color premultiplied by its alpha.
-pub fn reduced(size: Size, longest_px: u32, at: impl Fn(i32, i32) -> [u8; 4]) -> ColorImage {
+pub fn reduce(size: Size, longest_px: u32, at: impl Fn(i32, i32) -> [u8; 4]) -> ColorImage {
     let step = size.width.max(size.height).div_ceil(longest_px.max(1)).max(1);
     let [width, height] = [size.width, size.height].map(|side| side.div_ceil(step));
     let samples = step.min(MOST_SAMPLES);
@@ -47,7 +47,7 @@ mod tests {
     fn stripes_become_the_gray_that_they_make() {
         let striped = |x: i32, _: i32| [[0, 0, 0, 255], [200, 200, 200, 255]][x as usize % 2];
         for (side, longest) in [(640, 200), (3200, 200), (4096, 200), (300, 80)] {
-            let image = reduced(size(side, side), longest, striped);
+            let image = reduce(size(side, side), longest, striped);
             let away = image.pixels.iter().map(|pixel| pixel.r().abs_diff(100)).max().unwrap();
             assert!(away <= 25, "{side}: {away}");
         }
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn small_pictures_stay_as_they_are() {
         let at = |x: i32, y: i32| [x as u8, y as u8, 0, 255];
-        let image = reduced(size(30, 20), 200, at);
+        let image = reduce(size(30, 20), 200, at);
         assert_eq!(image.size, [30, 20]);
         assert_eq!(image.pixels[30 * 7 + 11], Color32::from_rgba_premultiplied(11, 7, 0, 255));
     }
@@ -68,7 +68,7 @@ mod tests {
                 assert!((0..width as i32).contains(&x) && (0..height as i32).contains(&y));
                 [255; 4]
             };
-            let image = reduced(size(width, height), 200, within);
+            let image = reduce(size(width, height), 200, within);
             assert!(image.size.iter().all(|side| (1..=200).contains(side)), "{:?}", image.size);
             assert!(image.pixels.iter().all(|pixel| *pixel == Color32::WHITE));
         }
