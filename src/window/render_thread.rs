@@ -15,7 +15,6 @@ use crate::memory::{self, OutOfMemory};
 use crate::raster::{Tile, TileAt};
 use draft::{DraftRender, Readiness};
 use pass::RenderPass;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
@@ -56,7 +55,7 @@ struct SharedRequest {
     wake: Condvar,
     closed: Mutex<bool>,
     /// A frame waits for what is painted: it need not be told.
-    is_awaited: AtomicBool,
+    is_awaited: Mutex<bool>,
 }
 
 /// The handle of the thread; the thread ends with it.
@@ -112,8 +111,8 @@ impl RenderThread {
     /// What was painted since the last call, and what else is painted within some time.
     pub fn take_rendered(&self, wait: Duration) -> Vec<RenderedTileBatch> {
         let mut taken: Vec<RenderedTileBatch> = Vec::new();
-        let (until, is_awaited) = (Instant::now() + wait, &self.shared.is_awaited);
-        is_awaited.store(!wait.is_zero(), Ordering::SeqCst);
+        let until = Instant::now() + wait;
+        *lock(&self.shared.is_awaited) = !wait.is_zero();
         while taken.last().is_none_or(|batch| !batch.is_settled) {
             let left = until.saturating_duration_since(Instant::now());
             match platform::recv_timeout(&self.painted, left) {
@@ -122,8 +121,9 @@ impl RenderThread {
             }
         }
         // What was sent while this was so has told nobody.
-        is_awaited.store(false, Ordering::SeqCst);
+        let mut is_awaited = lock(&self.shared.is_awaited);
         taken.extend(self.painted.try_iter());
+        *is_awaited = false;
         taken
     }
 }
@@ -171,8 +171,11 @@ struct RenderWork {
 fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn Fn()) -> Option<()> {
     let mut work = RenderWork::default();
     let send = |painted| {
+        let is_awaited = lock(&shared.is_awaited);
         sender.send(painted).ok()?;
-        if !shared.is_awaited.load(Ordering::SeqCst) {
+        let is_taken = *is_awaited;
+        drop(is_awaited);
+        if !is_taken {
             done();
         }
         Some(())

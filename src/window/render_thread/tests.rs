@@ -5,6 +5,7 @@ use crate::document::{Content, Layer, Live, Progress, flatten};
 use crate::math::{Size, srgb::Color};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture, TileGrid};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// All that is painted until it is settled.
 fn wait_until_settled(render_thread: &RenderThread, grid: &mut TileGrid) -> usize {
@@ -152,7 +153,7 @@ fn a_frame_that_waits_for_the_picture_is_not_told_of_it_again() {
     // The request comes while a frame waits already.
     let shared = render_thread.shared.clone();
     let asking = std::thread::spawn(move || {
-        while !shared.is_awaited.load(Ordering::SeqCst) {
+        while !*lock(&shared.is_awaited) {
             std::thread::yield_now();
         }
         *lock(&shared.wanted) = Some(want(1));
