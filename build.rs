@@ -1,6 +1,6 @@
 //! Tells the program which commit it is built from: the one that `RILIEVO_COMMIT` names, that of the
-//! checked-out repository, or that of the published package. Releases only: after each commit the
-//! program is linked again.
+//! checked-out repository, or that of the published package. Only in release builds, since each
+//! commit links the program again.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};

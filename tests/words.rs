@@ -117,7 +117,6 @@ const RETURN_BOOL: &[&str] = &[
     "report_tiles",
     "report_whole",
     "say",
-    "send",
     "skip",
     "to_bytes",
     "wait_until_written",

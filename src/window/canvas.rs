@@ -14,6 +14,7 @@ mod ground;
 mod guides;
 mod loupe;
 mod marks;
+mod navigator_picture;
 mod overlay;
 mod parts;
 mod path_handles;
@@ -47,8 +48,9 @@ use crate::session::{Action, CanvasView, OpenDocument, Session};
 use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{ShownColors, ShownLook, corners, middle_on_pixels, on_screen, quad};
-use eframe::egui::{self, Color32, Painter, Sense, Stroke, TextureHandle, Ui, pos2};
+use eframe::egui::{self, Color32, Painter, Sense, Stroke, Ui, pos2};
 use ground::{Checker, surround_shape};
+use navigator_picture::{EVERYWHERE, NavigatorPicture};
 use overlay::{Insets, Overlay};
 use parts::PartMarks;
 use pointer::PointerState;
@@ -87,9 +89,9 @@ pub struct Canvas {
     pub proof: Option<Arc<ProofTable>>,
     /// What the numbers of the picture mean.
     profile: ColorProfile,
-    /// The picture for the navigator, and whether it is outdated.
-    small: Option<TextureHandle>,
-    small_is_old: bool,
+    /// The picture for the navigator, and where it is outdated.
+    small: Option<NavigatorPicture>,
+    small_changed: Rect,
     /// The size of the canvas's area, screen points.
     pub area_pt: Vec2,
     /// The same when each open document was last shown, by its key.
@@ -145,7 +147,7 @@ impl Canvas {
             proof: None,
             profile: ColorProfile::Srgb,
             small: None,
-            small_is_old: true,
+            small_changed: EVERYWHERE,
             area_pt: vec2(800.0, 600.0),
             areas_pt: BTreeMap::new(),
             under: None,
@@ -292,7 +294,9 @@ impl Canvas {
             None => ShownLook::Own,
         };
         let profile = session.shown_document().map_or(ColorProfile::Srgb, |seen| seen.profile);
-        self.small_is_old |= profile != self.profile;
+        if profile != self.profile {
+            self.small_changed = EVERYWHERE;
+        }
         self.profile = profile;
         let colors = ShownColors { profile, look };
         for sheet in [&mut self.whole, &mut self.draft, &mut self.sheet.shown] {

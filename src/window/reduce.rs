@@ -1,43 +1,79 @@
 //! Large pictures reduced to small ones, quickly. Floor 7. Not here: what is painted small at once
 //! (`thumbnails`).
 
-use crate::math::Size;
+use crate::math::{Rect, Size};
 use eframe::egui::{Color32, ColorImage};
 
 /// Pixels that are read of each square, along a side: lines that lie close together become the gray
 /// that they make, and a picture of 4096 × 4096 pixels takes no more than one of 800 × 800.
 const MOST_SAMPLES: u32 = 4;
 
-/// A picture whose pixels are the means of squares of a larger one; the longer side has as many px
-/// as are asked for at most. `at`: a pixel, with its color premultiplied by its alpha.
-pub fn reduce(size: Size, longest_px: u32, at: impl Fn(i32, i32) -> [u8; 4]) -> ColorImage {
-    let step = size.width.max(size.height).div_ceil(longest_px.max(1)).max(1);
-    let [width, height] = [size.width, size.height].map(|side| side.div_ceil(step));
-    let samples = step.min(MOST_SAMPLES);
-    let count = samples * samples;
-    // No two samples of a square share a row or a column, unless all of its pixels are read: regular
-    // ones would fall between stripes.
-    let place = |square: u32, sample: u32, other: u32| {
-        square * step + (2 * (sample * samples + other) + 1) * step / (2 * count)
-    };
-    let mean = |x: u32, y: u32| {
+/// How a large picture is reduced: each pixel of the small one is the mean of a square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reduction {
+    size: Size,
+    /// The side of a square, px.
+    step: u32,
+}
+
+impl Reduction {
+    /// The longer side of the small picture has as many px as are asked for at most.
+    pub fn new(size: Size, longest_px: u32) -> Self {
+        Self { size, step: size.width.max(size.height).div_ceil(longest_px.max(1)).max(1) }
+    }
+
+    /// The small picture. `at`: a pixel of the large one, its color premultiplied by its alpha.
+    pub fn reduce(self, at: impl Fn(i32, i32) -> [u8; 4]) -> ColorImage {
+        let [width, height] =
+            [self.size.width, self.size.height].map(|side| side.div_ceil(self.step) as usize);
+        let mut image = ColorImage::filled([width, height], Color32::TRANSPARENT);
+        self.update(&mut image, self.size.rect(), at);
+        image
+    }
+
+    /// The same where the large picture has changed, in a rectangle.
+    pub fn update(self, image: &mut ColorImage, changed: Rect, at: impl Fn(i32, i32) -> [u8; 4]) {
+        let changed = changed.intersect(self.size.rect());
+        if changed.is_empty() {
+            return;
+        }
+        let first = |px: i32| px as u32 / self.step;
+        let end = |px: i32| (px as u32).div_ceil(self.step);
+        for y in first(changed.y0)..end(changed.y1) {
+            for x in first(changed.x0)..end(changed.x1) {
+                image[(x as usize, y as usize)] = self.mean(x, y, &at);
+            }
+        }
+    }
+
+    /// The mean of a square's samples.
+    fn mean(self, x: u32, y: u32, at: impl Fn(i32, i32) -> [u8; 4]) -> Color32 {
+        let samples = self.step.min(MOST_SAMPLES);
+        let count = samples * samples;
+        // Each sample of a square has a row and a column of its own, as far as there are as many: on
+        // a regular grid all of them could fall between stripes.
+        let place = |square: u32, sample: u32, other: u32| {
+            square * self.step + (2 * (sample * samples + other) + 1) * self.step / (2 * count)
+        };
         let mut sums = [0_u32; 4];
         for (j, i) in (0..samples).flat_map(|j| (0..samples).map(move |i| (j, i))) {
-            let (x, y) = (place(x, i, j).min(size.width - 1), place(y, j, i).min(size.height - 1));
+            let x = place(x, i, j).min(self.size.width - 1);
+            let y = place(y, j, i).min(self.size.height - 1);
             let pixel = at(x as i32, y as i32);
             sums.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += u32::from(value));
         }
         let [r, g, b, a] = sums.map(|sum| ((sum + count / 2) / count) as u8);
         Color32::from_rgba_premultiplied(r, g, b, a)
-    };
-    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let pixels = pixels.map(|(x, y)| mean(x, y)).collect();
-    ColorImage::new([width as usize, height as usize], pixels)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn reduce(size: Size, longest: u32, at: impl Fn(i32, i32) -> [u8; 4]) -> ColorImage {
+        Reduction::new(size, longest).reduce(at)
+    }
 
     fn size(width: u32, height: u32) -> Size {
         Size { width, height }
@@ -59,6 +95,22 @@ mod tests {
         let image = reduce(size(30, 20), 200, at);
         assert_eq!(image.size, [30, 20]);
         assert_eq!(image.pixels[30 * 7 + 11], Color32::from_rgba_premultiplied(11, 7, 0, 255));
+    }
+
+    #[test]
+    fn a_changed_part_alone_is_made_again() {
+        let (before, after) = (|_: i32, _: i32| [9; 4], |x: i32, y: i32| [(x ^ y) as u8; 4]);
+        for (side, longest) in [(640, 200), (4096, 200), (100, 200)] {
+            let reduction = Reduction::new(size(side, side), longest);
+            let changed = Rect::new(64, 32, 96, 5000);
+            let is_in = |x: i32, y: i32| (64..96).contains(&x) && y >= 32;
+            let mixed = |x: i32, y: i32| if is_in(x, y) { after(x, y) } else { before(x, y) };
+            let mut image = reduction.reduce(before);
+            reduction.update(&mut image, changed, mixed);
+            assert_eq!(image.pixels, reduction.reduce(mixed).pixels, "{side}");
+            reduction.update(&mut image, Rect::new(-50, -50, 0, 0), after);
+            assert_eq!(image.pixels, reduction.reduce(mixed).pixels, "{side}");
+        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::io::profile_change::show_in_srgb;
 use crate::mood_pictures::MoodPictures;
 use crate::part_pictures::PartPictures;
 use crate::raster::{Plane, TileGrid};
-use crate::reduce::reduce;
+use crate::reduce::Reduction;
 use crate::surface::Surface;
 use eframe::egui::{
     self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2, vec2,
@@ -139,7 +139,7 @@ impl Thumbnails {
             .get(&layer.id)
             .filter(|(of, inverted, _)| of.as_ptr() == Arc::as_ptr(coverage) && inverted == invert);
         if known.is_none() {
-            let image = reduce(coverage.size(), SIDE, |x, y| {
+            let image = Reduction::new(coverage.size(), SIDE).reduce(|x, y| {
                 let v = coverage.at_clamped(x, y);
                 let v = if *invert { 255 - v } else { v };
                 [v, v, v, 255]

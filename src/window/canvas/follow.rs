@@ -1,17 +1,16 @@
 //! Follows the document: requests its picture from the render thread, and takes what was painted.
 //! Floor 7.
 
+use super::navigator_picture::{EVERYWHERE, NavigatorPicture};
 use super::sheet::TileSheet;
 use super::{Canvas, visible_rect};
 use crate::Error;
 use crate::document::Document;
 use crate::math::{Rect, Size};
-use crate::reduce::reduce;
 use crate::render_thread::RenderRequest;
 use crate::session::{CanvasView, OpenDocument, Session, is_same_look};
-use crate::theme::to_window;
 use crate::tools::ToolKind;
-use eframe::egui::{self, Color32, TextureHandle, TextureOptions};
+use eframe::egui;
 use std::time::Duration;
 
 /// How long a frame waits for what is being painted before it is drawn without it.
@@ -55,8 +54,9 @@ impl Canvas {
             // The status bar and the panels of this frame were laid out before.
             ctx.request_repaint_after(SETTLED);
         }
-        let is_sent = self.whole.send(ctx, self.is_busy) | self.draft.send(ctx, self.is_busy);
-        self.small_is_old |= is_sent;
+        let sent = self.whole.send(ctx, self.is_busy);
+        self.small_changed = self.small_changed.union(sent);
+        self.draft.send(ctx, self.is_busy);
     }
 
     /// Starts anew for a document, or for a picture of another size.
@@ -64,6 +64,7 @@ impl Canvas {
         self.key = Some(open.key);
         self.picture += 1;
         self.whole.begin(size);
+        self.small_changed = EVERYWHERE;
         self.sheet.begin();
         if let Some(picture) = open.stored_preview.take() {
             self.whole.show(picture);
@@ -114,24 +115,17 @@ impl Canvas {
     /// The small picture for the navigator, of the sheet while that is shown; updated when the
     /// render thread is idle.
     pub fn small(&mut self, ctx: &egui::Context, canvas: Size) -> Option<egui::TextureId> {
-        const SIDE: u32 = 200;
-        if self.small.is_none() || (self.small_is_old && !self.is_busy) {
-            self.small_is_old = false;
-            let shown = if self.sheet.shown.size() == Some(canvas) {
-                &self.sheet.shown
-            } else {
-                &self.whole
-            };
-            let mut image = reduce(canvas, SIDE, |x, y| shown.grid.pixel(x, y));
-            if let Some(by) = to_window() {
-                for pixel in &mut image.pixels {
-                    let [r, g, b, a] = by.premultiplied(pixel.to_array());
-                    *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
-                }
+        let shown =
+            if self.sheet.shown.size() == Some(canvas) { &self.sheet.shown } else { &self.whole };
+        match &mut self.small {
+            None => self.small = Some(NavigatorPicture::new(ctx, canvas, &shown.grid)),
+            Some(small) if !self.small_changed.is_empty() && !self.is_busy => {
+                small.update(ctx, canvas, &shown.grid, self.small_changed);
+                self.small_changed = Rect::EMPTY;
             }
-            self.small = Some(ctx.load_texture("navigator", image, TextureOptions::LINEAR));
+            Some(_) => {}
         }
-        self.small.as_ref().map(TextureHandle::id)
+        self.small.as_ref().map(NavigatorPicture::id)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::blocks::{Magnification, ShownColors, TextureBlocks, checker_shape, corners, on_screen};
 use crate::io::platform::Instant;
-use crate::math::{Affine2, Size, vec2};
+use crate::math::{Affine2, Rect, Size, vec2};
 use crate::raster::{Tile, TileAt, TileGrid};
 use crate::render_thread::RenderedTileBatch;
 use eframe::egui;
@@ -61,19 +61,20 @@ impl TileSheet {
         }
     }
 
-    /// Uploads tiles to the graphics card; returns whether there were any. A drag shows complete
-    /// pictures, never the tiles of two; a long redraw is shown in progress.
-    pub fn send(&mut self, ctx: &egui::Context, is_busy: bool) -> bool {
+    /// Uploads tiles to the graphics card; returns a rectangle around them, empty if there are none.
+    /// A drag shows complete pictures, never the tiles of two; a long redraw is shown in progress.
+    pub fn send(&mut self, ctx: &egui::Context, is_busy: bool) -> Rect {
         if self.unsent.is_empty() {
-            return false;
+            return Rect::EMPTY;
         }
         let since = *self.unsent_since.get_or_insert_with(Instant::now);
         if is_busy && since.elapsed() < WHOLE && !self.is_urgent {
-            return false;
+            return Rect::EMPTY;
         }
+        let sent = self.unsent.iter().fold(Rect::EMPTY, |all, at| all.union(at.rect()));
         (self.unsent_since, self.is_urgent) = (None, false);
         self.blocks.update(ctx, &self.grid, self.unsent.drain(..));
-        true
+        sent
     }
 
     /// * `scale`: pixels of the screen per pixel of the canvas; and whether it is seen upright.
@@ -127,7 +128,7 @@ mod tests {
         sheet.begin(Size::new(100, 80));
         sheet.show(TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(8000), 100, 80, 0, 0));
         assert_eq!(sheet.grid.pixel(99, 79), [9, 90, 200, 255]);
-        assert!(sheet.send(&ctx, true), "though the thread is busy");
+        assert!(!sheet.send(&ctx, true).is_empty(), "though the thread is busy");
         let tiles = vec![(TileAt::of_pixel(0, 0), None)];
         let batch = RenderedTileBatch {
             picture: 1,
@@ -140,6 +141,6 @@ mod tests {
         };
         sheet.take(batch);
         assert_eq!((sheet.grid.pixel(0, 0), sheet.grid.pixel(99, 79)), ([0; 4], [9, 90, 200, 255]));
-        assert!(!sheet.send(&ctx, true), "tiles of a long redraw wait a little");
+        assert!(sheet.send(&ctx, true).is_empty(), "tiles of a long redraw wait a little");
     }
 }

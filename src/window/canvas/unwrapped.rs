@@ -3,8 +3,9 @@
 //! (`surface::unwrap`).
 
 use super::Canvas;
+use super::navigator_picture::EVERYWHERE;
 use super::sheet::TileSheet;
-use crate::math::{Vec2, vec2};
+use crate::math::{Rect, Vec2, vec2};
 use crate::raster::{TILE, Tile, TileAt, TileGrid};
 use crate::surface::Surface;
 use crate::surface::unwrap::PlaneLayout;
@@ -44,13 +45,13 @@ impl UnwrappedSheet {
         }
     }
 
-    /// Samples what changed in the picture; returns whether anything did.
+    /// Samples what changed in the picture; returns a rectangle around what did, on the sheet.
     pub fn follow(
         &mut self,
         ctx: &egui::Context,
         layout: &Arc<PlaneLayout>,
         picture: &TileGrid,
-    ) -> bool {
+    ) -> Rect {
         if !self.layout.as_ref().is_some_and(|known| Arc::ptr_eq(known, layout)) {
             self.shown.begin(layout.size());
             let tiles: Vec<TileAt> = TileAt::covering(layout.size().rect()).collect();
@@ -126,11 +127,16 @@ impl Canvas {
         layout: Option<&Arc<PlaneLayout>>,
     ) {
         let was_shown = self.sheet.shown.size().is_some();
-        match layout {
-            Some(layout) => self.small_is_old |= self.sheet.follow(ctx, layout, &self.whole.grid),
-            None => self.sheet.put_away(),
-        }
-        self.small_is_old |= was_shown != layout.is_some();
+        let sent = match layout {
+            Some(layout) => self.sheet.follow(ctx, layout, &self.whole.grid),
+            None => {
+                self.sheet.put_away();
+                Rect::EMPTY
+            }
+        };
+        let is_other = was_shown != layout.is_some();
+        let changed = if is_other { EVERYWHERE } else { sent };
+        self.small_changed = self.small_changed.union(changed);
     }
 }
 
@@ -200,19 +206,19 @@ mod tests {
         let layout = surface.plane_layout(UnwrapSettings { amount: 1.0, smooth_px: 0.0 }).unwrap();
         let (ctx, mut sheet) = (egui::Context::default(), UnwrappedSheet::default());
         let plain = TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(20_000), 200, 100, 0, 0);
-        assert!(sheet.follow(&ctx, &layout, &plain));
+        assert!(!sheet.follow(&ctx, &layout, &plain).is_empty());
         let at = |q: Vec2| {
             let p = layout.sheet_at(&surface, q).unwrap();
             (p.x.floor() as i32, p.y.floor() as i32)
         };
         let (x, y) = at(vec2(150.0, 50.0));
         assert_eq!(sheet.shown.grid.pixel(x, y), [9, 90, 200, 255]);
-        assert!(!sheet.follow(&ctx, &layout, &plain), "nothing changed");
+        assert!(sheet.follow(&ctx, &layout, &plain).is_empty(), "nothing changed");
         let mut painted = plain.clone();
         let tile = TileAt::of_pixel(150, 50);
         painted.set(tile, Tile::from_pixels([255, 0, 0, 255].repeat(TILE * TILE)).map(Arc::new));
         sheet.mark_changed([tile].into_iter());
-        assert!(sheet.follow(&ctx, &layout, &painted));
+        assert!(!sheet.follow(&ctx, &layout, &painted).is_empty());
         assert_eq!(sheet.shown.grid.pixel(x, y), [255, 0, 0, 255]);
         let (x, y) = at(vec2(20.0, 50.0));
         assert_eq!(sheet.shown.grid.pixel(x, y), [9, 90, 200, 255]);
