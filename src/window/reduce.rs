@@ -31,7 +31,7 @@ impl Reduction {
         image
     }
 
-    /// The same where the large picture has changed, in a rectangle.
+    /// Makes the small picture again where the large one has changed, in a rectangle of its px.
     pub fn update(self, image: &mut ColorImage, changed: Rect, at: impl Fn(i32, i32) -> [u8; 4]) {
         let changed = changed.intersect(self.size.rect());
         if changed.is_empty() {

@@ -104,15 +104,8 @@ fn keep_values(
     let held = parsed.held_bytes.saturating_mul(2).saturating_add(profiled::TABLE_BYTES);
     budget.room(file, "blending the values of its profile", held).ok()?;
     let icc = parsed.icc?;
-    let mut found = notes.clone();
-    found.push(profiled::NOTE.into());
-    let (document, is_less) = build_document(&mut parsed, budget, &mut found);
-    let document = show_in_srgb(document, icc)?;
-    if is_shown_otherwise(&document, merged, is_less, &found) {
-        return None;
-    }
-    *notes = found;
-    Some((document, is_less))
+    let show = |document| show_in_srgb(document, icc);
+    build_alike(&mut parsed, budget, (profiled::NOTE, merged), notes, show)
 }
 
 /// The document of a file whose shapes are pixels, and whether something was left out; `None` unless
@@ -127,9 +120,22 @@ fn keep_pixels(
     const NOTE: &str = "its shapes became pixels: the edges of live ones look otherwise together";
     let mut parsed = parse_as(file, bytes, budget, RecordView::Pixels).ok()?;
     budget.room(file, "the pixels of its shapes", parsed.held_bytes.saturating_mul(2)).ok()?;
+    build_alike(&mut parsed, budget, (NOTE, merged), notes, Some)
+}
+
+/// The document that a file's records say, as it is shown, and whether something was left out; `None`
+/// unless it looks like the file's own picture, `merged`. `note` is told of it.
+fn build_alike(
+    parsed: &mut ParsedPsd,
+    budget: &Budget,
+    (note, merged): (&str, &Merged),
+    notes: &mut Vec<String>,
+    show: impl FnOnce(Document) -> Option<Document>,
+) -> Option<(Document, bool)> {
     let mut found = notes.clone();
-    found.push(NOTE.into());
-    let (document, is_less) = build_document(&mut parsed, budget, &mut found);
+    found.push(note.into());
+    let (document, is_less) = build_document(parsed, budget, &mut found);
+    let document = show(document)?;
     if is_shown_otherwise(&document, merged, is_less, &found) {
         return None;
     }
